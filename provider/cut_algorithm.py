@@ -62,7 +62,7 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.addOutput(QgsProcessingOutputNumber(TILES, tr("Tiles written")))
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
-        """Find out the files; refuse what can be refused before the run."""
+        """Find the files of the survey, and refuse invalid input before the run."""
         given = survey_paths(self, INPUT, parameters, context)
         check_vpc(target_path(parameters.get(OUTPUT)), given)
         self.files = files_of_survey(given)

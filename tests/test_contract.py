@@ -361,7 +361,7 @@ def upright(ring: np.ndarray, part: tuple[float, float, float, float]) -> np.nda
 
 
 def drawn(stage: Stage, shift: tuple[float, float] = (0.0, 0.0)) -> dict[str, LayerFeatures]:
-    """Return a layer for each input layer of the stage: the houses of the scene, each layer a hand further north."""
+    """Return a layer for each input layer of the stage: the houses of the scene, each layer a little further north."""
     boxes = ((5, 5, 17, 13), (22, 20, 31, 34))
     layers = {}
     for i, input_layer in enumerate(stage.input_layers):
@@ -410,7 +410,7 @@ def text_of(content: FileContent) -> str:
 
 
 def assert_same(made: StageResults, expected: StageResults) -> None:
-    """Hold two results of a stage to each other, bit by bit."""
+    """Assert that two results of a stage are equal bit by bit."""
     for one, other in zip(results_of(made), results_of(expected)):
         if isinstance(one, LayerFeatures):
             assert one.columns.keys() == other.columns.keys()
@@ -895,7 +895,7 @@ def test_stage_stops_when_it_is_cancelled(stage):
 
 
 def assert_alike(stage: Stage, made: StageResults, expected: StageResults) -> None:
-    """Hold layers, rasters and numbers of two results to each other, but for what rounding does to coordinates."""
+    """Assert that layers, rasters and numbers of two results are equal but for rounding of coordinates."""
     for name, features in made.layers.items():
         assert len(features) == len(expected.layers[name])
     for name, surface in made.rasters.items():

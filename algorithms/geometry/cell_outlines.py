@@ -64,7 +64,7 @@ def _following(grid: Grid, start: np.ndarray, direction: np.ndarray) -> np.ndarr
     following = np.full(len(start), -1)
     for turn in (1, 0, -1):
         position, found = find_cells(keys, 4 * end + (direction + turn) % 4)
-        # A turn to the right comes last and wins: where four sides meet it leads on to the cell across the corner.
+        # Turns to the right are set last: where four sides meet, the ring goes on to the cell across the corner.
         following[found] = order[position[found]]
     return following
 

@@ -129,7 +129,7 @@ def _turns_back(xyz: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
     is_back = np.zeros(len(xyz), bool)
     is_back[middle] = np.einsum("ij,ij->i", before, after) < _TURN * length
-    # Some points before and after the turn see it, too: it is the middle one.
+    # Some points before and after the turn qualify, too: the middle one is the turn.
     first = np.flatnonzero(is_back & ~np.roll(is_back, 1))
     last = np.flatnonzero(is_back & ~np.roll(is_back, -1))
     turned[(first + last + 1) // 2] = True

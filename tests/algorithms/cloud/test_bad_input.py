@@ -1,4 +1,4 @@
-"""Bad input: one sentence each, and no memory taken on the word of a header."""
+"""Bad input: one sentence each, and no memory allocated by counts in a header alone."""
 
 import importlib
 import json
