@@ -16,7 +16,6 @@ Python lines that the tests hold the program to.
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 from pathlib import Path
@@ -47,7 +46,7 @@ from lidar_buildings.tests.benchmarks.drone_scenes import places as drone_places
 from lidar_buildings.tests.benchmarks.likeness import likeness  # noqa: E402
 from lidar_buildings.tests.benchmarks.outlines import outlines  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
-from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import Table, print_tables  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, estate, scanned  # noqa: E402
 from lidar_buildings.tests.benchmarks.uneven import evenly, in_bands, in_pairs, on_lines, on_zigzags  # noqa: E402
 from lidar_buildings.tests.pits import scene as with_pits  # noqa: E402
@@ -575,22 +574,11 @@ TABLES = {
 }
 
 
-def main() -> None:
-    """Print the tables that are asked for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(TABLES))
-    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
-    chosen = parser.parse_args()
-    wanted = chosen.tables or list(TABLES)
-    if set(wanted) - set(TABLES):
-        parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
-    if not DATA.is_dir() and not set(wanted) <= set(SIMULATED):
-        parser.error(f"no real clouds in {DATA}; LIDAR_BUILDINGS_DATA names another folder")
-    for name in wanted:
-        print(f"\n## {name}")
-        for table in TABLES[name]():
-            print(f"\n{table.write(chosen.output)}")
+def _without_clouds(wanted: list[str]) -> str:
+    """Return that real clouds are missing, if tables need them; "" otherwise."""
+    has_clouds = DATA.is_dir() or set(wanted) <= set(SIMULATED)
+    return "" if has_clouds else f"no real clouds in {DATA}; LIDAR_BUILDINGS_DATA names another folder"
 
 
 if __name__ == "__main__":
-    main()
+    print_tables(TABLES, __doc__, _without_clouds)

@@ -9,7 +9,6 @@ each point.
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from pathlib import Path
@@ -27,7 +26,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_street import simulate_street  # noqa: E402
 from lidar_buildings.algorithms.stage import LayerFeatures  # noqa: E402
-from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import Table, print_tables  # noqa: E402
 from lidar_buildings.tests.real.fronts import FOUND, FRONTS, box_on, frame_on, front_figures, union_share  # noqa: E402
 
 # Seeds of streets, whether things stand before the fronts, and their length (m).
@@ -262,20 +261,5 @@ def _outer_corners(outlines) -> np.ndarray:
 TABLES = {table.__name__: table for table in (streets, doors, fronts, lines, blocks)}
 
 
-def main() -> None:
-    """Print the tables that are asked for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(TABLES))
-    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
-    chosen = parser.parse_args()
-    wanted = chosen.tables or list(TABLES)
-    if set(wanted) - set(TABLES):
-        parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
-    for name in wanted:
-        print(f"\n## {name}")
-        for table in TABLES[name]():
-            print(f"\n{table.write(chosen.output)}")
-
-
 if __name__ == "__main__":
-    main()
+    print_tables(TABLES, __doc__)

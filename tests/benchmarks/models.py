@@ -8,7 +8,6 @@ and as a JSON file for programs (in ``--output``). Solids are held to the rules 
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 import time
@@ -23,7 +22,7 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs  # noqa: E402
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling  # noqa: E402
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, StageResults  # noqa: E402
-from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import Table, print_tables  # noqa: E402
 from lidar_buildings.tests.real.clouds import DATA, DELFT, detected  # noqa: E402
 from lidar_buildings.tests.roof_shapes import SHAPES, RoofShape, moved  # noqa: E402
 from lidar_buildings.tests.solid_validity import assert_valid_solid, shells_of  # noqa: E402
@@ -147,20 +146,5 @@ def _is_valid(places: np.ndarray, shell: list) -> bool:
 TABLES = {"shapes": shapes, "real": real, "map": on_map}
 
 
-def main() -> None:
-    """Print the tables that are asked for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(TABLES))
-    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
-    chosen = parser.parse_args()
-    wanted = chosen.tables or list(TABLES)
-    if set(wanted) - set(TABLES):
-        parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
-    for name in wanted:
-        print(f"\n## {name}")
-        for table in TABLES[name]():
-            print(f"\n{table.write(chosen.output)}")
-
-
 if __name__ == "__main__":
-    main()
+    print_tables(TABLES, __doc__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import configparser
 import datetime
 import json
@@ -9,6 +10,7 @@ import math
 import os
 import platform
 import subprocess
+from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -52,6 +54,23 @@ def write(folder: Path, name: str, rows: list[dict[str, Any]]) -> Path:
     content = {"table": name, **circumstances(), "rows": rows}
     path.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return path
+
+
+def print_tables(tables: dict[str, Callable[[], list[Table]]], description: str | None, check: Any = None) -> None:
+    """Print and write the tables that the command line names, or all; ``check`` returns why these can't be made."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(tables))
+    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
+    chosen = parser.parse_args()
+    wanted = chosen.tables or list(tables)
+    if set(wanted) - set(tables):
+        parser.error(f"there is no table {(set(wanted) - set(tables)).pop()!r}; there are {', '.join(tables)}")
+    if check is not None and (reason := check(wanted)):
+        parser.error(reason)
+    for name in wanted:
+        print(f"\n## {name}")
+        for table in tables[name]():
+            print(f"\n{table.write(chosen.output)}")
 
 
 def circumstances() -> dict[str, Any]:
