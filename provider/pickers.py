@@ -64,7 +64,7 @@ def chosen_classes(text: str) -> set[int]:
 
 
 def with_class(text: str, number: int, is_chosen: bool) -> str:
-    """Return the text of classes with or without one of them; neighbors become a range."""
+    """Return the text of classes with or without one of them; consecutive numbers become a range."""
     chosen = chosen_classes(text)
     chosen = chosen | {number} if is_chosen else chosen - {number}
     parts: list[list[int]] = []

@@ -1,4 +1,4 @@
-"""Who may import what: the layers of the house, read from the source and not from a run."""
+"""Which modules may import which: the layers of the program, read from the source without running it."""
 
 from __future__ import annotations
 
@@ -272,7 +272,7 @@ print(*{name.split(".")[2] for name in sys.modules if name.startswith("lidar_bui
 
 
 def test_every_stage_loads_from_the_package_alone():
-    """What a stage and its tests need stands in ``algorithms.stage``, whichever of its modules it is in."""
+    """``algorithms.stage`` exports what a stage and its tests need, whichever of its modules defines it."""
     parts = [path.stem for path in (ROOT / "algorithms" / "stage").glob("*.py") if path.stem != "__init__"]
     deep = [
         path

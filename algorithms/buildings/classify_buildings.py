@@ -139,9 +139,9 @@ def classify_buildings(
     the paper; everything below is this project's.
 
     Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and
-    in a ball, and is held by them: each of the two counts as 100 clusters. So a handful of clusters, or clusters of
-    one kind only, are not split in two. In practice the two references decide: in real clouds of 50 to 2,900 clusters
-    K-means moved the threshold by 0.02 at most.
+    in a ball. These two stay in the data, each with the weight of 100 clusters, so that a handful of clusters, or
+    clusters of one kind only, are not split in two. In practice the two references decide: in real clouds of 50 to
+    2,900 clusters K-means moved the threshold by 0.02 at most.
 
     The confidence is the geometric mean of what entropy and penetration say, and nothing with more penetration than
     the maximum is a building, with one exception. Clusters adjacent to a building (dormers, eaves, parapets) are all

@@ -39,7 +39,7 @@ _COPIED_AT_ONCE = 2**24
 _COARSEST = 1000.0
 # Areas of cells whose sides are a smaller step are 0 in doubles.
 _LEAST_STEP = float(np.sqrt(np.finfo(float).tiny))
-# What the header of every file written here says of the program that wrote it.
+# The name of the writing program, in the header of every file written here.
 SOFTWARE = "LiDAR Buildings"
 LASZIP = (b"laszip encoded", 22204)
 EXTRA_BYTES = (b"LASF_Spec", 4)
@@ -83,7 +83,7 @@ class Vlr:
 
 @dataclass
 class Header:
-    """What a LAS file says of itself; texts and the date are bytes as they are stored, with their padding."""
+    """The header of a LAS file; texts and the date are bytes as they are stored, with their padding."""
 
     minor: int = 4
     source_id: int = 0
@@ -219,7 +219,7 @@ def read_header(path: Path) -> Header:
 
 
 def truncated(path: Path, how: str) -> ValueError:
-    """Return the error for a file that promises what it does not hold."""
+    """Return the error for a file that is shorter than its header states, or otherwise damaged."""
     return ValueError(f"{path.name} is truncated or damaged: {how}; get the file again.")
 
 

@@ -203,7 +203,7 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
     Raises
     ------
     ValueError
-        If the file promises what it can't hold, or no package can read it.
+        If the file is shorter than its header states, or no package can read it.
     """
     laz = _Laz(path, header, stream)
     record = laz.record()
@@ -246,7 +246,7 @@ def open_chunks(path: Path, header: Header, stream: BinaryIO) -> tuple[np.ndarra
     Raises
     ------
     ValueError
-        If the file promises what it can't hold, or lazrs is not installed.
+        If the file is shorter than its header states, or lazrs is not installed.
     """
     laz = _Laz(path, header, stream)
     record, table_at = laz.record(), laz.table_at()

@@ -90,9 +90,9 @@ def classify_noise_statistical(
     thousand on most. Points very far away raise the standard deviation and hide less distant ones, and points of a
     flock or a plume have near neighbors.
 
-    With isolated points, both are mended. A point must then be farther than 4.8 m (7 point spacings on sparse clouds)
-    from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points
-    half as far apart ties to the scene, and points under the ground. 'Classify noise in the air' and the height
+    With isolated points, both errors are avoided. A point must then be farther than 4.8 m (7 point spacings on sparse
+    clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of
+    points half as far apart ties to the scene, and points under the ground. 'Classify noise in the air' and the height
     histogram's stage find these in the same way, and their notes say what stays. Only points with nothing around them
     can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the
     others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.
@@ -143,7 +143,7 @@ def classify_noise_statistical(
 
 
 def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows (m,) of the points whose neighbors are looked up, and how many points each of them stands for.
+    """Return the rows (m,) of the points whose neighbors are looked up, and how many points each of them represents.
 
     These are all points of voxels with few points, among which are all that lie farther than ``apart`` (m) from their
     nearest one, and of the others a sample, if they are many.

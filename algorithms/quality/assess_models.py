@@ -20,8 +20,8 @@ from ..report.page import Row, build_page, percent
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
 
-# A plane is there where this share of its points lies on it, or on the model.
-_THERE = 0.5
+# With a smaller share of its points on it a face is invented, and with a smaller share on the model a plane is missing.
+_ON_FACE = 0.5
 
 # Faces with less than this area in plan (m²) are upright: walls.
 _UPRIGHT = 1e-3
@@ -220,7 +220,7 @@ class _Face:
         """Whether its points lie on it."""
         if not len(self.off):
             return UNSEEN
-        return MATCHED if np.mean(self.is_on) >= _THERE else INVENTED
+        return MATCHED if np.mean(self.is_on) >= _ON_FACE else INVENTED
 
 
 @dataclass
@@ -330,7 +330,7 @@ def _missing(xyz: np.ndarray, on_model: np.ndarray, tolerance: float, min_points
         return []
     planes = find_roof_planes(xyz - xyz.mean(axis=0), tolerance, 75.0, min_points)
     found = [planes.label == plane for plane in range(len(planes))]
-    return [xyz[rows] for rows in found if on_model[rows].mean() < _THERE]
+    return [xyz[rows] for rows in found if on_model[rows].mean() < _ON_FACE]
 
 
 def _volume(faces: list[_Face], points: _RoofPoints) -> float:

@@ -83,7 +83,7 @@ def simulate_drone_site(
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,
 ):
-    """Photograph a made-up site with a drone, match the images with all their errors, and keep the truth.
+    """Photograph a made-up site with a drone, match the images with all their errors, and store the true classes.
 
     Houses cut into slopes and terraces, sheds, rows, blocks of flat roofs, halls with parapets, cars and vans, trees,
     hedges and bushes. Crowns are closed lumpy surfaces, edges rounded, walls smeared or missing, surfaces wavy; dark,

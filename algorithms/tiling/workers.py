@@ -30,13 +30,13 @@ _TO_STOP = 1.5
 # What Dask raises, by its name, when the workers that were given a task have died one after the other.
 _ALL_DIED = "KilledWorker"
 
-# Of a process that the system has ended.
+# The message for blocks whose process the system has ended.
 _ENDED = (
     "the processes that worked on it were ended, by the system where memory was short; run it again with fewer "
     "processes or smaller blocks"
 )
 
-# Windows waits for no more processes than that.
+# The most processes that concurrent.futures allows on Windows.
 _MOST_PROCESSES = 61
 
 

@@ -1136,7 +1136,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum points&lt;/b&gt;: Smaller segments, of the input and of the reference, count as none. &lt;i&gt;(at least 1 and at most 1,000,000,000; default 1)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum points&lt;/b&gt;: Smaller segments, of the input and of the reference, are ignored. &lt;i&gt;(at least 1 and at most 1,000,000,000; default 1)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6776,7 +6776,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Photograph a made-up site with a drone, match the images with all their errors, and keep the truth.</source>
+        <source>Photograph a made-up site with a drone, match the images with all their errors, and store the true classes.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6936,7 +6936,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points in segments of the reference are counted by what became of their segment: of a correct one those that both have. Points in noise segments are those of no segment of the reference or a missed one, per point that has a segment in the input. Where a segment could be counted as correct or as a part of a set, the paper takes what overlaps more on average; here it counts as correct.</source>
+        <source>Points in segments of the reference are counted by the outcome of their segment; of a correct one, those that both have. Points in noise segments are those of no segment of the reference or a missed one, per point that has a segment in the input. Where a segment could be counted as correct or as a part of a set, the paper takes what overlaps more on average; here it counts as correct.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7820,7 +7820,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Smaller segments, of the input and of the reference, count as none.</source>
+        <source>Smaller segments, of the input and of the reference, are ignored.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8508,7 +8508,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and in a ball, and is held by them: each of the two counts as 100 clusters. So a handful of clusters, or clusters of one kind only, are not split in two. In practice the two references decide: in real clouds of 50 to 2,900 clusters K-means moved the threshold by 0.02 at most.</source>
+        <source>Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and in a ball. These two stay in the data, each with the weight of 100 clusters, so that a handful of clusters, or clusters of one kind only, are not split in two. In practice the two references decide: in real clouds of 50 to 2,900 clusters K-means moved the threshold by 0.02 at most.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8844,7 +8844,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>With isolated points, both are mended. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points half as far apart ties to the scene, and points under the ground. 'Classify noise in the air' and the height histogram's stage find these in the same way, and their notes say what stays. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
+        <source>With isolated points, both errors are avoided. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points half as far apart ties to the scene, and points under the ground. 'Classify noise in the air' and the height histogram's stage find these in the same way, and their notes say what stays. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -28,7 +28,7 @@ from lidar_buildings.tests.toys import TOYS
 HELP = Path(__file__).resolve().parents[2] / "resources" / "help"
 
 
-def test_pages_are_what_the_stages_say():
+def test_pages_are_generated_from_the_stages():
     real = {f"{s.id}.html": page(s.title, stage_help(s), s.id) for n, s in STAGES.items() if n not in TOYS}
     real |= {f"{p.id}.html": page(p.title, pipeline_help(p), p.id) for p in PIPELINES.values() if p.group != "Toys"}
     real |= {f"{t.id}.html": page(t.title, tiled_pipeline_help(t), t.id) for t in TILED_PIPELINES.values()}

@@ -500,7 +500,7 @@ def test_a_read_only_folder_is_reported_before_the_work(provider, context, town_
     assert "its folder is read-only" in refused(provider, "toyoutline", given, context)
 
 
-def test_what_a_layers_format_says_is_reported(provider, context, log, town_file, out, monkeypatch):
+def test_the_message_of_the_writer_of_a_layer_is_reported(provider, context, log, town_file, out, monkeypatch):
     """A disk that fills up while features are written."""
 
     class Full:

@@ -303,7 +303,7 @@ def pipeline(request, provider):
     return PIPELINES[request.param]
 
 
-def test_shipped_models_are_what_the_pipelines_say(pipeline, provider, tmp_path):
+def test_shipped_models_are_generated_from_the_pipelines(pipeline, provider, tmp_path):
     if pipeline.group == "Toys":
         pytest.skip("it is not shipped")
     shipped = QgsProcessingModelAlgorithm()

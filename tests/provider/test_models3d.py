@@ -37,7 +37,7 @@ def house(tmp_path):
 @pytest.mark.parametrize(
     ("name", "check"), [("m.city.json", assert_valid_cityjson), ("m.jsonl", assert_valid_sequence)]
 )
-def test_layers_have_heights_and_files_are_what_their_names_say(house, context, log, out, name, check):
+def test_layers_have_heights_and_files_the_format_of_their_extension(house, context, log, out, name, check):
     wanted = {layer: str(out / f"{layer.lower()}.gpkg") for layer in ("BUILDINGS", "ROOFS", "WALLS")}
     files = {"CITYJSON": str(out / name), "OBJ": str(out / "m.obj")}
     made = run("reconstructroofs", {**house, **wanted, **files}, context, log)

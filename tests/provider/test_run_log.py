@@ -1,4 +1,4 @@
-"""What pages say of the run that made them, and the rows of its parameters."""
+"""The part of a page that describes the run that made it, and the rows of its parameters."""
 
 import re
 
@@ -27,7 +27,7 @@ def house(tmp_path_factory):
     return path
 
 
-def test_the_page_of_a_chain_says_of_what_it_is_and_what_automatic_became(provider, context, log, house, out):
+def test_the_page_of_a_chain_names_its_cloud_and_the_values_of_automatic_parameters(provider, context, log, house, out):
     """It had neither file, date, version nor parameters."""
     given = {"INPUT": str(house), "OUTPUT": str(out / "a.las"), "REPORT": str(out / "a.html"), "MIN_AREA": 5.0}
     result = run("detectbuildings", given, context, log)
@@ -54,7 +54,7 @@ def test_a_page_of_one_stage_has_its_parameters(provider, context, log, town_fil
     assert "<h3>Assess buildings</h3>" in page
 
 
-def test_rows_of_parameters_say_where_values_come_from():
+def test_rows_of_parameters_name_the_source_of_each_value():
     stage = STAGES["classify_ground_tin"]
     rows = {
         row.name: (row.value, row.meaning) for row in parameter_rows(stage, {"cell_size": 2.0}, {"terrain": "town"})
@@ -66,7 +66,7 @@ def test_rows_of_parameters_say_where_values_come_from():
     assert {row.name: row.value for row in several}["Grid cell size"] == "1 m to 3 m"
 
 
-def test_what_steps_say_is_kept_once():
+def test_messages_of_steps_are_kept_once():
     with run_log() as log:
         for _ in range(2):
             log.begin(STAGES["classify_ground_tin"], {})

@@ -310,7 +310,7 @@ def test_footprints_have_styles_to_switch(context, log):
         (0.5, 0.7),
         (0.7, 1.0),
     ]
-    # What the table says of the fields holds in all styles, and the labels too.
+    # The tips and labels are the same in all styles.
     layer.styleManager().setCurrentStyle("Reason")
     assert layer.mapTipTemplate()
     assert layer.labelsEnabled()

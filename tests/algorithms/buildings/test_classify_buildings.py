@@ -68,7 +68,7 @@ def test_roofs_are_buildings_and_crowns_are_not(garden):
     assert confidence.max() <= 1
 
 
-def test_where_both_kinds_are_there_it_decides_as_published(garden):
+def test_a_scene_of_roofs_and_crowns_gets_the_published_classes(garden):
     xyz, cluster_id = garden
     ours = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
     published = classify_buildings_2019(xyz, ones(xyz), cluster_id, n_neighbors=24)
@@ -147,7 +147,7 @@ def test_a_lone_tree_is_never_a_building(rng, lawn):
 
 
 def test_a_town_without_trees_keeps_all_its_roofs_and_a_forest_gets_none(rng):
-    """K-means parts each in two; the entropies of planes and volumes hold the two means of ours."""
+    """K-means would split each in two; the reference entropies of planes and volumes prevent it."""
     town = clusters(*[roof(rng, 20 * i, 0, noise=0.01 + 0.01 * i) for i in range(6)])
     crowns = [crown(rng, 20 * i, 0, 2 + 0.4 * i) for i in range(6)]
     forest = with_lawn(*clusters(*crowns), roof(rng, -5, -5, 110, 10, 0.0))
@@ -191,7 +191,7 @@ def test_where_noise_makes_planes_volumes_nothing_is_a_building(rng):
 
 
 def test_a_planar_cluster_with_ground_beneath_is_no_building(rng):
-    """A spot of a crown as flat as a roof: its entropy says building, the points beneath it say leaves."""
+    """A spot of a crown as flat as a roof: it has the entropy of a building, but ground points beneath it."""
     solid, canopy = roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 5, 5)
     ground = roof(rng, 30, 0, 5, 5, elevation=0.0)
     xyz, part = clusters(solid, canopy, crown(rng, 20, 40), ground)
@@ -329,7 +329,7 @@ def test_clusters_without_entropy_are_undecided(rng):
 
 
 @pytest.mark.parametrize("kinds", ["both", "roofs", "crowns"])
-def test_who_is_more_sure_is_more_often_right(rng, kinds):
+def test_clusters_of_more_confidence_are_more_often_right(rng, kinds):
     """Roofs and crowns of all sizes and shapes, of which some look like the other kind; ground lies under crowns."""
     parts, is_roof, ground = [], [], []
     for i in range(240):

@@ -191,7 +191,7 @@ def test_points_without_chunks_that_name_layers(laz):
     assert_refused(path, "describes layered points without chunks", patched(raw, record_at(raw), "<H", 1))
 
 
-def test_waveforms_where_the_header_says_but_none_are(make_las, tmp_path):
+def test_a_header_that_places_waveforms_where_there_are_none(make_las, tmp_path):
     """Any record there was taken for them, and the output, whose header kept the position, could not be read."""
     evlrs = (evlr("someone", 7, b"anything"), evlr("LASF_Spec", 2047, bytes(64)))
     path = make_las(point_format=9, waveforms=True, evlrs=evlrs)

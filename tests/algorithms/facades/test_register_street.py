@@ -59,7 +59,7 @@ def test_facades_and_openings_of_a_scan_are_moved_onto_the_block(scans):
     assert min(facades.columns["base"]) == pytest.approx(min(ring[0][:, 2].min() for ring in facades.geometries))
 
 
-def test_walls_of_one_side_say_nothing_of_the_shift_along_them():
+def test_walls_of_one_side_leave_the_shift_along_them_undetermined():
     """One wall before a longer outline: the shift across is found, that along stays 0."""
     wall = PlanSegments(np.array([[10.0, 0.3]]), np.array([[20.0, 0.3]]), np.array([0]))
     outline = PlanSegments(np.array([[0.0, 0.0]]), np.array([[40.0, 0.0]]), np.array([0]))

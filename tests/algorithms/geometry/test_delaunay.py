@@ -50,7 +50,7 @@ def under(mesh, places):
 
 
 def is_delaunay(mesh):
-    """Tell whether facets cover the square between the corners once and have empty circles and the right neighbors."""
+    """Whether facets cover the square between the corners once and have empty circles and the right neighbors."""
     a, b, c = np.swapaxes(mesh.plan[mesh.facets], 0, 1)
     area = cross(b - a, c - a) / 2
     center, radius = circles(mesh.plan, mesh.facets)

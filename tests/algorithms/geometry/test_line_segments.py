@@ -42,7 +42,7 @@ def meet_exactly(a, b, c, d):
     return wx * uy == wy * ux and one[0] <= other[1] and other[0] <= one[1]
 
 
-def test_segments_meet_as_whole_numbers_say(rng):
+def test_segments_meet_as_in_exact_integer_arithmetic(rng):
     """On a grid of five by five they touch, lie on one line and overlap as often as they cross."""
     grid = rng.integers(0, 5, (600, 4, 2))
     grid = grid[(grid[:, 0] != grid[:, 1]).any(axis=1) & (grid[:, 2] != grid[:, 3]).any(axis=1)]
@@ -52,7 +52,7 @@ def test_segments_meet_as_whole_numbers_say(rng):
 
 
 @pytest.mark.parametrize("at_once", [1, 7, 1000])
-def test_rings_are_valid_as_whole_numbers_say(at_once, rng, monkeypatch):
+def test_rings_are_valid_as_in_exact_integer_arithmetic(at_once, rng, monkeypatch):
     """Sides may only meet the sides before and after them, however many are compared at once."""
     monkeypatch.setattr(module, "_PAIRS_AT_ONCE", at_once)
     rings = [rng.integers(0, 6, (count, 2)) for count in (4, 5, 6) for _ in range(60)]

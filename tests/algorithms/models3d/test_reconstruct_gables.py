@@ -119,7 +119,7 @@ def test_valleys_single_planes_and_level_roofs_are_no_gables(rng):
         ]
 
 
-def test_tunables_do_what_they_say(rng):
+def test_tunables_have_the_described_effect(rng):
     xyz, classes, plane = house(rng)
     assert not len(gables_of(xyz, classes, plane, min_area=80.0))
     seen = np.abs(xyz[:, 1]) > 1.0

@@ -199,7 +199,7 @@ def test_polygons_are_a_reference_too():
     assert values["points_misses"] == 64 + 128
 
 
-def test_without_a_reference_it_says_so_and_of_two_the_cloud_counts():
+def test_without_a_reference_it_is_refused_and_of_two_the_cloud_is_used():
     xyz, classes = block(0, 0, 5, 0.0), np.full(100, 2)
     with pytest.raises(ValueError, match="There is no reference"):
         assess_buildings(xyz, classes)

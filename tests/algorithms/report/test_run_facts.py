@@ -4,7 +4,7 @@ from lidar_buildings.algorithms.report.page import Row, build_page, with_run
 from lidar_buildings.algorithms.report.run_facts import StepFacts, draw_first, draw_last
 
 
-def test_a_page_says_of_what_it_is_and_with_which_parameters():
+def test_a_page_names_its_cloud_and_parameters():
     page = build_page("Title", "Lead.", {"Table": [Row("a", "1", "")]}, "<p>picture</p>")
     steps = [StepFacts("Ground", 1.25, [Row("Cell <size>", "2 m", "automatic")], ["Found 3"]), StepFacts("Roofs", 2.0)]
     full = with_run(page, draw_first([Row("Input", "tile.laz", "")]), draw_last(steps, "In all."))

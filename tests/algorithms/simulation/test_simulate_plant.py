@@ -42,7 +42,7 @@ def test_what_is_hidden_has_no_points(plant):
     assert inside.mean() < 0.01
 
 
-def test_density_and_seed_do_what_they_say(monkeypatch):
+def test_density_and_seed_have_the_described_effect(monkeypatch):
     small = {"pipes": 1, "tanks": 0, "spheres": 0, "density": 200.0}
     plant = simulate_plant(**small, noise=0.0)
     again = simulate_plant(**small, noise=0.0)

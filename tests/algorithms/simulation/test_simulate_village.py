@@ -229,7 +229,7 @@ def test_the_same_seed_gives_the_same_bytes():
     assert [array.tobytes() for array in once] == [array.tobytes() for array in again]
 
 
-def test_the_map_says_nothing_of_the_points():
+def test_points_do_not_depend_on_the_errors_of_the_map():
     a, b = (small(map_noise=noise)["xyz"] for noise in (0.15, 0.3))
     np.testing.assert_array_equal(a, b)
 

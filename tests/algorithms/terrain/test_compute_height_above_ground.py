@@ -27,7 +27,7 @@ def test_height_over_a_bumpy_ground(rng):
     np.testing.assert_allclose(height[inside], lift[inside], atol=0.08)
 
 
-def test_outside_the_ground_the_nearest_ground_point_counts_and_the_log_says_how_many():
+def test_outside_the_ground_the_nearest_ground_point_is_used_and_the_log_has_their_number():
     ground = np.array([[0, 0, 1], [4, 0, 2], [0, 4, 3], [4, 4, 4]], float)
     outside = np.array([[-3, -1, 6], [9, 5, 6], [2, 900, 6], [40_000, -30_000, 6]], float)
     inside = np.array([[2, 2, 6]], float)

@@ -274,7 +274,7 @@ def classify_warned(classification, *, monitor=None):
     return classification
 
 
-def test_a_warning_of_some_blocks_says_of_how_many(tmp_path, monkeypatch):
+def test_a_warning_of_some_blocks_has_their_number(tmp_path, monkeypatch):
     warned = Pipeline("warned", "Warned", "Tests", "", "", "", "", (Step("warned", "classify_warned"),))
     monkeypatch.setitem(STAGES, "classify_warned", classify_warned.stage)
     monkeypatch.setitem(PIPELINES, warned.name, warned)

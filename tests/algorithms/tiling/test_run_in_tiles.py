@@ -111,7 +111,7 @@ def test_roofs_are_found_and_houses_come_once(points, whole):
     assert whole.layers["footprints"].columns["id"] == [1, 2, 3]
 
 
-def test_blocks_say_what_the_whole_cloud_says(points, whole):
+def test_blocks_report_the_same_as_the_whole_cloud(points, whole):
     xyz, times, _ = points
     cloud = create_cloud({"xyz": xyz, "gps_time": times}, "EPSG:28992")
     run_pipeline(DETECT, cloud)
@@ -464,7 +464,7 @@ def test_an_extent_without_points_is_refused(tmp_path, points):
         ((*DETECT.steps[:2], Step("again", "classify_ground_tin", cloud="noise")), "works on another cloud"),
     ],
 )
-def test_what_can_not_be_tiled_says_why(tmp_path, steps, why):
+def test_steps_that_can_not_be_tiled_are_refused_with_the_reason(tmp_path, steps, why):
     with pytest.raises(ValueError, match=f"can't be run in tiles: .*{why}"):
         run([], tmp_path / "out", pipeline=replace(QUICK, steps=steps))
 

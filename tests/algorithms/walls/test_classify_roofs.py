@@ -56,7 +56,7 @@ def test_segments_of_other_programs_have_any_number(scene):
         np.testing.assert_array_equal(one, other)
 
 
-def test_tunables_do_what_they_say(scene):
+def test_tunables_have_the_described_effect(scene):
     arrays, part = scene
 
     def found(**tunables):

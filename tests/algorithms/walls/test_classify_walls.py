@@ -65,7 +65,7 @@ def test_walls_are_found_and_belong_to_their_roofs(scene, tunables):
     np.testing.assert_array_equal(classification, np.where(wall_of > 0, PointClass.BUILDING, arrays["classification"]))
 
 
-def test_tunables_do_what_they_say(scene):
+def test_tunables_have_the_described_effect(scene):
     arrays, of = scene
 
     def share(kind, **tunables):

@@ -270,7 +270,7 @@ def test_buildings_keep_their_numbers_and_small_ones_are_left_out(rng):
     assert extract_wall_footprints(**arrays, min_area=20.0)[0].columns["cluster_id"] == [3]
 
 
-def test_tunables_do_what_they_say(rng):
+def test_tunables_have_the_described_effect(rng):
     arrays, true = building(rng, "L", missing=(1,))
     assert extract_wall_footprints(**arrays, min_seen=0.95)[0].columns["source"] == ["roof"]
     wide = extract_wall_footprints(**arrays, tolerance=0.5)[0].columns["deviation"][0]
