@@ -47,7 +47,7 @@ def simulate_drone_site(
     density: Annotated[
         float, Param("Point density", "Points on open ground, seen from above.", unit="points/m²", low=5, high=400)
     ] = 40.0,
-    slope: Annotated[float, Param("Slope", "Slope of the ground on the whole.", unit="°", low=0, high=20)] = 4.0,
+    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", unit="°", low=0, high=20)] = 4.0,
     terrace_height: Annotated[
         float, Param("Height of terraces", "Rise of steps in the slope.", unit="m", low=0, high=3)
     ] = 1.5,

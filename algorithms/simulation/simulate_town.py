@@ -82,7 +82,7 @@ def simulate_town(
         ),
     ] = 20.0,
     forest: Annotated[float, Param("Share of forest", "Share of the town that is forest.", low=0, high=1)] = 0.1,
-    slope: Annotated[float, Param("Slope", "Slope of the ground on the whole.", unit="°", low=0, high=40)] = 3.0,
+    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", unit="°", low=0, high=40)] = 3.0,
     relief: Annotated[float, Param("Relief", "Height from hollows to hills, about.", unit="m", low=0, high=10)] = 2.0,
     terrace_height: Annotated[
         float, Param("Terrace height", "Height of the banks across the slope, one every 45 m.", unit="m", low=0, high=5)

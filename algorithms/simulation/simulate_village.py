@@ -89,7 +89,7 @@ def simulate_village(
         ),
     ] = 12.0,
     trees: Annotated[float, Param("Trees", "Trees in gardens.", unit="per ha", low=0, high=200)] = 15.0,
-    slope: Annotated[float, Param("Slope", "Slope of the ground on the whole.", unit="°", low=0, high=20)] = 2.0,
+    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", unit="°", low=0, high=20)] = 2.0,
     overhang: Annotated[
         float,
         Param(
@@ -101,7 +101,8 @@ def simulate_village(
         float, Param("Noise", "Standard deviation of a point in every direction.", unit="m", low=0, high=0.2)
     ] = 0.03,
     holes: Annotated[
-        float, Param("Share of holes", "Share of all surfaces where matching found nothing, about.", low=0, high=0.5)
+        float,
+        Param("Share of holes", "Approximate share of all surfaces where matching finds nothing.", low=0, high=0.5),
     ] = 0.1,
     oblique: _Oblique = 28.0,
     noise_points: Annotated[
@@ -130,7 +131,7 @@ def simulate_village(
         float,
         Param(
             "Changes since the old map",
-            "Share of the buildings that the map lacks; as many again are on it and gone, where plots are free.",
+            "Share of the buildings that the map lacks; as many demolished ones are added to it, where plots are free.",
             low=0,
             high=0.5,
         ),

@@ -216,7 +216,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Changes since the old map&lt;/b&gt;: Share of the buildings that the map lacks; as many again are on it and gone, where plots are free. &lt;i&gt;(at least 0 and at most 0.5; default 0.1)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Changes since the old map&lt;/b&gt;: Share of the buildings that the map lacks; as many demolished ones are added to it, where plots are free. &lt;i&gt;(at least 0 and at most 0.5; default 0.1)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1860,7 +1860,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Share of holes&lt;/b&gt;: Share of all surfaces where matching found nothing, about. &lt;i&gt;(at least 0 and at most 0.5; default 0.1)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Share of holes&lt;/b&gt;: Approximate share of all surfaces where matching finds nothing. &lt;i&gt;(at least 0 and at most 0.5; default 0.1)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1904,19 +1904,19 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;b&gt;Slope (°)&lt;/b&gt;: Mean slope of the ground. &lt;i&gt;(at least 0° and at most 20°; default 2°)&lt;/i&gt;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;Slope (°)&lt;/b&gt;: Mean slope of the ground. &lt;i&gt;(at least 0° and at most 20°; default 4°)&lt;/i&gt;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;Slope (°)&lt;/b&gt;: Mean slope of the ground. &lt;i&gt;(at least 0° and at most 40°; default 3°)&lt;/i&gt;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;b&gt;Slope (°)&lt;/b&gt;: Slope along the street. &lt;i&gt;(at least 0° and at most 10°; default 1°)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;Slope (°)&lt;/b&gt;: Slope of the ground on the whole. &lt;i&gt;(at least 0° and at most 20°; default 2°)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;Slope (°)&lt;/b&gt;: Slope of the ground on the whole. &lt;i&gt;(at least 0° and at most 20°; default 4°)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;Slope (°)&lt;/b&gt;: Slope of the ground on the whole. &lt;i&gt;(at least 0° and at most 40°; default 3°)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3593,6 +3593,10 @@
     </message>
     <message>
         <source>Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and the maximum widens, and the median removes single voxels.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Approximate share of all surfaces where matching finds nothing.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6032,6 +6036,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Mean slope of the ground.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Measure how far models of buildings are from the points of their roofs, and which planes are missing or invented.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7580,10 +7588,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Share of all surfaces where matching found nothing, about.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Share of forest</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7596,7 +7600,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Share of the buildings that the map lacks; as many again are on it and gone, where plots are free.</source>
+        <source>Share of the buildings that the map lacks; as many demolished ones are added to it, where plots are free.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7789,10 +7793,6 @@
     </message>
     <message>
         <source>Slope of the flattest plane that is kept; 70° keeps walls.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Slope of the ground on the whole.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
