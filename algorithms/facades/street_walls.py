@@ -19,7 +19,7 @@ class _Rules:
 
     # A wall is of the footprint within this distance (m): eaves jut out up to 1 m, recesses are 1 to 2 m deep.
     reach: float = 1.6
-    # Ends of two walls within this distance (m) are one corner.
+    # Ends of two walls within this distance (m) are one corner, and so are those of a wall and of a footprint.
     corner: float = 0.3
     # Walls and edges run the same way within this angle (sine: 20°).
     same_way: float = 0.34
@@ -27,15 +27,10 @@ class _Rules:
     eaves: float = 0.5
     # Walls of one footprint with less than this along it between them (m) are joined: a tree or a car hides as much.
     gap: float = 3.0
-    # A wall ends at a corner of the footprint if it ends this far before it or goes on this far beyond it (m).
-    before: float = 0.3
-    beyond: float = 0.8
     # Two walls in a row that are off each other by less than this (m) need no step between them.
     step: float = 0.1
     # A row of walls that shares more than this part of its way with a longer one is something before or behind it.
     most: float = 0.3
-    # Edges within this distance (m) of the line of a longer one are on it: fronts beside a recess.
-    in_line: float = 0.05
     # Distance (m) of the positions at which walls are compared with footprints, and shortest wall (m) that is taken.
     sample: float = 0.25
     shortest: float = 1.0
@@ -301,22 +296,8 @@ class _Lines:
                 self._add(*steps[k])
 
     def ring(self) -> np.ndarray:
-        """Return the closed ring (m, 2) of the lines; edges that are nearly in line are on the line of the longest."""
-        points, ways, corners = np.array(self.points), np.array(self.ways), np.array(self.corners)
-        ring = ring_of_lines(points, ways, corners)
-        length = np.hypot(*np.diff(ring, axis=0).T)
-        is_open = np.ones(len(points), bool)
-        for longest in np.argsort(-length, kind="stable"):
-            across = np.array([-ways[longest][1], ways[longest][0]])
-            off = np.abs((ring - points[longest]) @ across)
-            alike = (
-                is_open
-                & (np.maximum(off[:-1], off[1:]) <= _RULES.in_line)
-                & (ways @ ways[longest] > np.sqrt(1 - _RULES.same_way**2))
-            )
-            points[alike], ways[alike] = points[longest], ways[longest]
-            is_open[alike] = False
-        return ring_of_lines(points, ways, ring[:-1])
+        """Return the closed ring (m, 2) of the lines."""
+        return ring_of_lines(np.array(self.points), np.array(self.ways), np.array(self.corners))
 
 
 def _ends_at(end: np.ndarray, way: np.ndarray, point: np.ndarray, edge_way: np.ndarray) -> bool:
@@ -325,7 +306,7 @@ def _ends_at(end: np.ndarray, way: np.ndarray, point: np.ndarray, edge_way: np.n
     if abs(turn) < _RULES.same_way:
         return False
     left = _cross(point - end, edge_way) / turn
-    return bool(-_RULES.beyond <= left <= _RULES.before)
+    return bool(abs(left) <= _RULES.corner)
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
