@@ -43,7 +43,7 @@ class Piece:
 
 
 def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float) -> list[Piece]:
-    """Return the pieces of a building of at least ``min_area`` (m²), with their holes of ``min_hole_area`` (m²).
+    """Return the pieces of a building that may reach ``min_area`` (m²), with their holes of ``min_hole_area`` (m²).
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
     spacing : float
         Point spacing, m.
     min_area : float
-        Smallest area, m².
+        Smallest area of a polygon, m².
     min_hole_area : float
         Smallest hole, m².
     """
@@ -63,7 +63,8 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
     holes = [ring for ring, size in zip(rings, sizes) if -size >= min_hole_area]
     pieces = []
     for ring, size in zip(rings, sizes):
-        if size >= min_area:
+        # A ring is rounded at corners; whether a small building is large enough is decided on its polygon.
+        if size >= min_area / 2:
             own = [hole for hole in holes if is_inside(hole[0], ring)]
             area = size + sum(map(signed_area, own))
             pieces.append(Piece(building, [sampled(one, _SAMPLE * spacing) for one in [ring, *own]], area))

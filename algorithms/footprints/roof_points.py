@@ -151,9 +151,9 @@ def find_non_building_points(
     if not len(other):
         return other
     tree = spatial.cKDTree(xyz[roof, :2])
+    # A pulse that was split by the edge counts on both sides, so that the roof ends in the middle of such pulses.
     distance, nearest = tree.query(xyz[other, :2], distance_upper_bound=reach, workers=n_threads())
-    # A pulse that was split by the edge has a return on the ground right under that on the roof.
-    beside = (distance > spacing / 2) & np.isfinite(distance)
+    beside = np.isfinite(distance)
     other, nearest = other[beside], nearest[beside]
     other = other[xyz[other, 2] < xyz[roof[nearest], 2] - _BELOW]
     return other[~is_under_roof(xyz[other, :2], tree, spacing)]

@@ -433,8 +433,11 @@ def _beside_lines(start: np.ndarray, unit: np.ndarray, positions: np.ndarray, wi
     for own in split_groups(group.ravel(), int(group.max()) + 1):
         normal = np.array([-unit[own[0], 1], unit[own[0], 0]])
         across = (positions - start[0]) @ normal
-        order = np.argsort(across)
         at, room = (start[own] - start[0]) @ normal, within + 1e-6
+        # Few positions lie near any line: only these are sorted.
+        lines = np.append(np.sort(at), np.inf)
+        near = np.flatnonzero(lines[np.searchsorted(lines, across - 2 * room)] <= across + 2 * room)
+        order = near[np.argsort(across[near])]
         low, high = np.searchsorted(across[order], [at - room, at + room])
         for line, first, last in zip(own.tolist(), low.tolist(), high.tolist()):
             found[line] = order[first:last]

@@ -26,7 +26,7 @@ from lidar_buildings.tests.real.base_map import (
 # topmost point is true class 6, and the median distance (m) of the map's corners to the nearest corner of the
 # footprint, for single houses and for whole blocks, where buildings that touch are merged. Outlines follow the eaves,
 # which lie 0.27 m (median) outside of the walls that the map shows.
-REACHED = {"truth": (0.927, 0.41, 0.43), "chain": (0.902, 0.59, 0.63)}
+REACHED = {"truth": (0.927, 0.40, 0.43), "chain": (0.902, 0.59, 0.61)}
 MARGIN, CORNER_MARGIN = 0.01, 0.1
 
 # Least values for the stage to serve its purpose, whatever was reached.
@@ -48,7 +48,7 @@ def test_corners_are_those_of_the_map(kind, level, least):
 
 
 def test_houses_of_rows_are_those_of_the_map():
-    """Of 118 houses of 20 m² or more, 50 are found one to one; with rows in one piece it is 5."""
+    """Of 118 houses of 20 m² or more, 57 are found one to one; with rows in one piece it is 5."""
     cloud = detected(DELFT).cloud
     found = run_stage(STAGES["extract_footprints"], cloud).layers["footprints"]
     made = [polygon([cloud.to_map(ring) for ring in rings]) for rings in found.geometries]
@@ -57,7 +57,7 @@ def test_houses_of_rows_are_those_of_the_map():
     houses = [house for house in base_map()[0] if house.area() >= 20]
     assert len(houses) >= 110
     found, distances = corner_distances(made, houses)
-    assert found >= 47
+    assert found >= 54
     # Reached: 0.59 m, with the walls between houses.
     assert np.median(distances) <= 0.65
 
