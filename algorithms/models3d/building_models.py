@@ -74,7 +74,9 @@ class BuildingModel:
         return self.solids.get(self.level, [])
 
 
-def model_building(xyz: np.ndarray, is_low: np.ndarray, rings: list, base: float, settings: Settings) -> BuildingModel:
+def model_building(
+    xyz: np.ndarray, is_low: np.ndarray, around: np.ndarray, rings: list, base: float, settings: Settings
+) -> BuildingModel:
     """Return the model of one building.
 
     Parameters
@@ -83,6 +85,8 @@ def model_building(xyz: np.ndarray, is_low: np.ndarray, rings: list, base: float
         Its points (m).
     is_low : ndarray of shape (n,), bool
         Which of them have a higher one beside them; see :func:`.are_low`.
+    around : ndarray of shape (m, 3)
+        Points of buildings over its footprint and beside it (m).
     rings : list of ndarray
         Its footprint: closed rings (m).
     base : float
@@ -91,28 +95,24 @@ def model_building(xyz: np.ndarray, is_low: np.ndarray, rings: list, base: float
         How it is modelled.
     """
     origin = np.floor(rings[0][:, :2].min(axis=0))
-    local, around = xyz - [*origin, 0.0], [ring[:, :2] - origin for ring in rings]
+    local, plan = xyz - [*origin, 0.0], [ring[:, :2] - origin for ring in rings]
     model = BuildingModel(base, n_points=len(xyz))
     planes = find_roof_planes(local, settings.tolerance, settings.max_slope, settings.min_points)
     planes = with_level_patches(local, ~is_low, planes, settings.spacing, settings.min_points)
     tops = {"1.2": _single_top, "1.3": _level_tops, "2.2": _roof}
-    top = _Top(local, is_low, around, planes, settings, base)
+    limits = HeightsAround(around - [*origin, 0.0])
+    top = _Top(local, is_low, plan, planes, settings, base, limits)
     if np.median(xyz[top.is_roof, 2]) <= base:
         model.reason = "its roof is not above the ground beside it"
         return model
     for level in LEVELS[: LEVELS.index(settings.level) + 1]:
         partition, why = tops[level](top)
         if partition is not None:
-            limits = HeightsAround(local) if level == "2.2" else None
             if level == "1.3" and len(partition.coefficients) == 1 and "1.2" in model.solids:
                 # One part for all is the simplest level.
                 solids, why = [replace(solid) for solid in model.solids["1.2"]], ""
             else:
-                solids, why = mended(partition, base, local, limits, settings.percentile)
-                if why and limits is not None and (plain := tops[level](top)[0]) is not None:
-                    # A high corner is better than a simpler level.
-                    partition = plain
-                    solids, why = mended(plain, base, local, None, settings.percentile)
+                solids, why = mended(partition, base, local, limits if level == "2.2" else None, settings.percentile)
             if not why:
                 above, label = _above_model(top, partition)
                 why = _worse(model, level, top, above)
@@ -132,10 +132,17 @@ class _Top:
     """What the partitions of one building are made of."""
 
     def __init__(
-        self, xyz: np.ndarray, is_low: np.ndarray, rings: list, planes: RoofPlanes, settings: Settings, base: float
+        self,
+        xyz: np.ndarray,
+        is_low: np.ndarray,
+        rings: list,
+        planes: RoofPlanes,
+        settings: Settings,
+        base: float,
+        limits: HeightsAround,
     ) -> None:
         self.xyz, self.is_low, self.rings = xyz, is_low, rings
-        self.planes, self.settings, self.base = planes, settings, base
+        self.planes, self.settings, self.base, self.limits = planes, settings, base, limits
         self._roof: Optional[Partition] = None
 
     @property
@@ -150,7 +157,7 @@ class _Top:
         if self._roof is None and len(self.planes):
             s = self.settings
             self._roof = divide_footprint(
-                self.xyz, ~self.is_low, self.planes, self.rings, s.spacing, s.tolerance, self.base
+                self.xyz, ~self.is_low, self.planes, self.rings, s.spacing, s.tolerance, self.base, self.limits
             )
         return self._roof
 

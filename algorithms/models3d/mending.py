@@ -70,8 +70,10 @@ def mended(
         # Its cells may be cut; those of the simpler levels stay.
         partition.cells = partition.cells.copy()
     mending = _Mending(partition, xyz, limits, percentile)
-    for _ in range(_MENDINGS):
-        mending.lower_high_cells()
+    for count in range(_MENDINGS):
+        # What a fault raises may have another one when it is lowered: after some rounds it stays.
+        if count < _ROUNDS:
+            mending.lower_high_cells()
         mending.join_small_parts()
         pieces = _pieces(partition, base, mending.highest)
         if not pieces:
@@ -189,14 +191,20 @@ class _Mending:
         self.loops = [np.array(loop) for loop in cells.loops]
 
     def join_small_parts(self) -> None:
-        """Give parts that are too small or too narrow the plane of a neighbor, the smallest one first."""
+        """Give parts that are too small or too narrow the plane of a neighbor, the smallest one first.
+
+        They stay where all neighbors' planes would have corners above the points.
+        """
         for _ in range(_ROUNDS):
             part = self._parts()
             area, is_small = self._small(part)
             is_changed = False
             for number in sorted(np.flatnonzero(is_small).tolist(), key=lambda number: (area[number], number)):
                 cells = np.flatnonzero(part == number)
-                is_changed |= self._take(cells, self._neighbors(cells))
+                corners = np.unique(np.concatenate([self.loops[cell] for cell in cells]))
+                planes = self._neighbors(cells)
+                low = [one for one in planes if not self._is_high(corners, self.partition.coefficients[one])]
+                is_changed |= self._take(cells, low)
             if not is_changed:
                 return
 
@@ -230,9 +238,15 @@ class _Mending:
         if self.limits is None:
             return
         for _ in range(_ROUNDS):
-            if not any([self._lower(np.array([cell])) for cell in np.unique(self._high_corners()[0])]):
-                break
-        for corner in np.unique(self._high_corners()[1]).tolist():
+            cells, corners = map(np.unique, self._high_corners())
+            if not len(cells):
+                return
+            if not any([self._lower(np.array([cell])) for cell in cells]):
+                self._cut_off_at(corners)
+
+    def _cut_off_at(self, corners: np.ndarray) -> None:
+        """Cut off what is too high at some corners, and give it another plane."""
+        for corner in corners.tolist():
             for cell in self._high_at(corner):
                 if cell in self._high_at(corner):
                     piece, turned = self._cut_off(cell, corner)
@@ -358,8 +372,8 @@ class _Mending:
         area = float(self.areas[part].sum())
 
         def loss(option: tuple) -> tuple[bool, float]:
-            excess = self._excess(corners, option[1])
-            return excess > 10**-DECIMALS and turned is not None, self._loss(rows, area, option[1]) + excess
+            is_high = turned is not None and self._is_high(corners, option[1])
+            return is_high, self._loss(rows, area, option[1]) + max(float(self._above(corners, option[1]).max()), 0.0)
 
         best, coefficients = min(options, key=loss)
         if best == new:
@@ -383,9 +397,9 @@ class _Mending:
         off = np.abs(self.xyz[rows, 2] - self.xyz[rows, :2] @ [a, b] - c)
         return float(np.minimum(off, FARTHEST).mean()) * area if len(rows) else 0.0
 
-    def _excess(self, corners: np.ndarray, plane: np.ndarray) -> float:
-        """Return how far (m) a plane is above the points around corners at most."""
-        return float(np.maximum(self._above(corners, plane), 0.0).max())
+    def _is_high(self, corners: np.ndarray, plane: np.ndarray) -> bool:
+        """Return whether a plane is above what one of some corners may have."""
+        return bool((self._above(corners, plane) > 10**-DECIMALS).any())
 
     def _above(self, corners: np.ndarray, plane: np.ndarray) -> np.ndarray:
         """Return how far (k,), m, a plane is above what corners may have."""

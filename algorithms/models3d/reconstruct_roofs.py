@@ -27,6 +27,7 @@ from .building_facts import (
     map_attributes,
 )
 from .building_models import LEVELS, Settings, model_building
+from .heights_around import RADIUS
 from .model_inputs import NO_AREA, TOLERANCE_TEXT, plane_tolerance, require_buildings, require_ground, tell_without_area
 from .roof_partition import inside_rings
 from .roof_points import are_low
@@ -290,7 +291,8 @@ def _modelled(
             empty += 1
         else:
             base, terrain = ground_of(outline.rings)
-            model = model_building(building[over], is_low[over], outline.rings, base, settings)
+            around = building[_rows_near(building, outline.rings, RADIUS)]
+            model = model_building(building[over], is_low[over], around, outline.rings, base, settings)
             model.terrain = terrain
             if model.level:
                 models.append(NamedModel(outline.name, outline.rings, model, outline.attributes))
@@ -324,10 +326,15 @@ def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monit
 
 def _rows_over(building: np.ndarray, rings: list) -> np.ndarray:
     """Return which points, of those in the order of their eastings, lie over a footprint: rows, ascending."""
-    (west, south), (east, north) = rings[0].min(axis=0), rings[0].max(axis=0)
-    rows = np.arange(*np.searchsorted(building[:, 0], (west, east)))
-    rows = rows[(building[rows, 1] >= south) & (building[rows, 1] <= north)]
+    rows = _rows_near(building, rings)
     return rows[inside_rings(building[rows, :2], rings)]
+
+
+def _rows_near(building: np.ndarray, rings: list, margin: float = 0.0) -> np.ndarray:
+    """Return which points, of those in the order of their eastings, lie in the box around a footprint, ``margin`` m."""
+    (west, south), (east, north) = rings[0].min(axis=0) - margin, rings[0].max(axis=0) + margin
+    rows = np.arange(*np.searchsorted(building[:, 0], (west, east)))
+    return rows[(building[rows, 1] >= south) & (building[rows, 1] <= north)]
 
 
 def _ground_heights(ground: np.ndarray) -> Callable[[list], tuple[float, float]]:

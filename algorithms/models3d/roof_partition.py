@@ -102,7 +102,14 @@ def _mean_widths(cells: Subdivision) -> np.ndarray:
 
 
 def divide_footprint(
-    xyz: np.ndarray, is_top: np.ndarray, planes: RoofPlanes, rings: list, spacing: float, tolerance: float, base: float
+    xyz: np.ndarray,
+    is_top: np.ndarray,
+    planes: RoofPlanes,
+    rings: list,
+    spacing: float,
+    tolerance: float,
+    base: float,
+    limits: HeightsAround,
 ) -> Partition:
     """Divide a footprint among roof planes so that points and borders cost least.
 
@@ -120,6 +127,8 @@ def divide_footprint(
         Mean distance of neighboring points, and the one at which a point lies on a plane (m).
     base : float
         Height of the ground (m).
+    limits : HeightsAround
+        How high roofs may reach.
 
     Returns
     -------
@@ -133,7 +142,7 @@ def divide_footprint(
     used = np.flatnonzero(inside)
     cost = np.zeros((len(cells), len(planes)))
     cost[used] = _costs(xyz, is_top, planes, cells, used, spacing, tolerance)
-    cost[used] += _forbidden(planes, cells, used, xyz, base)
+    cost[used] += _forbidden(planes, cells, used, xyz, base, limits)
     label = np.full(len(cells), -1)
     label[used] = _labels(planes, cells, used, cost[used])
     return Partition(cells, label, planes.coefficients, cost)
@@ -220,7 +229,9 @@ def _lattice_in(corners: np.ndarray) -> np.ndarray:
     return xy[(left >= -1e-9).all(axis=1)]
 
 
-def _forbidden(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np.ndarray, base: float) -> np.ndarray:
+def _forbidden(
+    planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np.ndarray, base: float, limits: HeightsAround
+) -> np.ndarray:
     """Return a charge (len(used), m) for planes that reach into the ground or above the points around within a cell."""
     low = max(base + _LEAST_HEIGHT, float(xyz[planes.label >= 0, 2].min()) - _BELOW_POINTS)
     size = np.array([len(cells.loops[cell]) for cell in used])
@@ -228,6 +239,6 @@ def _forbidden(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np
     some, position = np.unique(corner, return_inverse=True)
     xy = np.array(cells.vertices)[some]
     z = xy @ planes.coefficients[:, :2].T + planes.coefficients[:, 2]
-    above = np.maximum(z - HeightsAround(xyz).highest(xy)[:, None], 0.0)
+    above = np.maximum(z - limits.highest(xy)[:, None], 0.0)
     charge = np.where(z < low, _FORBIDDEN, _TOO_HIGH * above)
     return np.maximum.reduceat(charge[position], np.cumsum(size) - size, axis=0)

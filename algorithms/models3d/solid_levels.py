@@ -20,6 +20,9 @@ _SAME_HEIGHT = 0.016
 # Vertices stay where planes meet to this (m).
 _EXACT = 0.0001
 
+# A vertex this close (m) to the line of its neighbors on the outline is no corner of it.
+_ON_OUTLINE = 0.005
+
 # Lines that turn by less than this (sine) have no intersection to go to.
 _LEAST_TURN = 0.05
 
@@ -77,6 +80,7 @@ class Levels:
                 self._move_to_intersection(vertex, sorted(planes))
             if vertex in self._outline:
                 planes.add(BASE)
+        self._join_close_vertices()
         for vertex in self.around:
             self._number(vertex)
 
@@ -152,24 +156,100 @@ class Levels:
         self.plan[vertex] = before
         return kept
 
+    def _join_close_vertices(self) -> None:
+        """Join the ends of edges that are shorter than cuts snap to vertices.
+
+        The outline keeps its corners, and no position gets more heights than it had: walls would come of it.
+        """
+        for u, v in list(self.cells.cell_of):
+            is_left = (u, v) in self.cells.cell_of and len(self.around[u]) > 1 and len(self.around[v]) > 1
+            if is_left and math.dist(self.plan[u], self.plan[v]) < SNAP:
+                _ = self._join(u, v) or self._join(v, u)
+
+    def _join(self, kept: int, gone: int) -> bool:
+        """Join a vertex to another one, unless it is a corner of the outline; return whether it was."""
+        planes = self.around[kept] | self.around[gone]
+        options = [self.plan[kept]]
+        if BASE in self.around[gone]:
+            if not self._is_on_straight_outline(gone, kept):
+                return False
+        elif BASE not in planes:
+            x, y = self.plan[kept]
+            step = self._nearest_point(sorted(planes), (x, y))
+            options += [self.plan[gone], (x + step[0], y + step[1])]
+        most = max(len(self._groups(self.plan[one], self.around[one])) for one in (kept, gone))
+        return any(
+            math.dist(plan, self.plan[kept]) <= _MEET
+            and len(self._groups(plan, planes)) <= most
+            and self._join_at(kept, gone, plan)
+            for plan in options
+        )
+
+    def _is_on_straight_outline(self, vertex: int, neighbor: int) -> bool:
+        """Return whether the outline goes on straight at a vertex from one of its neighbors."""
+        beside = set(self._outline[vertex])
+        if len(beside) != 2 or neighbor not in beside:
+            return False
+        (beyond,) = beside - {neighbor}
+        nx, ny, _ = self._across(self.plan[neighbor], self.plan[beyond])
+        x, y = (a - b for a, b in zip(self.plan[vertex], self.plan[neighbor]))
+        return abs(nx * x + ny * y) < _ON_OUTLINE
+
+    def _join_at(self, kept: int, gone: int, plan: tuple[float, float]) -> bool:
+        """Join two vertices at a position if no cell turns over or falls apart; return whether they were joined.
+
+        A cell that has two vertices left is gone.
+        """
+        cells, moved = self.cells, {kept: plan}
+        around = dict.fromkeys(cells.cell_of[v, other] for v in (kept, gone) for other in self._spokes[v])
+        replaced = {edge for cell in around for edge in _edges(cells.loops[cell])}
+        loops, edges = {}, {}
+        for cell in around:
+            loop = [kept if v == gone else v for v in cells.loops[cell]]
+            loop = [v for v, before in zip(loop, [loop[-1], *loop]) if v != before]
+            loops[cell] = loop if len(loop) > 2 else []
+            new = _edges(loops[cell])
+            if len(set(loop)) < len(loop) or any(
+                edge in edges or (edge in cells.cell_of and edge not in replaced) for edge in new
+            ):
+                return False
+            if new and loop_area([moved.get(v, self.plan[v]) for v in loop]) <= 0:
+                return False
+            edges.update(dict.fromkeys(new, cell))
+        for edge in replaced:
+            del cells.cell_of[edge]
+        cells.cell_of.update(edges)
+        for cell, loop in loops.items():
+            cells.loops[cell] = loop
+        self.plan[kept] = cells.vertices[kept] = plan
+        self.around[kept] |= self.around.pop(gone)
+        for links in (self._spokes, self._outline):
+            if gone in links:
+                links[kept] += links.pop(gone)
+            for vertex in {kept, *links.get(kept, ())} - {gone}:
+                joined = dict.fromkeys(kept if other == gone else other for other in links[vertex])
+                links[vertex] = [v for v in joined if v != vertex]
+        return True
+
+    def _groups(self, plan: tuple[float, float], planes: set[int]) -> list[list[tuple[float, int]]]:
+        """Return the heights (m) of planes at a position, with these, in groups that become one."""
+        groups: list[list[tuple[float, int]]] = []
+        for height, plane in sorted((self._height_at(plane, plan), plane) for plane in planes):
+            if not groups or height - groups[-1][0][0] > _SAME_HEIGHT:
+                groups.append([])
+            groups[-1].append((height, plane))
+        return groups
+
     def _number(self, vertex: int) -> None:
         """Give numbers to the positions at a vertex."""
         x, y = self.plan[vertex]
         plan = self.plan[vertex] = round(x, DECIMALS), round(y, DECIMALS)
-        group: list[tuple[float, int]] = []
-        for height, plane in sorted((self._height_at(plane, plan), plane) for plane in self.around[vertex]):
-            if group and height - group[0][0] > _SAME_HEIGHT:
-                self._enter(vertex, group)
-                group = []
-            group.append((height, plane))
-        self._enter(vertex, group)
-
-    def _enter(self, vertex: int, group: list[tuple[float, int]]) -> None:
-        is_ground = any(plane == BASE for _, plane in group)
-        z = self.base if is_ground else round(sum(height for height, _ in group) / len(group), DECIMALS)
-        for _, plane in group:
-            self.number[vertex, plane] = len(self.positions)
-        self.positions.append((*self.plan[vertex], z))
+        for group in self._groups(plan, self.around[vertex]):
+            is_ground = any(plane == BASE for _, plane in group)
+            z = self.base if is_ground else round(sum(height for height, _ in group) / len(group), DECIMALS)
+            for _, plane in group:
+                self.number[vertex, plane] = len(self.positions)
+            self.positions.append((*plan, z))
 
     def part_crossing_roofs(self) -> None:
         """Put a vertex where one of two planes beside an edge comes from below the other."""
@@ -218,6 +298,11 @@ class Levels:
             ring.append(cell)
             if here == start:
                 return ring
+
+
+def _edges(loop: list[int]) -> list[tuple[int, int]]:
+    """Return the edges around a cell."""
+    return list(zip(loop, [*loop[1:], *loop[:1]]))
 
 
 def turns_around(heights: list[float]) -> int:

@@ -71,6 +71,53 @@ def test_a_corner_of_narrow_cells_is_cut_off_with_its_whole_part():
     assert parts.cells.areas()[parts.label == 0].sum() > 90
 
 
+def test_cuts_go_on_until_no_corner_is_high():
+    """The points lie below the plane over 5 m: the corners of the first cut are too high as well."""
+    xyz = level_points()
+    is_low = xyz[:, 0] > 7.0
+    xyz[:, 2] = np.where(is_low, 6.0, 6.0 + 0.5 * xyz[:, 0])
+    parts = partition(xyz, [], [[0.5, 0, 6.0]], lambda x: 0)
+    limits = HeightsAround(xyz)
+    solids, why = mended(parts, 0.0, xyz, limits, 70.0)
+    assert why == ""
+    roofs = np.concatenate([s.vertices[f[0]] for s in solids for f, k in zip(s.faces, s.kinds) if k == ROOF])
+    assert (roofs[:, 2] <= limits.highest(roofs[:, :2]) + 0.01).all()
+
+
+def test_a_narrow_part_stays_where_its_neighbors_would_be_too_high():
+    """A strip of 0.3 m along a lower building: joined with the roof of 12 m, its end would be 6 m too high."""
+    xyz = level_points()
+    xyz[:, 2] = np.where(xyz[:, 0] > 8, 6.0, 12.0)
+    ring = np.array([[0, 0], [12, 0], [12, 0.3], [8, 0.3], [8, 8], [0, 8], [0, 0]], float)
+    cells, inside = empty_partition([ring], xyz[:, :2])
+    cells.cut(np.array([9.0, -1.0]), np.array([9.0, 9.0]))
+    label = np.append(np.where(inside, 0, -1), [-1] * (len(cells) - len(inside)))
+    (narrow,) = np.flatnonzero((np.abs(cells.centers() - [10.5, 0.15]) < 0.1).all(axis=1))
+    label[narrow] = 1
+    parts = Partition(cells, label, np.array([[0, 0, 12.0], [0, 0, 6.0]]), np.zeros((len(cells), 2)))
+    solids, why = mended(parts, 0.0, xyz, HeightsAround(xyz), 70.0)
+    assert why == ""
+    assert heights_of(solids).tolist() == [6.0, 12.0]
+
+
+def test_vertices_closer_than_cuts_snap_are_one():
+    """The step between two level roofs has a jog of 3 cm; the outline keeps its corners, which are 4 cm apart."""
+    xyz = level_points()
+    ring = np.array([[0, 0], [12, 0], [12, 8], [5, 8], [5, 8.04], [0, 8.04], [0, 0]], float)
+    cells, _ = empty_partition([ring], xyz[:, :2])
+    for start, end in (([6, -1], [6, 8]), ([-1, 4], [6, 4]), ([6, 4.03], [13, 4.03])):
+        cells.cut(np.array(start, float), np.array(end, float), 0.001)
+    inside = ((cells.centers() > 0) & (cells.centers() < [12, 8.05])).all(axis=1)
+    inside &= (cells.centers()[:, 0] < 5) | (cells.centers()[:, 1] < 8)
+    label = np.where(inside, (cells.centers()[:, 1] > 4.01).astype(int), -1)
+    parts = Partition(cells, label, np.array([[0, 0, 6.0], [0, 0, 9.0]]), np.zeros((len(cells), 2)))
+    (solid,), why = mended(parts, 0.0, xyz, None, 70.0)
+    assert (why, fault_of(solid)) == ("", "")
+    plan = np.unique(solid.vertices[:, :2].round(3), axis=0)
+    close = np.argwhere(np.triu(np.hypot(*(plan[:, None] - plan).transpose(2, 0, 1)) < 0.05, 1))
+    assert [plan[pair].tolist() for pair in close] == [[[5.0, 8.0], [5.0, 8.04]]]
+
+
 def test_without_limits_it_stays():
     xyz = level_points()
     parts = partition(xyz, [8.0], [[0, 0, 6.0], [0.5, 0, 6.0]], lambda x: int(x > 8))
