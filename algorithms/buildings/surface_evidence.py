@@ -7,7 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
-from ..features.greenness import greenness, greenness_between, plant_greenness
+from ..features.greenness import greenness, greenness_between
 from .cluster_decisions import Decisions
 from .cluster_evidence import ClusterEvidence
 
@@ -67,12 +67,12 @@ def green_clusters(
     Parameters
     ----------
     colors : three ndarrays of shape (n,), or None
-        Red, green and blue. Where one is missing, or where the scene has no two kinds of greenness, none is green.
+        Red, green and blue. Where one is missing, or where rough and smooth clusters are as green, none is green.
     evidence : ClusterEvidence
         The clusters among the points.
     is_surface : ndarray of shape (m,), bool
         Clusters that are smooth, as roofs are. Rough clusters and large smooth ones show the colors of plants and
-        of roofs; where these do not differ, or one is missing, all points of the scene do.
+        of roofs.
     """
     group, count = evidence.group, len(is_surface)
     nothing = np.zeros(count, bool)
@@ -83,8 +83,6 @@ def green_clusters(
     in_cluster = group >= 0
     rough, large = (in_cluster & np.append(of, False)[group] for of in (~is_surface, is_surface & are_large(evidence)))
     least = greenness_between(values[rough], values[large])
-    if least is None:
-        least = plant_greenness(values)
     if least is None:
         return nothing, None
     known = in_cluster & np.isfinite(values)

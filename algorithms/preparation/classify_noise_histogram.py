@@ -13,6 +13,7 @@ from ..packages import spatial
 from ..params import MinFrequency
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..stage import Monitor, Param, stage
 from .height_histograms import Histogram, pooled_histogram, with_borrowed_ranges
@@ -25,7 +26,6 @@ class HistogramRules:
 
     points_per_cell: int = rule(450, "points", "statistics: with the cells around, some 4000 points make a histogram")
     gap: int = rule(2, "bins", "physics: empty ones; chimneys, treetops and rock faces leave no such gap")
-    group_reach: float = rule(3.0, "point spacings", "within which points of a group lie, and a meter at least")
 
 
 HISTOGRAM = HistogramRules()
@@ -154,7 +154,7 @@ def classify_noise_histogram(
         return made
     is_low, is_high, is_near = beyond
     hanging = np.flatnonzero(is_high & is_near)
-    is_high[hanging[_in_group(points[hanging], max(1.0, HISTOGRAM.group_reach * spacing))]] = False
+    is_high[hanging[_in_group(points[hanging], max(1.0, DENSITY.link * spacing))]] = False
     if isolated:
         rest = np.flatnonzero(~(is_low | is_high))
         is_low[rest[under_ground(points.take(rest, axis=0), spacing, monitor.part(0.7, 1.0))]] = True

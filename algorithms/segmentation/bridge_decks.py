@@ -13,7 +13,11 @@ from ..geometry.groups import items, run_starts
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
 from ..rules import rule
+from ..sampling.closed_surface import CLOSED
+from ..sampling.kinds import LASER
 from ..stage import Monitor
+from ..terrain.free_standing import FREE
+from ..terrain.on_decks import DECK as ON_DECK
 from ..threads import made_ahead
 from .scan_line_pieces import NearPoints, ends_of, pieces_of_lines, slices
 
@@ -26,15 +30,9 @@ class DeckRules:
     least_directions: int = rule(2, "", "in which a deck is raised: crowns are in one, F 75 on a real bridge, not 91")
     most_below: float = rule(0.15, "share of points", "physics: beams pass through crowns, and not through decks")
     edge: float = rule(0.25, "of width, of length", "beams 30° off the vertical reach under edges; and ends of a deck")
-    rough: float = rule(0.25, "m", "crown, camber and railings; and the width in plan of what shows of a side")
-    same_level: float = rule(0.5, "m", "physics: higher steps carry no road; cars and parapets are higher")
-    share: float = rule(
-        0.4, "", "least share: of contact, of ground ahead, of terrain by the deck's points; trees hide some"
-    )
     far: float = rule(
         4.0, "reaches", "water gives few points: the next one beyond an edge, and the ground ahead of ends"
     )
-    line: float = rule(3.0, "point spacings", "statistics: width of lines and side of cells, so that few are empty")
     least_cell: float = rule(1.0, "m", "least side of cells, and how far from the edge a bank shows")
     slope: float = rule(15.0, "°", "of sections and roads, fitted on canals: at 30° F is 34 to 59 instead of 80 to 95")
     noise_step: float = rule(4.0, "standard deviations", "statistics: differences in height that are noise")
@@ -64,8 +62,8 @@ class Decks:
     def of(cls, min_height: float, max_width: float, min_area: float, spacing: float, noise: float) -> Decks:
         """Return the criteria of bridges in a cloud with this point spacing and noise, m."""
         cell = cell_size(spacing)
-        near = NearPoints(DECK.line * cell, float(np.tan(np.radians(DECK.slope))), DECK.noise_step * noise)
-        return cls(min_height, max_width, min_area, cell, cell > DECK.line * spacing, near)
+        near = NearPoints(CLOSED.cell * cell, float(np.tan(np.radians(DECK.slope))), DECK.noise_step * noise)
+        return cls(min_height, max_width, min_area, cell, cell > CLOSED.cell * spacing, near)
 
     def find(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
@@ -74,7 +72,7 @@ class Decks:
             return is_deck
         if not self.is_thinned:
             return self._decks(xyz, is_earth, is_terrain, monitor)
-        rows = one_per_voxel(xyz, self.cell / DECK.line)
+        rows = one_per_voxel(xyz, self.cell / CLOSED.cell)
         deck = rows[self._decks(xyz[rows], is_earth[rows], is_terrain[rows], monitor)]
         is_deck[deck] = True
         if len(deck):
@@ -97,11 +95,11 @@ class Decks:
         is_deck = np.zeros(len(xyz), bool)
         if not len(candidates):
             return is_deck
-        part = connect(xyz[candidates], self.reach, DECK.same_level, monitor.part(0.8, 0.9))
+        part = connect(xyz[candidates], self.reach, LASER.foot, monitor.part(0.8, 0.9))
         others = np.flatnonzero(is_earth & (votes < DECK.least_directions))
         # A filter may leave the last meters before a deck out of the ground: they count with the ground beyond.
         terrain = np.flatnonzero((is_terrain | is_earth) & (votes < DECK.least_directions))
-        beside = connect(xyz.take(terrain, axis=0), self.reach, DECK.same_level, monitor.part(0.9, 1))
+        beside = connect(xyz.take(terrain, axis=0), self.reach, LASER.foot, monitor.part(0.9, 1))
         size = np.bincount(beside, minlength=1)
         ground = np.bincount(beside, is_terrain[terrain], len(size))
         size = np.where(ground >= DECK.most_below * size, size, 0)[beside]
@@ -110,7 +108,7 @@ class Decks:
         ground_tree = spatial.cKDTree(xyz[terrain[is_terrain[terrain]]] * self._stretch)
         for rows in self._large(xyz, candidates, part):
             # The tip of a pier does not count as terrain that a deck leads to.
-            large = around.of(xyz[rows], DECK.share * len(rows))
+            large = around.of(xyz[rows], FREE.open_edge * len(rows))
             angle = np.angle(across[rows].sum()) / 2 + np.pi / 2
             axis = np.array([np.cos(angle), np.sin(angle)])
             if self._is_joined(xyz[rows], large, axis) and self._leads_to(xyz[rows], ground_tree, axis):
@@ -140,7 +138,7 @@ class Decks:
             chosen = chosen[self._ends_high(along, height, end[chosen], sign)]
         rows, number = _of_chosen(rows, number, chosen, count)
         size = np.bincount(number, minlength=len(chosen))
-        is_smooth = _roughness(along[rows], height[rows], number, size) <= DECK.rough
+        is_smooth = _roughness(along[rows], height[rows], number, size) <= ON_DECK.rough
         below = _count_below(along, height, first[chosen], last[chosen], self.min_height)
         raised[order[rows[(is_smooth & (below <= DECK.most_below * size))[number]]]] = True
         return raised
@@ -162,11 +160,11 @@ class Decks:
         within = np.abs(along[rows] - along[end][which]) <= self.reach
         ends = np.bincount(which[is_low & within], minlength=len(end)) > 0
         # Points on the way down are of a bank, but for the few on the side of a deck.
-        beside = (below > DECK.rough) & ~is_low & (np.abs(along[rows] - along[end][which]) <= DECK.least_cell)
-        follows = np.flatnonzero(is_low | (np.abs(below) <= DECK.rough))
+        beside = (below > ON_DECK.rough) & ~is_low & (np.abs(along[rows] - along[end][which]) <= DECK.least_cell)
+        follows = np.flatnonzero(is_low | (np.abs(below) <= ON_DECK.rough))
         first = follows[run_starts(which[follows])]
         ends[which[first[is_low[first]]]] = True
-        most = DECK.rough * DECK.line**2 / self.cell
+        most = ON_DECK.rough * CLOSED.cell**2 / self.cell
         return ends & (np.bincount(which[beside], minlength=len(end)) <= most)
 
     def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray):
@@ -191,12 +189,13 @@ class Decks:
         ahead = way[:, :2] @ axis
         aside = way[:, 0] * axis[1] - way[:, 1] * axis[0]
         # Terrain beside a deck is not ahead of its ends.
-        is_next = (np.abs(way[:, 2]) <= DECK.same_level) & (np.abs(ahead) >= np.abs(aside))
+        is_next = (np.abs(way[:, 2]) <= LASER.foot) & (np.abs(ahead) >= np.abs(aside))
         low, high = along.min() + DECK.edge * np.ptp(along), along.max() - DECK.edge * np.ptp(along)
         across = deck[:, 0] * axis[1] - deck[:, 1] * axis[0]
         strip = np.floor((across - across.min()) / self.reach).astype(np.int64)
         ends = ((ahead < 0) & (along[near] <= low), (ahead > 0) & (along[near] >= high))
-        return all(len(np.unique(strip[near[is_next & end]])) >= max(1, DECK.share * (strip.max() + 1)) for end in ends)
+        least = max(1, FREE.open_edge * (strip.max() + 1))
+        return all(len(np.unique(strip[near[is_next & end]])) >= least for end in ends)
 
     def _leads_to(self, deck: np.ndarray, ground: Any, axis: np.ndarray) -> bool:
         """Return whether there is ground ahead of both ends of a deck at its height; ``ground`` is a stretched tree."""
@@ -212,21 +211,21 @@ class Decks:
         for step in range(1, int(DECK.far) + 1):
             positions = end + (to_tip + step * self.reach) * forward
             distance, _ = ground.query(positions * self._stretch, distance_upper_bound=self.reach / 2)
-            if np.isfinite(distance).mean() >= DECK.share:
+            if np.isfinite(distance).mean() >= FREE.open_edge:
                 return True
         return False
 
     @property
     def _stretch(self) -> np.ndarray:
         """Factors (3,) with which ground is near ahead of a deck: steps and rises of twice the level."""
-        return np.array([1.0, 1.0, self.reach / 2 / (2 * DECK.same_level)])
+        return np.array([1.0, 1.0, self.reach / 2 / (2 * LASER.foot)])
 
     def _with_corners(self, xyz: np.ndarray, rows: np.ndarray, raised: np.ndarray) -> np.ndarray:
         """Return a deck with points beside it that are raised in one direction: corners of slanting and wide decks."""
         distance, nearest = spatial.cKDTree(xyz[rows]).query(xyz[raised], distance_upper_bound=1.5 * self.reach)
         near = np.isfinite(distance)
         raised, nearest = raised[near], nearest[near]
-        return np.concatenate([rows, raised[np.abs(xyz[raised, 2] - xyz[rows[nearest], 2]) <= DECK.same_level]])
+        return np.concatenate([rows, raised[np.abs(xyz[raised, 2] - xyz[rows[nearest], 2]) <= LASER.foot]])
 
     def _with_edges(self, xyz: np.ndarray, rows: np.ndarray, others: np.ndarray) -> np.ndarray:
         """Return a deck with the points in its cells that lie at its height, such as those at its edges."""
@@ -234,7 +233,7 @@ class Decks:
         cells, which = distinct(grid.number(xyz[rows]))
         level = np.bincount(which, xyz[rows, 2]) / np.bincount(which)
         position, found = find_cells(cells, grid.number(xyz[others]))
-        same = found & (np.abs(xyz[others, 2] - level[position]) <= DECK.same_level)
+        same = found & (np.abs(xyz[others, 2] - level[position]) <= LASER.foot)
         return np.concatenate([rows, others[same]])
 
 
@@ -259,7 +258,7 @@ class _Around:
 
 def cell_size(spacing: float) -> float:
     """Return the side (m) of cells in which points of a cloud with this spacing (m) are beside one another."""
-    return max(DECK.least_cell, DECK.line * spacing)
+    return max(DECK.least_cell, CLOSED.cell * spacing)
 
 
 def _numbered(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:

@@ -9,9 +9,10 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.kinds import LASER
 from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
-from .bridge_decks import DECK, Decks
+from .bridge_decks import Decks
 from .deck_sites import deck_sites
 
 # No deck is of these classes.
@@ -123,7 +124,7 @@ def classify_bridges(
     classes[used[classification[used] == PointClass.BRIDGE_DECK]] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
     # Ground points on a deck are those of cars and parapets; ground that rises beside the deck stays ground.
-    classes[used[ground[on_decks(points[ground], points[is_deck], DECK.same_level)[0]]]] = PointClass.UNCLASSIFIED
+    classes[used[ground[on_decks(points[ground], points[is_deck], LASER.foot)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     monitor.progress(1.0)
     return classes

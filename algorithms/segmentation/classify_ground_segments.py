@@ -11,9 +11,10 @@ from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.kinds import LASER
 from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
-from .bridge_decks import DECK, Decks, cell_size
+from .bridge_decks import Decks, cell_size
 
 # A segment is an object if it is raised along at least this share of its border, that of the cloud included.
 _RAISED_BORDER = 0.5
@@ -129,7 +130,7 @@ def classify_ground_segments(
     is_ground = is_terrain & ~is_deck
     # Cars and parapets on a deck are no ground; terrain that rises beside the deck stays.
     others = np.flatnonzero(is_ground)
-    is_ground[others[on_decks(points[others], points[is_deck], DECK.same_level)[0]]] = False
+    is_ground[others[on_decks(points[others], points[is_deck], LASER.foot)[0]]] = False
 
     classes = classification.astype(np.uint8)
     classes[np.isin(classes, (PointClass.GROUND, PointClass.BRIDGE_DECK))] = PointClass.UNCLASSIFIED

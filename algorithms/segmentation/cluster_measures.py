@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import product
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, lattice
-from ..rules import rule
+from ..sampling.closed_surface import CLOSED
 from ..sampling.density import DENSITY
 from ..terrain.free_standing import FREE
-
-
-@dataclass(frozen=True)
-class MeasureRules:
-    """How clusters are counted in cells."""
-
-    least_cell: float = rule(0.3, "m", "side of the cells in which areas are counted, at least")
-
-
-MEASURES = MeasureRules()
 
 # Width, depth and height (m) of the boxes in which points around a group are counted, with the 26 next to each: a house
 # or a tree is as wide, and trees are twice as high.
@@ -30,7 +19,7 @@ _BOX = np.array([2.0, 2.0, 4.0])
 
 def _cell_size(density: float) -> float:
     """Return the side (m) of the cells that area is counted in."""
-    return max(MEASURES.least_cell, DENSITY.filled_cell / np.sqrt(density))
+    return max(CLOSED.least_spacing, DENSITY.filled_cell / np.sqrt(density))
 
 
 def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:

@@ -8,6 +8,7 @@ from ..geometry.adjacent_cells import DIRECTIONS
 from ..geometry.components import connect
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage, spatial
+from ..sampling.kinds import LASER
 from ..stage import Monitor
 from .bridge_decks import DECK, Decks
 
@@ -102,9 +103,9 @@ def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks
         return np.column_stack([cells * decks.cell, surface[tuple(cells.T)]])
 
     cells = points(raised)
-    part = connect(cells, 1.5 * decks.cell, DECK.same_level, Monitor())
+    part = connect(cells, 1.5 * decks.cell, LASER.foot, Monitor())
     # Heights are stretched, so that the largest step of a road counts as much as the reach in plan.
-    stretch = np.array([1.0, 1.0, decks.reach / DECK.same_level])
+    stretch = np.array([1.0, 1.0, decks.reach / LASER.foot])
     distance, _ = spatial.cKDTree(points(beside) * stretch).query(cells * stretch, distance_upper_bound=decks.reach)
     touches = np.isfinite(distance)
     size = np.bincount(part)

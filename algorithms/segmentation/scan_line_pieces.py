@@ -8,9 +8,7 @@ import numpy as np
 
 from ..geometry.grid import lattice, turned_in_plan
 from ..geometry.groups import components, items, ordered
-
-# Points of a line that each point is compared with: enough to pass over a few outliers between two points of a surface.
-_WINDOW = 8
+from ..sampling.surface_noise import LEAST_NEIGHBORS
 
 
 @dataclass(frozen=True)
@@ -127,7 +125,8 @@ def _near_on_lines(points: np.ndarray, line: np.ndarray, near: NearPoints) -> np
     # Most points are near the next one: such runs are joined, not their points.
     run = np.concatenate([[0], np.cumsum(breaks)])
     ones, others = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    for step in range(2, min(_WINDOW, len(points) - 1) + 1):
+    # Compared with as many points of its line as show a surface, a point passes over a few outliers.
+    for step in range(2, min(LEAST_NEIGHBORS, len(points) - 1) + 1):
         first = np.flatnonzero((run[step:] != run[:-step]) & (line[step:] == line[:-step]))
         first = first[near.hold(points[first], points[first + step])]
         ones.append(run[first])

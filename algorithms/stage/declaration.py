@@ -38,18 +38,25 @@ class Stage:
     optional: tuple[str, ...]
     tunables: dict[str, Tunable] = field(repr=False)
     doc: str = field(repr=False)
-    writes: tuple[str, ...] = ()
-    creates: tuple[str, ...] = ()
-    layers: tuple[Layer, ...] = ()
-    measures: tuple[Measure, ...] = ()
-    input_layers: tuple[InputLayer, ...] = ()
-    rasters: tuple[Raster, ...] = ()
-    files: tuple[TextFile, ...] = ()
-    selects: bool = False
-    merges: bool = False
+    writes: tuple[str, ...] = ()  #: Dimensions of the points that it returns
+    creates: tuple[str, ...] = ()  #: Dimensions of the cloud that it makes
+    layers: tuple[Layer, ...] = ()  #: Vector layers that it makes
+    measures: tuple[Measure, ...] = ()  #: Numbers of its report
+    input_layers: tuple[InputLayer, ...] = ()  #: Vector layers that it reads
+    rasters: tuple[Raster, ...] = ()  #: Rasters that it makes
+    files: tuple[TextFile, ...] = ()  #: Text files that it makes
+    selects: bool = False  #: Whether it returns which points stay
+    merges: bool = False  #: Whether it reads several clouds
+    #: How far (m) from a point others may lie that decide on it, a number or a function of all tunables by name. Where
+    #: a cloud is worked on in parts, each is seen with the points around it that far.
     reach: Reach = 0.0
+    #: Values that it measures on its results, and of which parts of a cloud take those of the whole, see
+    #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
-    reference: str = ""
+    #: What the second cloud is, of a stage that reads one
+    reference: str = "The same points with the true values, to compare with."
+    #: Of a stage that makes a page of layers and, optionally, points: a function that returns of these layers the boxes
+    #: (k, 2, 2), m, in which it shows every point. Elsewhere the topmost points are enough, as it is given of a survey.
     shows: Optional[Callable[..., np.ndarray]] = None
 
     @property
@@ -135,25 +142,7 @@ class Stage:
         )
 
 
-def stage(
-    title: str,
-    *,
-    group: str,
-    tags: str = "",
-    writes: tuple[str, ...] = (),
-    creates: tuple[str, ...] = (),
-    layers: tuple[Layer, ...] = (),
-    measures: tuple[Measure, ...] = (),
-    input_layers: tuple[InputLayer, ...] = (),
-    rasters: tuple[Raster, ...] = (),
-    files: tuple[TextFile, ...] = (),
-    selects: bool = False,
-    merges: bool = False,
-    reach: Reach = 0.0,
-    of_whole: tuple[str, ...] = (),
-    reference: str = "The same points with the true values, to compare with.",
-    shows: Optional[Callable[..., np.ndarray]] = None,
-) -> Callable[[Callable], Callable]:
+def stage(title: str, *, group: str, tags: str = "", **made: Any) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
     The function returns its results in the order below, and not in a tuple when there is only one. With ``selects`` the
@@ -164,13 +153,6 @@ def stage(
     that merges and writes nothing returns None for the cloud that it makes. The decorated function checks its arrays
     and tunables on every call and carries its :class:`Stage` as ``function.stage``.
 
-    ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
-    name. Where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
-    values that it measures on its results, and of which parts of a cloud take those of the whole, see
-    :meth:`.CloudSampling.shared`. ``reference`` says what the second cloud is, of a stage that reads one. ``shows``
-    is of a stage that makes a page of layers and, optionally, points: a function that returns of these layers the boxes
-    (k, 2, 2), m, in which it shows every point. Elsewhere the topmost points are enough, as it is given of a survey.
-
     Parameters
     ----------
     title : str
@@ -179,56 +161,17 @@ def stage(
         Group in the toolbox.
     tags : str
         Words to search for, with commas between.
-    writes : tuple of str
-        Dimensions of the points that it returns.
-    creates : tuple of str
-        Dimensions of the cloud that it makes.
-    layers : tuple of Layer
-        Vector layers that it makes.
-    measures : tuple of Measure
-        Numbers of its report.
-    input_layers : tuple of InputLayer
-        Vector layers that it reads.
-    rasters : tuple of Raster
-        Rasters that it makes.
-    files : tuple of TextFile
-        Text files that it makes.
-    selects : bool
-        Whether it returns which points stay.
-    merges : bool
-        Whether it reads several clouds.
-    reach : float or callable
-        Distance of points that decide on one, m.
-    of_whole : tuple of str
-        Values that parts of a cloud take of the whole.
-    reference : str
-        What the second cloud is.
-    shows : callable, optional
-        Boxes in which a page shows every point.
+    **made
+        What the stage makes and reads: fields of :class:`Stage` from ``writes`` on.
 
     Returns
     -------
     callable
         The decorator.
     """
-    makes = {
-        "writes": writes,
-        "creates": creates,
-        "layers": layers,
-        "measures": measures,
-        "input_layers": input_layers,
-        "rasters": rasters,
-        "files": files,
-        "selects": selects,
-        "merges": merges,
-        "reach": reach,
-        "of_whole": of_whole,
-        "reference": reference,
-        "shows": shows,
-    }
 
     def declare(function: Callable) -> Callable:
-        declared = _declared(function, title, group, tags, makes)
+        declared = _declared(function, title, group, tags, made)
         _check_declaration(declared)
         checked = _checked(function, declared)
         checked.stage = replace(declared, function=checked)  # type: ignore[attr-defined]
@@ -258,12 +201,12 @@ def _checked(function: Callable, declared: Stage) -> Callable:
     return checked
 
 
-def _declared(function: Callable, title: str, group: str, tags: str, makes: dict[str, Any]) -> Stage:
+def _declared(function: Callable, title: str, group: str, tags: str, made: dict[str, Any]) -> Stage:
     hints = typing.get_type_hints(function, include_extras=True)
     reads: list[str] = []
     optional: list[str] = []
     tunables = {}
-    layers = {input_layer.name for input_layer in makes["input_layers"]}
+    layers = {input_layer.name for input_layer in made.get("input_layers", ())}
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY:
             if name not in (MONITOR, SAMPLING):
@@ -271,7 +214,7 @@ def _declared(function: Callable, title: str, group: str, tags: str, makes: dict
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
     doc = inspect.cleandoc(function.__doc__ or "")
-    return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **makes)
+    return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **made)
 
 
 def _check_declaration(declared: Stage) -> None:

@@ -11,6 +11,7 @@ from ..geometry.adjacent_cells import adjacent_cells
 from ..geometry.groups import components
 from ..packages import ndimage
 from ..rules import rule
+from ..sampling.kinds import LASER
 from ..stage import Monitor
 
 
@@ -20,7 +21,6 @@ class FreeStandingRules:
 
     step: float = rule(1.0, "m", "physics: least height of a step, lower than any eave")
     steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, and of smeared walls; soil is less steep")
-    hall_step: float = rule(2.0, "m", "physics: steps around a segment wider than usual buildings; quays are lower")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
     open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")
     most: float = rule(0.5, "share", "most of steps, of the edge of a part, of a region or of a machine, of a ring")
@@ -162,8 +162,8 @@ def _are_free_standing(segments: _Segments, least: float, usual: float, largest:
     wide segments need high steps only on the mean.
     """
     is_wide = segments.width > usual
-    is_low = is_wide & (segments.mean_step_down(least) < FREE.hall_step) if low_uphill else is_wide
-    least_step = np.where(is_low, max(FREE.hall_step, least), least)
+    is_low = is_wide & (segments.mean_step_down(least) < LASER.lowest_roof) if low_uphill else is_wide
+    least_step = np.where(is_low, max(LASER.lowest_roof, least), least)
     least_step[segments.width > largest] = np.inf
     is_free = np.zeros(len(segments.width), bool)
     # The highest come first; lower segments at their walls are judged by the rest of their edge.
@@ -229,7 +229,7 @@ def _reunited(segments: _Segments, is_free: np.ndarray, least: float) -> np.ndar
     lengths = segments.edges.lengths(is_free, np.full(count, least))
     is_part = ~is_free & (lengths.down > FREE.most * lengths.open)
     own, other = segments.edges.own, segments.edges.other
-    is_level = is_part[own] & is_part[other] & (np.abs(segments.edges.step) < max(FREE.hall_step, least))
+    is_level = is_part[own] & is_part[other] & (np.abs(segments.edges.step) < max(LASER.lowest_roof, least))
     # Components are numbered by their first segments: that of 0, which is no part, stays 0.
     return components(own[is_level], other[is_level], count)[1][segments.number]
 

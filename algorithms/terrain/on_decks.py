@@ -19,14 +19,16 @@ class DeckRules:
     """Objects on the deck of a bridge."""
 
     hidden: float = rule(2.0, "m", "physics: cars and trucks hide the deck beneath them, to points on both sides")
-    below: float = rule(0.3, "m", "objects on a deck have no points of their own this far below it")
+    rough: float = rule(
+        0.25, "m", "crown, camber and railings: how far objects reach below a deck, and the width that shows of a side"
+    )
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
 
 
 DECK = DeckRules()
 
 
-def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.below) -> tuple[np.ndarray, np.ndarray]:
+def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.rough) -> tuple[np.ndarray, np.ndarray]:
     """Find the points of objects on bridge decks, such as cars and parapets.
 
     Parameters

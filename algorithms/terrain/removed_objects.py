@@ -33,7 +33,6 @@ class RemovalRules:
         0.25, "share", "of a smooth part level with the terrain around, as of a bank beside a cut; objects are not"
     )
     steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
-    large_window: float = rule(0.5, "share", "of the largest window; larger ones remove spits and banks, not houses")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
     smoothing: float = rule(2.0, "m", "physics: bushes are as wide; surfaces are smoothed over it, slopes over twice")
 
@@ -62,7 +61,7 @@ class ObjectRemoval:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
         first = np.full(self.surface.shape, REMOVAL.flat_slope)
         # Free-standing objects are left out, or a low roof and a higher one beside it were as wide as both together.
-        removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
+        removed = self.is_free_standing | self.removed_by_opening(first, monitor.part(0, 0.5))
         slope = self._slope_without(removed)
         return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
 
@@ -76,35 +75,31 @@ class ObjectRemoval:
         return REMOVAL.step + (REMOVAL.flat_slope + slope) * self.cell_size
 
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return the radius (cells) of the first window that removes each cell, 0 where none does."""
-        removed_by = np.zeros(self.surface.shape, np.int32)
+        """Return which cells a window removes."""
+        removed = np.zeros(self.surface.shape, bool)
         opened = self.surface
         for done, radius in enumerate(self.windows, start=1):
             previous, opened = opened, open_surface(opened, radius, self.is_free_standing)
             reach = radius * self.cell_size
-            is_removed = previous - opened > REMOVAL.step + (REMOVAL.flat_slope + slope) * reach
-            removed_by[is_removed & (removed_by == 0)] = radius
+            removed |= previous - opened > REMOVAL.step + (REMOVAL.flat_slope + slope) * reach
             monitor.progress(done / len(self.windows))
-        return removed_by
+        return removed
 
-    def without_joined(self, removed_by: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    def without_joined(self, removed: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """Return which cells are objects: free-standing ones, and removed ones but for regions that join the terrain.
 
         Parameters
         ----------
-        removed_by : ndarray of shape (rows, columns), int32
-            Radius (cells) of the window that removed each cell, 0 for terrain.
+        removed : ndarray of shape (rows, columns), bool
+            Cells that a window removed.
         slope : ndarray of shape (rows, columns), float64
             Slope of the terrain (rise over run).
         """
-        objects = (removed_by > 0) | self.is_free_standing
-        is_large = removed_by > REMOVAL.large_window * self.windows[-1]
-        sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
-        for group in (objects & ~is_large, is_large):
-            region, count = ndimage.label(group)
-            is_terrain = _region_edges(region, count, objects, sides).join_terrain()
-            objects &= ~is_terrain[region] | self.is_free_standing
-        return objects
+        objects = removed | self.is_free_standing
+        region, count = ndimage.label(objects)
+        sides = _sides(self.surface, slope, self.cell_size, self.spacing)
+        is_terrain = _region_edges(region, count, objects, sides).join_terrain()
+        return objects & (~is_terrain[region] | self.is_free_standing)
 
     def _without_level(self, objects: np.ndarray) -> np.ndarray:
         """Return the objects but for smooth parts that are no higher than the terrain around on a share of their area.

@@ -22,8 +22,6 @@ class SmearedRules:
     width: float = rule(
         4.5, "m", "physics: narrower raised surfaces are objects: a shed of 3 m, walls smeared over 0.7 m"
     )
-    length: float = rule(8.0, "m", "physics: of the longest shed with its smeared walls; crests and dikes are longer")
-    beyond: float = rule(0.8, "share", "of its radius that a window is centered beyond the end of the cloud at most")
 
 
 SMEARED = SmearedRules()
@@ -65,7 +63,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
     has_ground, is_occupied = np.isfinite(lowest), np.zeros(lowest.shape, bool)
     is_occupied[row, column] = True
-    is_far = ndimage.distance_transform_edt(~has_ground) > SMEARED.beyond * radius
+    is_far = ndimage.distance_transform_edt(~has_ground) > radius
     opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
     # Slopes rise within a cell, to no more than the next one has.
     highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
@@ -80,11 +78,11 @@ def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndar
 
     Cells of large ones are ``is_other`` (rows, columns): they have points, and no ground.
     """
-    # Parts are joined over a cell, so that a crest is one where noise interrupts it.
+    # Parts are joined over a cell, so that a crest is one where noise interrupts it. It is longer than two sheds.
     part, count = ndimage.label(ndimage.binary_dilation(above, _EIGHT), _EIGHT)
     is_short = np.zeros(count + 1, bool)
     for number, box in enumerate(ndimage.find_objects(part), 1):
-        is_short[number] = max(side.stop - side.start - 2 for side in box) * size <= SMEARED.length
+        is_short[number] = max(side.stop - side.start - 2 for side in box) * size <= 2 * SMEARED.width
     to_other = ndimage.distance_transform_edt(~is_other) * size if is_other.any() else np.full(above.shape, np.inf)
     cells = np.bincount(part[above], minlength=count + 1)
     beside = np.bincount(part[above & (to_other <= SMEARED.width / 2)], minlength=count + 1)

@@ -25,7 +25,6 @@ class DensificationRules:
     )
     node_distance: float = rule(0.25, "share", "of the edge length: nearer points make slivers and add no information")
     least_growth: float = rule(0.005, "share", "of the nodes that a round must add to have another one after it")
-    candidate: float = rule(5.0, "largest distances", "from the first TIN, beyond which points are no candidates")
 
 
 DENSIFICATION = DensificationRules()
@@ -44,7 +43,7 @@ class JoinRules:
     estimates_angle: bool = False
     terrain_angle: float = 90.0  #: Steepest line from a point to the nodes of its facet, °
     #: Whether rounds go on until no point qualifies, and every point is tried in each. Else rounds that add little are
-    #: the last, and points far from the first TIN or in closed facets are not tried again, which is faster.
+    #: the last, and points in closed facets are not tried again, which is faster.
     is_exhaustive: bool = False
     #: Returns the angles (°) of points that do not fit their facets as they lie, inf where they do not fit at all: see
     #: :func:`.mirror_points.mirrored_angle`
@@ -157,8 +156,7 @@ def grow(
     """
     surface, step = Surface(points, start, monitor.part(0, 0.5)), 0
     distance, angle = rules.limits(surface.nodes)
-    is_near = np.abs(surface.above()) <= DENSIFICATION.candidate * distance
-    candidates = np.flatnonzero((is_near | rules.is_exhaustive) & may_join & ~surface.is_node)
+    candidates = np.flatnonzero(may_join & ~surface.is_node)
     is_last = False
     while not is_last:
         n_nodes, step = len(surface.nodes), step + 1

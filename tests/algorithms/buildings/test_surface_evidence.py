@@ -60,11 +60,12 @@ def colors(kinds, count):
     return tuple(np.concatenate([np.full(count, kind[band], np.uint16) for kind in kinds]) for band in range(3))
 
 
-def green(bands, group, count, is_surface=None):
-    """Return the decisions on clusters without extent, of which none is large."""
-    xyz = np.zeros((len(group), 3))
-    evidence = ClusterEvidence(xyz, group, np.arange(count), 6.0, 4.0, None, None)
-    return green_clusters(bands, evidence, np.ones(count, bool) if is_surface is None else is_surface)
+def green(bands, group, count):
+    """Return the decisions on clusters of 100 m², the first of which is rough."""
+    side = np.arange(len(group)) % 100
+    xyz = np.column_stack([20.0 * group + side // 10, side % 10, np.zeros(len(group))])
+    evidence = ClusterEvidence(xyz, group, np.arange(count), 1.0, 4.0, None, None)
+    return green_clusters(bands, evidence, np.arange(count) > 0)
 
 
 def test_green_clusters_are_distinguished_from_all_other_colors():
@@ -129,10 +130,10 @@ def test_the_limit_lies_between_rough_crowns_and_large_roofs_and_not_at_the_lawn
     is_green, least = green_clusters(bands, evidence, np.array([True, False, True]))
     np.testing.assert_array_equal(is_green, [False, True, True])
     assert least == pytest.approx(0.06 / 2, abs=0.015)
-    # Without a rough crown the lawn is the only green, and far greener.
+    # Without a rough crown nothing shows how green plants are: the lawn is no cluster.
     is_green, least = green_clusters(bands, evidence, np.array([True, True, True]))
     assert not is_green.any()
-    assert least > 0.1
+    assert least is None
 
 
 def test_green_buildings_are_refused_in_scans_without_returns():

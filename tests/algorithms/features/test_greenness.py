@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lidar_buildings.algorithms.features.greenness import greenness, greenness_between, plant_greenness
+from lidar_buildings.algorithms.features.greenness import greenness, greenness_between
 
 GRASS, ASPHALT = np.array([90.0, 130.0, 60.0]), np.array([128.0, 126.0, 122.0])
 
@@ -27,23 +27,9 @@ def test_black_points_have_none():
 
 
 def test_threshold_parts_plants_from_materials():
-    for share in (0.2, 0.5, 0.8):
-        colors, is_grass = mixed(np.random.default_rng(1), share)
-        values = greenness(*colors.T)
-        assert np.mean((values > plant_greenness(values)) == is_grass) > 0.99
-
-
-def test_red_roofs_are_no_third_kind():
-    colors, is_grass = mixed(np.random.default_rng(3), 0.3)
-    values = np.concatenate([greenness(*colors.T), np.full(4000, -0.15)])
-    assert np.mean((values > plant_greenness(values)) == np.append(is_grass, np.zeros(4000, bool))) > 0.99
-
-
-def test_scenes_of_one_kind_have_no_threshold():
-    for share in (0.0, 1.0):
-        colors, _ = mixed(np.random.default_rng(2), share)
-        assert plant_greenness(greenness(*colors.T)) is None
-    assert plant_greenness(np.full(5, np.nan)) is None
+    colors, is_grass = mixed(np.random.default_rng(1), 0.5)
+    values = greenness(*colors.T)
+    assert np.mean((values > greenness_between(values[is_grass], values[~is_grass])) == is_grass) > 0.99
 
 
 def test_leaves_and_roofs_known_by_their_shape_give_the_middle_between_them():
