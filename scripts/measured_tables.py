@@ -308,6 +308,28 @@ TABLES = {
         ),
         "facades.py fronts",
     ),
+    "facade_doors": Shown(
+        ("simulated street of 40 m",),
+        (
+            Column("windows and doors seen", "openings seen", 0),
+            Column("found", "found", 0),
+            Column("of the right kind", "of the right kind", 0),
+            Column("doors seen", "doors seen", 0),
+            Column("called doors", "of these doors", 0),
+            Column("drawn twice", "drawn twice", 0),
+        ),
+        tuple(
+            Row((name,), "facade_doors", (("street", name),))
+            for name in (
+                "level",
+                "stoops of 2 m, nothing before them",
+                "stoops of 1 m",
+                "fronts 8 cm out of line, nothing before them",
+                "stoops of 2 m, fronts 15 cm out of line",
+            )
+        ),
+        "facades.py doors",
+    ),
     "flight_dimensionality": Shown(
         ("neighborhood",),
         tuple(Column(kind, f"{kind}, %", 1, (("points", "all"),)) for kind in ("linear", "planar", "volumetric")),
