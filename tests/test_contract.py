@@ -293,7 +293,7 @@ def scene() -> dict[str, np.ndarray]:
     segment_id = np.array([0, 1, 2, 3, 0, 4, 5])[kind]
     segment_id[np.flatnonzero(kind == 5)[is_pane]] = 0
     segment_id[is_gable & (xy[:, 0] > 26.5)] = 6
-    # The edges of the flat roof stand for its walls.
+    # The edges of the flat roof are taken as its walls.
     to_edge = np.minimum(xy - (5, 5), (17, 13) - xy).min(axis=1)
     is_wall = (kind == 1) & (to_edge < 0.4)
     return {

@@ -55,7 +55,7 @@ def toy_lift(
     """
     monitor.progress(0.5)
     base = float(xyz[:, 2].min()) if base is None else base
-    # Many stages tell all values that they go by, given or not.
+    # Many stages report all values that they use, given or automatic.
     monitor.resolved(base=base)
     chosen = np.isin(classification, [{"ground": 2, "building": 6}[word] for word in only])
     lifted = xyz[:, 2] - base + times * step * (1 if sign == "up" else -1) * chosen

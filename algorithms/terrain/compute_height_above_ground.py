@@ -77,9 +77,9 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
             "the nearest ground point gave their height."
         )
     is_deck = classification[above] == PointClass.BRIDGE_DECK
-    stands, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]])
-    stands = np.flatnonzero(~is_deck)[stands]
-    elevation[stands] = np.maximum(elevation[stands], level)
+    on_deck, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]])
+    on_deck = np.flatnonzero(~is_deck)[on_deck]
+    elevation[on_deck] = np.maximum(elevation[on_deck], level)
     height = np.zeros(len(xyz), np.float32)
     height[above] = xyz[above, 2] - elevation
     return height

@@ -145,7 +145,7 @@ def _archive(folder: Path) -> Path:
 
 
 def run_all(
-    executor: Executor, work: Callable[[Any], Any], tasks: list, stop: Path, monitor: Monitor, tell: Callable
+    executor: Executor, work: Callable[[Any], Any], tasks: list, stop: Path, monitor: Monitor, on_done: Callable
 ) -> tuple[dict[int, Any], dict[int, str]]:
     """Call ``work`` on every task; return the results, and the sentences of those that failed, by position.
 
@@ -161,7 +161,7 @@ def run_all(
         A file by which running work stops; it is made when the user cancels.
     monitor : Monitor
         Receives the share of tasks that are done.
-    tell : callable
+    on_done : callable
         Is called with the position of every task that is done.
 
     Raises
@@ -191,7 +191,7 @@ def run_all(
                     failed[number] = f"{_ENDED}."
                 else:
                     raise error
-                tell(number)
+                on_done(number)
             monitor.progress(1 - len(open_) / max(1, len(tasks)))
     except BaseException as error:
         stop.touch()

@@ -250,7 +250,7 @@ def test_progress_only_grows_and_every_step_is_heard_of(name):
     assert monitor.heard[0] >= 0
     assert monitor.heard[-1] <= 1
     steps = len(PIPELINES[name].steps)
-    # Completing is over in no time and tells nothing.
+    # Completing is over at once and reports no progress.
     assert len({min(int(fraction * steps), steps - 1) for fraction in monitor.heard}) >= steps - 1
 
 

@@ -123,7 +123,7 @@ class Victim:
 
 
 def _processor_time(process: int) -> float:
-    """Return the processor time of a process (s), infinity where the system does not tell."""
+    """Return the processor time of a process (s), infinity where the system does not report it."""
     try:
         fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     except OSError:

@@ -217,7 +217,7 @@ OBJECT_SCENES = ((0.04, 0.1), (0.2, 0.1), (0.08, 0.3))
 
 
 def objects() -> list[Table]:
-    """Print how well the default chain tells real houses from real trees, cars, fences and poles."""
+    """Print how well the default chain distinguishes real houses from real trees, cars, fences and poles."""
     others = {"trees": TREE, "cars": CAR, "fences": FENCE, "poles": POLE}
     wrongly = [f"{kind}, %" for kind in others]
     table = Table("objects", "slope, %", "points", *RATES, "houses", "missed", *wrongly, texts=0)

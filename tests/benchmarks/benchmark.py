@@ -11,11 +11,11 @@ Every line is a process of its own that reads the scan of a simulated town and t
 what the steps before it in "Detect buildings" left; a chain runs on the bare scan.
 
 ==========  ==========================================================================================================
-s           Time of the stage alone on the wall, without reading and writing.
+s           Elapsed time of the stage alone, without reading and writing.
 cpu         The same summed over all cores: twice ``s`` means that two cores were busy all the time. Where the machine
             does other work too, ``s`` grows and ``cpu`` hardly.
 ratio       ``s`` in units of "read + neighbors": reading the file once and asking once for the 16 nearest neighbors of
-            all points, measured in the same run. It tells fast from slow whatever the machine; below 1 a stage costs
+            all points, measured in the same run. It does not depend on the machine; below 1 a stage costs
             less than the least that any method on neighborhoods does. A ratio that grows with the size shows work that
             grows faster than the points.
 peak MB     The most memory that the process held, with Python, the packages and the cloud itself.
@@ -130,7 +130,7 @@ class Bench:
         command = [sys.executable, str(Path(__file__).with_name("measured.py")), json.dumps(job)]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
         if done.returncode:
-            sys.exit(f"{name} failed with {self.millions:g} million points (its words stand above).")
+            sys.exit(f"{name} failed with {self.millions:g} million points (its messages are above).")
         answer = json.loads(done.stdout)
         if "refused" in answer:
             # Some stages need what the steps before them don't make: another layer, features.

@@ -29,7 +29,7 @@ from lidar_buildings.algorithms.stage import LayerFeatures  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import Table, print_tables  # noqa: E402
 from lidar_buildings.tests.real.fronts import FOUND, FRONTS, box_on, frame_on, front_figures, union_share  # noqa: E402
 
-# Seeds of streets, whether things stand before the fronts, and their length (m).
+# Seeds of streets, whether objects are before the fronts, and their length (m).
 STREETS = [(seed, clutter) for clutter in (False, True) for seed in (1, 2)]
 LENGTH = 40.0
 
@@ -46,7 +46,7 @@ DOORS = {
 BLOCKS = (1, 2, 3, 4)
 OFF = np.array([1.3, -0.8, 0.4])
 
-# A corner was seen if so many points of its facade lie within this distance (m).
+# A corner was seen if at least this number of points of its facade lie within this distance (m).
 SEEN, NEAR = 10, 0.3
 
 # Points of an opening that was seen.

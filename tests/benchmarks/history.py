@@ -47,7 +47,7 @@ def changes(earlier: list[dict[str, Any]], later: list[dict[str, Any]]) -> list[
 
 
 def sentences(path: Path) -> list[str]:
-    """Return the lines that tell how a file of the history differs from the one before."""
+    """Return the lines in which a file of the history differs from the one before."""
     last, own = before(path), _content(path)
     if last is None:
         return ["No earlier results are kept to compare with."]

@@ -94,7 +94,7 @@ def _work(job: dict[str, Any], cloud: Cloud) -> Callable[[], Any]:
 
 
 def _from_file_to_file(job: dict[str, Any], path: Path, base: int) -> dict[str, Any]:
-    """Measure "Detect buildings" or a peer with reading and writing, or tell that the peer is not installed."""
+    """Measure "Detect buildings" or a peer with reading and writing, or print that the peer is not installed."""
     what, truth, target = job["what"], job["truth"], Path(job["state"])
     if what == "files":
         found, points = _timed(lambda: _detected(path, target), base)

@@ -18,13 +18,13 @@ from lidar_buildings.algorithms.stage import Monitor
 
 SIDE = 120.0
 
-# Of strips that were not adjusted to one another, every second lies so much higher (m).
+# Of strips that were not adjusted to one another, every second lies this much higher (m).
 MISFIT = 0.08
 
 # The height of maize and how far below that most leaves are (m), a fifth of them up to 2 m more.
 MAIZE, LEAVES = 2.8, 0.25
 
-# Of the pulses that meet maize so many come back from the ground.
+# Share of the pulses into maize that return from the ground.
 THROUGH_MAIZE = 0.1
 
 

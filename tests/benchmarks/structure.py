@@ -11,7 +11,7 @@
     structure.py                    all
     structure.py --output folder    where the JSON files go (benchmarks)
 
-Shares and counts are the same on every machine. Times are not: only ratios tell, which are of one run, the two
+Shares and counts are the same on every machine. Times are not: their ratios are compared, which are of one run, the two
 measured in turns, the best of some of each.
 """
 
@@ -52,7 +52,7 @@ OBJECTS = {
     "trees": (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION),
 }
 
-# A town of so much (m) has 10 million points at this density (pulses per m²).
+# A town of this size (m) has 10 million points at this density (pulses per m²).
 TOWN = {"size": 588.0, "density": 25.0}
 ROUNDS = 4
 

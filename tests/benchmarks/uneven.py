@@ -12,7 +12,7 @@ from lidar_buildings.algorithms.sampling.density import point_density
 # Points of a line lie no farther off its middle (m), and those of one pulse no farther from each other in plan (m).
 _HALF_WIDTH, _PULSE = 0.075, 0.1
 
-# Lines run so many radians off north, zigzags over swaths so wide (m), and bands are so wide (m) or half the cloud.
+# Direction of the lines off north (radians), width of the swath of a zigzag (m), and of bands (m), or half the cloud.
 _TURNED, _SWATH, _BAND = 0.4, 60.0, 60.0
 
 # Pairs are so far apart in plan (m, one deviation of 5 cm over both axes), and in height.
@@ -45,7 +45,7 @@ def on_zigzags(xyz: np.ndarray, apart: float, step: float) -> tuple[np.ndarray, 
 
 
 def in_bands(xyz: np.ndarray, sparse: float, dense: float) -> tuple[np.ndarray, np.ndarray]:
-    """Choose points at random, so many per m² at most in every other band, and so many in those between."""
+    """Choose points at random, at most one number per m² in every other band, and another in those between."""
     east = xyz[:, 0] - xyz[:, 0].min()
     is_sparse = np.floor(east / min(_BAND, east.max() / 2)) % 2 == 0
     share = np.where(is_sparse, sparse, dense) / point_density(xyz)

@@ -29,7 +29,7 @@ LIMITS = (0, 40, 3_000, 60_000, 120_000, 250_000)
 
 @contextmanager
 def no_file_larger_than(size):
-    """Have writing fail beyond so many bytes, as the system does it for any user (EFBIG); Python ignores the signal."""
+    """Let writing fail after some bytes, as the system does it for any user (EFBIG); Python ignores the signal."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
     try:

@@ -50,7 +50,7 @@ def nearest(corners, rings):
 def test_corners_of_known_buildings(name, density, degrees, rng):
     truth = [turned(ring, degrees) + [600_000, 5_000_000] for ring in SHAPES[name]]
     spacing, apart = density**-0.5, []
-    # A house of 14 m by 9 m has a hundred points at 2 per m²: one draw tells little.
+    # A house of 14 m by 9 m has a hundred points at 2 per m²: one draw is not enough.
     for _ in range(3 if density < 4 else 1):
         xyz, classification, _ = scanned([truth], density, rng)
         found = extract_footprints(xyz, classification)
@@ -156,7 +156,7 @@ def test_order_position_and_direction_change_nothing(rng):
         np.testing.assert_allclose(one[0] + [600_000, 5_000_000], other[0], atol=1e-6)
     around = turned(xyz, 33)
     made = extract_footprints(around, classification, cluster)
-    # Which points stand under others is asked in cells, which don't turn with them.
+    # Points below others are looked for in cells, which don't turn with the points.
     assert made.columns["area"] == pytest.approx(here.columns["area"], rel=0.01)
 
 

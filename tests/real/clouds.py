@@ -116,7 +116,7 @@ def made_harder(
 ) -> tuple[Cloud, np.ndarray]:
     """Return a cloud with a share of its points, noise or steps in its heights (m), and returns or none; and its truth.
 
-    The same every time. What else the file tells of its points is left out.
+    The same every time. Other dimensions of the file are left out.
     """
     cloud, rng = read_cloud(path_of(name)), np.random.default_rng(0)
     kept = rng.random(len(cloud)) < keep

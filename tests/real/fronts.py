@@ -14,7 +14,7 @@ from lidar_buildings.tests.real.clouds import DATA, path_of
 
 FRONTS = ("facades/nuist-facade-1", "facades/nuist-facade-3")
 
-# Points of one element this far apart (m) are of one window or door, of so many points at least.
+# Points of one element this far apart (m) are of one window or door, and this is its least number of points.
 LINK, LEAST = 0.25, 100
 
 # An opening is found if it shares this part of the union with a true one.

@@ -14,7 +14,7 @@ from lidar_buildings.tests.solid_validity import assert_valid_cityjson
 
 MAP = DATA / "footprints" / "delft-bgt.gpkg"
 
-# Every so many polygons of the map are modelled.
+# One of this number of polygons of the map is modelled.
 _STEP = 4
 
 

@@ -28,7 +28,7 @@ REACHED = {"photo/uk-photo-100": 94.1, "photo/brighton-beach": 92.6}
 # What other versions of numpy and scipy may change (%).
 MARGIN = 0.7
 
-# Largest object (m²) that may be called building where there is none, of a beach with cars and bushes.
+# Largest object (m²) that may be called building in a scene without any, of a beach with cars and bushes.
 BEACH, MOST_FALSE = "photo/brighton-beach", 10.0
 
 TOWN = "photo/uk-photo-100"

@@ -300,7 +300,7 @@ def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):
 
 
 def seeds_of_views(monkeypatch, reported):
-    """Return the seeds of three points when the directions tell so; the middle one is the lowest of its cell."""
+    """Return the seeds of three points by given results of directions; the middle one is the lowest of its cell."""
     usual = {"says_terrain": 1, "stands_free": 0, "size": 0.0}
     views = {angle: {**usual, **one} for angle, one in zip((0.0, 30.0, 60.0), reported)}
 

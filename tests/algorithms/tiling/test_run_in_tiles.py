@@ -58,7 +58,7 @@ def points():
 
 
 def tiles_of(folder, xyz, times, *parts):
-    """Write tiles, each of the points that a mask tells; return their paths."""
+    """Write tiles, each of the points of a mask; return their paths."""
     paths = []
     for number, part in enumerate(parts):
         paths.append(folder / f"tile{number}.las")
