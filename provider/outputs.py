@@ -162,7 +162,7 @@ def _check_ending(definition, path: Path) -> None:
 
 
 def _check_file(path: Path) -> None:
-    """Refuse a file that can't be written where it is to be, because of its folder or for want of space."""
+    """Refuse a file that can't be written where it is to be, because of its folder or because the disk is full."""
     folder = path.absolute().parent
     if not folder.is_dir():
         raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
@@ -227,11 +227,11 @@ def all_in_place(
     parameters : dict
         Values as the algorithm was given them.
     context : QgsProcessingContext
-        Of the run.
+        The context of the run.
     subject : str
         What the results are of: layers that have no name but their output's get it too.
     title : str
-        Of the algorithm, for the group of the layers.
+        Title of the algorithm, for the group of the layers.
 
     Raises
     ------

@@ -46,7 +46,7 @@ class PointRecords:
     changes : dict of str to array
         What stages have set, by Python name, in meters.
     units : Units
-        Of the file.
+        The units of the file.
     convert : callable, optional
         Gives the output's point format for the format that the changes need (COPC takes 6 to 8 only).
     """

@@ -107,9 +107,9 @@ def off_planes(offset: np.ndarray, covariance: np.ndarray, normal: np.ndarray) -
     offset : ndarray of shape (m, 3)
         The center of the points, from a point on the plane (m).
     covariance : ndarray of shape (m, 6)
-        Of the points (m²).
+        Covariance of the points (m²).
     normal : ndarray of shape (m, 3)
-        Of the planes.
+        Unit normals of the planes.
     """
     spread = np.zeros(len(offset))
     for column, (a, b) in enumerate(PAIRS):

@@ -204,7 +204,7 @@ def join_features(
     Returns
     -------
     features : LayerFeatures
-        Of the survey.
+        The features of the survey.
     kept : ndarray of shape (m, 3), int64
         For each of them its position among ``blocks``, its number in that block, and its number now.
     """

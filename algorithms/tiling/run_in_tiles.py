@@ -120,7 +120,7 @@ def run_in_tiles(
     shown : bool
         Write each tile as COPC too, into a folder "shown" among the tiles: QGIS shows the points of no other tiles.
     **tunables
-        Of the composite.
+        Tunables of the composite, by their names.
 
     Raises
     ------
