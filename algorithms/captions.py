@@ -28,7 +28,7 @@ _CAPTIONS = {
     "classifygroundtin": "Ground of a simulated town in brown, up to the river's banks; all else gray.",
     "classifygroundcloth": "Ground of a simulated town in brown, as the cloth finds it; all else gray.",
     "classifygroundsegments": "Bare earth brown, the bridge over the valley blue, objects gray.",
-    "classifybridges": "The bridge over the valley, which had been ground, in blue.",
+    "classifybridges": "The bridge over the valley, ground before this step, in blue.",
     "completeground": "Ground of a simulated town in brown, with what lies on its surface.",
     "computeheightaboveground": "Heights from blue, the ground, to red, the highest roofs and crowns.",
     "computefeatures": "Planarity from blue, low in crowns and at edges, to red, high on roofs and ground.",

@@ -36,7 +36,7 @@ def reads_las() -> bool:
 class _TakesFiles:
     """What parameters for point clouds have in common: they take the paths of files that QGIS may be unable to open."""
 
-    # Of QGIS's own class, which follows among the bases.
+    # Methods of QGIS's own class, which is the second base of each subclass.
     flags: Callable[[], Any]
     help: Callable[[], str]
     metadata: Callable[[], dict]

@@ -8064,7 +8064,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The bridge over the valley, which had been ground, in blue.</source>
+        <source>The bridge over the valley, ground before this step, in blue.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
