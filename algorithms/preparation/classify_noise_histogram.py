@@ -112,7 +112,7 @@ def classify_noise_histogram(
     -----
     Bins are examined from both ends of a histogram only, so that sparse points of a facade, between ground and roof,
     stay. Parts adjoining the scene stay too (chimneys, masts, treetops, slopes), and so do three high points close
-    together (a lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.
+    together (a lamp, a wire). A cell whose surroundings have no full bin gets the range of the nearest one that has.
 
     Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the
     surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three

@@ -4000,7 +4000,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Bins are examined from both ends of a histogram only, so that sparse points of a facade, between ground and roof, stay. Parts adjoining the scene stay too (chimneys, masts, treetops, slopes), and so do three high points close together (a lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.</source>
+        <source>Bins are examined from both ends of a histogram only, so that sparse points of a facade, between ground and roof, stay. Parts adjoining the scene stay too (chimneys, masts, treetops, slopes), and so do three high points close together (a lamp, a wire). A cell whose surroundings have no full bin gets the range of the nearest one that has.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
