@@ -37,7 +37,7 @@ NOISE = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
 
 
 def parse_classes(text: str, label: str = "Ignored classes") -> np.ndarray:
-    """Return the class numbers of a text such as ``"7, 18, 64-67"``, ascending; ``label`` is what people call it.
+    """Return the class numbers of a text such as ``"7, 18, 64-67"``, ascending; ``label`` is named in errors.
 
     Raises
     ------

@@ -169,7 +169,7 @@ def _inside(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
 
 
 def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMonitor) -> tuple[BlockResult, np.ndarray]:
-    """Run the chain on a window; return what came of the block, and on which sides (2, 2) a feature was cut off."""
+    """Run the chain on a window; return the results of the block, and on which sides (2, 2) a feature was cut off."""
     pipeline = in_blocks(PIPELINES[task.pipeline])
     positions = _positions(task.survey, window)
     made = run_pipeline(pipeline, window.cloud, monitor, kept=(), samplings=task.samplings, **task.tunables)

@@ -57,7 +57,7 @@ class WorkedOn:
 
     done: list[tuple[Block, Path]]  #: Blocks with their results, in the order of their positions
     failed: list[tuple[Block, str]]  #: Blocks that failed, and why
-    found: list[BlockResult]  #: What came of the blocks that are done, without points
+    found: list[BlockResult]  #: Results of the blocks that are done, without points
     #: For each block that is done and each numbered dimension what its numbers become, once blocks are joined
     numbers: list[dict[str, np.ndarray]] = field(default_factory=list)
 
@@ -69,7 +69,7 @@ class WorkedOn:
 
 @dataclass
 class TilesOutcome:
-    """What came of a survey: the tiles written, layers in meters from ``survey.origin``, reports, what went wrong.
+    """The results of a survey: the tiles written, layers in meters from ``survey.origin``, reports, what went wrong.
 
     ``side`` is that of the blocks, m.
 

@@ -51,7 +51,7 @@ def points_outside(path: Path, count: int) -> str:
 
 
 def rows_of(result: Path, number: int) -> np.ndarray:
-    """Return the rows (n,) of the records of a file in what came of a block."""
+    """Return the rows (n,) of the records of a file in the results of a block."""
     with np.load(result, allow_pickle=False) as stored:
         return np.flatnonzero(stored["source"] == number)
 

@@ -49,7 +49,7 @@ _TAIL = 2000
 
 @dataclass
 class Result:
-    """What came of a run: outcomes by kind, findings, and the most memory (MB) and time (s) with their mutants."""
+    """The results of a run: outcomes by kind, findings, and the most memory (MB) and time (s) with their mutants."""
 
     counts: collections.Counter = field(default_factory=collections.Counter)
     findings: list[dict[str, Any]] = field(default_factory=list)
@@ -193,7 +193,7 @@ def cause(finding: dict[str, Any]) -> str:
 
 
 def show(result: Result, folder: Path) -> None:
-    """Print what came of a run, and keep the findings."""
+    """Print the results of a run, and keep the findings."""
     kinds = sorted({kind for kind, _ in result.counts}, key=KINDS.index)
     for kind in kinds:
         read, refused, fault = (result.counts[kind, outcome] for outcome in ("read", "refused", "fault"))

@@ -77,7 +77,7 @@ TECHNICAL = (
 # Factors by which constants are moved.
 MOVED = (0.8, 1.2)
 _ENDS = tuple(f" {100 * (factor - 1):+.0f} %" for factor in MOVED)
-# What a rule may cost and go, in the mean of all clouds and on any (%): less than clouds vary when they are turned.
+# A rule is deleted if that costs less, in the mean of all clouds and on each (%): less than clouds vary when turned.
 LEAST_MEAN, LEAST_ANYWHERE = 0.1, 0.5
 # Changes (%) that are chance.
 CHANCE = 0.05

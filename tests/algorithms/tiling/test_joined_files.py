@@ -58,7 +58,7 @@ def survey(cloud, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(cloud):
-    """What came of the cloud at once."""
+    """The results of the cloud at once."""
     return run_pipeline(MODEL, cloud.copy())
 
 
