@@ -56,6 +56,12 @@ class _Builder:
 
     def __init__(self, levels: Levels) -> None:
         self.levels, self.cells, self.label = levels, levels.cells, levels.label
+        # Edges of cells with a plane: vertices, the cell and its plane to the left, the plane to the right.
+        self.edges = [
+            (u, v, cell, self.label[cell], levels.plane_beyond(u, v))
+            for (u, v), cell in self.cells.cell_of.items()
+            if self.label[cell] >= 0
+        ]
         self.at: dict[int, list[int]] = defaultdict(list)
         for number, (vertex, _) in {n: key for key, n in levels.number.items()}.items():
             self.at[vertex].append(number)
@@ -82,36 +88,26 @@ class _Builder:
         """Return the edges around each connected part of a plane, by (part, plane)."""
         edges: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)
         number = self.levels.number
-        for (u, v), cell in self.cells.cell_of.items():
-            plane = self.label[cell]
-            if plane >= 0 and self.levels.plane_beyond(u, v) != plane:
+        for u, v, cell, plane, beyond in self.edges:
+            if beyond != plane:
                 edges[part[cell], plane].append((number[u, plane], number[v, plane]))
         return edges
 
     def _parts(self) -> dict[int, int]:
         """Return which connected part of equal planes each cell is in."""
-        pairs = []
-        for (u, v), cell in self.cells.cell_of.items():
-            if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == self.label[cell]:
-                pairs.append((cell, self.cells.cell_of[v, u]))
+        pairs = [(cell, self.cells.cell_of[v, u]) for u, v, cell, plane, beyond in self.edges if beyond == plane]
         group = groups_of(pairs, len(self.cells))
         return {cell: group[cell] for cell in range(len(group)) if self.label[cell] >= 0}
 
     def _ground_edges(self) -> list[tuple[int, int]]:
         number = self.levels.number
-        return [
-            (number[v, BASE], number[u, BASE])
-            for (u, v), cell in self.cells.cell_of.items()
-            if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == BASE
-        ]
+        return [(number[v, BASE], number[u, BASE]) for u, v, _, _, beyond in self.edges if beyond == BASE]
 
     def _walls(self) -> list[tuple[Ring, list[int]]]:
         """Return the walls, those in line with each other as one, and the cells beside each."""
         walls = []
-        for (u, v), cell in self.cells.cell_of.items():
-            plane = self.label[cell]
-            beyond = self.levels.plane_beyond(u, v)
-            if plane >= 0 and beyond != plane:
+        for u, v, cell, plane, beyond in self.edges:
+            if beyond != plane:
                 ring = self._wall(u, v, plane, beyond)
                 if ring:
                     cells = [cell] if beyond == BASE else [cell, self.cells.cell_of[v, u]]
