@@ -148,22 +148,22 @@ class _Border:
         """Return lines along the contacts where one plane is above the other."""
         left = self.positions[~self.at_line]
         directions, weight = self._directions(main)
+        normals = np.column_stack([-directions[:, 1], directions[:, 0]])
         found: list[Piece] = []
         width = max(0.3, self.spacing)
         while len(left) >= _LEAST_CONTACTS and len(found) < _MOST_STEPS:
-            best, on_best = 0.0, None
-            for direction, preference in zip(directions, weight):
-                normal = np.array([-direction[1], direction[0]])
-                offset = left @ normal
-                order = np.sort(offset)
-                count = np.searchsorted(order, order + width, side="right") - np.arange(len(order))
-                first = int(np.argmax(count))
-                if count[first] * preference > best:
-                    best = count[first] * preference
-                    on_best = direction, normal, (offset >= order[first]) & (offset <= order[first] + width)
-            if on_best is None or on_best[2].sum() < _LEAST_CONTACTS:
+            offset = normals @ left.T
+            order = np.sort(offset, axis=1)
+            # Rows far apart make one ascending array of all directions.
+            apart = (np.ptp(order) + width + 1.0) * np.arange(len(order))[:, None]
+            ends = np.searchsorted((order + apart).ravel(), (order + apart + width).ravel(), side="right")
+            count = (ends - np.arange(order.size)).reshape(order.shape)
+            best = int(np.argmax(count.max(axis=1) * weight))
+            first = order[best, np.argmax(count[best])]
+            chosen = (offset[best] >= first) & (offset[best] <= first + width)
+            if chosen.sum() < _LEAST_CONTACTS:
                 break
-            direction, normal, chosen = on_best
+            direction, normal = directions[best], normals[best]
             position = normal * self._between(normal, direction, left[chosen])
             found.append(self._piece(position, direction, left[chosen]))
             left = left[~chosen]

@@ -40,6 +40,19 @@ def pillars():
     return solid(np.concatenate([CUBE, CUBE + [3, 0, 0]]), [*SIDES, *([v + 8 for v in ring] for ring in SIDES)])
 
 
+def in_each_other():
+    """Return a cube with a small one in it, as one surface."""
+    return solid(np.concatenate([CUBE, 0.2 * CUBE + 0.4]), [*SIDES, *([v + 8 for v in ring] for ring in SIDES)])
+
+
+def divided_top():
+    """Return a cube with a pit whose rim touches two edges of the top, which it divides."""
+    vertices = np.concatenate([CUBE, [[0.5, 0, 1], [0.8, 0.5, 1], [0.5, 1, 1], [0.2, 0.5, 1], [0.5, 0.5, 0.5]]])
+    top, sides = [[4, 8, 5, 7, 10, 6], [8, 11, 10, 9]], [[0, 1, 5, 8, 4], SIDES[3], [3, 2, 6, 10, 7], SIDES[5]]
+    pit = [[b, a, 12] for a, b in ((8, 11), (11, 10), (10, 9), (9, 8))]
+    return Solid(vertices, [[SIDES[0]], top, *([ring] for ring in [*sides, *pit])])
+
+
 def hourglass():
     """Return a cube with a pyramid cut out of its top and one out of its bottom, whose tips meet in the middle."""
     pits = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8], [0, 2, 8], [2, 3, 8], [3, 1, 8], [1, 0, 8]]
@@ -91,6 +104,8 @@ def test_valid_solids_have_no_fault():
         (solid(CUBE, [*SIDES, SIDES[0]]), "more than two faces"),  # 303
         (hourglass(), "only touch in a corner"),  # 303
         (pillars(), "pieces"),  # 305
+        (in_each_other(), "pieces"),  # 305
+        (divided_top(), "divide"),  # 207
         (spiked(-0.5), "cross"),  # 306
         (cube(f4=SIDES[4][::-1]), "more than two faces"),  # 307
         (solid(CUBE, [ring[::-1] for ring in SIDES]), "inward"),  # 405
