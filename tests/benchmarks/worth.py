@@ -567,8 +567,8 @@ _MOVED = """
 ## Constants moved by 20 %
 
 The same changes where one constant is a fifth smaller or larger, counts by one at least, on four clouds: St Barth at
-4 points per m², Amsterdam, and samples 11 and 53 of the filter test (docs/measured/moved.json). Others of ground, roofs
-and buildings change less than {chance:g} there; those of sampling, noise and footprints were not moved.
+4 points per m², Amsterdam, and samples 11 and 53 of the filter test (docs/measured/moved.json). Others of noise,
+ground, roofs and buildings change less than {chance:g} there; those of sampling and footprints were not moved.
 
 {table}
 """
