@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.grid import lattice
+from ..geometry.scattered import scattered
 from ..rules import rule
 from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor
@@ -53,7 +54,8 @@ class LabeledCells:
         east = np.bincount(cluster_id[is_building], self.cells.xyz[is_building, 0], int(cluster_id.max()) + 1)
         mark = np.zeros(len(self.cells.count))
         mark[self.cells.cell[is_building]] = 1.0 + np.abs(east[cluster_id[is_building]])
-        rows = _spread(len(self.chosen), SURFACES.sample)
+        # A cell more or less, as at the edge of a cloud, changes no other row of the sample.
+        rows = np.sort(np.argsort(scattered(self.cells.voxels[self.chosen]), kind="stable")[: SURFACES.sample])
         return np.column_stack([self.half[rows], mark[self.chosen[rows]], self.label[rows], self.features[rows]])
 
     def smooth(self, likely: np.ndarray) -> np.ndarray:

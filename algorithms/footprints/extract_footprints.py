@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED
-from ..geometry.grid import connected_cells, find_cells, grid_over, plan_box
+from ..geometry.grid import connected_cells, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
 from ..geometry.polygon_overlap import meeting_boxes
 from ..geometry.ring_directions import direction_weights, main_directions
@@ -38,7 +38,7 @@ _LEAST_SPACING = 0.25
 # part of it, mostly has the same.
 _STEPS_PER_OCTAVE = 4
 
-# Distance (m) up to which the directions of neighbors count: across a street.
+# Distance (m) up to which the walls of neighbors count for directions: across a street.
 _NEIGHBORS = 30.0
 
 # Weight of all neighbors together, as a share of that of the building itself: a shed has the directions of the houses
@@ -242,13 +242,11 @@ class _Part:
 
 @dataclass(frozen=True)
 class _Evidence:
-    """Measures of the buildings of a part: shares, pieces, and of each the box, weights of directions, samples."""
+    """Shares and pieces of the buildings of a part, and the rings of each building."""
 
     shares: dict[int, Shares]
     pieces: list[Piece]
-    boxes: dict[int, np.ndarray]
-    weights: dict[int, np.ndarray]
-    n_samples: dict[int, int]
+    rings: dict[int, list[np.ndarray]]
 
 
 def _rounded(spacing: float) -> float:
@@ -277,11 +275,11 @@ def _parts(
     order = np.lexsort((*xyz[building].T, cluster))
     building, cluster = building[order], cluster[order]
     is_attached = np.zeros(len(building), bool) if reason is None else np.isin(reason[building], ADDED)
-    is_roof = find_roof_points(xyz[building], cluster, is_attached, spacing)
+    is_roof = find_roof_points(measures.local(building), cluster, is_attached, spacing)
     beside = find_non_building_points(xyz, classification, building[is_roof], spacing)
     beside = beside[np.lexsort(xyz[beside].T)]
     parts = []
-    for rows, others in _apart(xyz, building, beside, _APART * spacing):
+    for rows, others in _apart(measures.plan(building), measures.plan(beside), _APART * spacing):
         roof = rows[is_roof[rows]]
         if len(roof) and _has_area(xyz[building[roof], :2]):
             parts.append(_Part(building[rows], building[roof], beside[others], cluster[roof]))
@@ -293,20 +291,19 @@ def _has_area(plan: np.ndarray) -> bool:
     return len(plan) > 2 and bool(np.linalg.eigvalsh(np.cov((plan - plan.mean(axis=0)).T))[0] > 1e-6)
 
 
-def _apart(
-    xyz: np.ndarray, building: np.ndarray, non_building: np.ndarray, apart: float
-) -> list[tuple[np.ndarray, np.ndarray]]:
+def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the rows of building points that can be outlined alone, and of the non-building points beside them.
 
-    A non-building point beside two groups of buildings shows for both where their roofs end.
+    All are positions in plan (n, 2) and (m, 2), m from the corner of the whole. A non-building point beside two groups
+    of buildings shows for both where their roofs end.
     """
-    grid = grid_over(xyz, apart)
-    cell = grid.number(xyz[building])
+    grid = fixed_grid_over(np.concatenate([building, non_building]), apart)
+    cell = grid.number(building)
     cells = np.unique(cell)
     count, group = connected_cells(grid, cells)
     own = group[np.searchsorted(cells, cell)]
     # Non-building points lie in a cell of a group or beside one.
-    non_building_cell = grid.number(xyz[non_building])
+    non_building_cell = grid.number(non_building)
     pairs = [np.zeros(0, np.int64)]
     for step in (0, *grid.around):
         position, there = find_cells(cells, non_building_cell + step)
@@ -333,29 +330,24 @@ def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidenc
     rings: dict[int, list[np.ndarray]] = {}
     for piece in pieces:
         rings.setdefault(piece.building, []).extend(piece.rings)
-    boxes = {number: plan_box(np.concatenate(own)) for number, own in rings.items()}
-    weights = {number: sum(map(direction_weights, own)) for number, own in rings.items()}
-    n_samples = {number: sum(map(len, own)) for number, own in rings.items()}
-    return _Evidence({number: shares[number] for number in rings}, pieces, boxes, weights, n_samples)
+    return _Evidence({number: shares[number] for number in rings}, pieces, rings)
 
 
 def _shared_directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]:
-    """Return the main directions of the buildings of each part: those of their neighbors count, the nearer the more."""
-    if not any(one.boxes for one in evidence):
-        return [{} for _ in evidence]
-    boxes = np.array([box for one in evidence for box in one.boxes.values()]).reshape(-1, 2, 2)
-    weights = np.array([own for one in evidence for own in one.weights.values()]).reshape(len(boxes), -1)
-    reach = boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]])
-    one, other = meeting_boxes(reach, boxes)
-    gap = np.maximum(boxes[one, 0] - boxes[other, 1], boxes[other, 0] - boxes[one, 1]).clip(0.0)
-    influence = np.where(one == other, 0.0, np.maximum(1 - np.hypot(*gap.T) / _NEIGHBORS, 0.0))
-    around = np.zeros_like(weights)
-    np.add.at(around, one, influence[:, None] * weights[other])
-    total = weights.sum(axis=1, keepdims=True), around.sum(axis=1, keepdims=True)
-    together = weights + _INFLUENCE * around * np.divide(*total, out=np.zeros_like(total[0]), where=total[1] > 0)
-    counts = [count for one in evidence for count in one.n_samples.values()]
+    """Return the main directions of the buildings of each part: the walls around count, the nearer the more."""
+    rings = [own for one in evidence for own in one.rings.values()]
+    boxes = np.array([plan_box(np.concatenate(own)) for own in rings]).reshape(-1, 2, 2)
+    weights = [sum(map(direction_weights, own)) for own in rings]
+    around = [np.zeros_like(own) for own in weights]
+    for one, other in zip(*meeting_boxes(boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]]), boxes)):
+        for ring in rings[other] if one != other else ():
+            off = np.maximum(boxes[one, 0] - ring, ring - boxes[one, 1]).clip(0.0)
+            # Walls farther away do not count, also where they are of the same neighbor: a window may lack them.
+            around[one] += direction_weights(ring, np.maximum(1 - np.hypot(*off.T) / _NEIGHBORS, 0.0))
+    together = [own + _INFLUENCE * own.sum() * other / (other.sum() or 1.0) for own, other in zip(weights, around)]
+    counts = [sum(map(len, own)) for own in rings]
     found = iter([main_directions(*each) for each in zip(together, weights, counts)])
-    return [{number: next(found) for number in own.weights} for own in evidence]
+    return [{number: next(found) for number in one.rings} for one in evidence]
 
 
 def _houses(

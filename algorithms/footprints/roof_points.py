@@ -55,7 +55,7 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
     Parameters
     ----------
     xyz : ndarray of shape (n, 3), float64
-        Building points (m).
+        Building points (m), in plan from the corner of the whole.
     cluster : ndarray of shape (n,), int64
         Building of each.
     is_attached : ndarray of shape (n,), bool
@@ -64,7 +64,7 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
         Mean distance of neighboring points (m). The highest point of each cell of this size, and of the eight around,
         is compared.
     """
-    grid = grid_over(xyz, spacing)
+    grid = fixed_grid_over(xyz, spacing)
     # One number for cell and cluster; a cluster's cells are as far from the next one's as the grid is large.
     number = np.unique(cluster, return_inverse=True)[1].ravel()
     cell = grid.number(xyz) + number * (grid.rows * grid.columns)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Optional
+
 import numpy as np
 
 from ..packages import ndimage
@@ -33,13 +35,15 @@ _ALONG = 3.0
 _APART, _LEAST_SHARE = 12.0, 0.25
 
 
-def direction_weights(samples: np.ndarray) -> np.ndarray:
+def direction_weights(samples: np.ndarray, counts: Optional[np.ndarray] = None) -> np.ndarray:
     """Return the weights (180,) of directions from 0 to 90°, in steps of half a degree, along a ring.
 
     Parameters
     ----------
     samples : ndarray of shape (n, 2)
         Positions at equal steps along a ring, the first not repeated.
+    counts : ndarray of shape (n,), optional
+        How much the piece around each sample counts; all count alike, unless given.
 
     Notes
     -----
@@ -52,6 +56,7 @@ def direction_weights(samples: np.ndarray) -> np.ndarray:
         if 2 * length <= len(samples):
             angle, across = _pieces(samples, length)
             weight = length ** (_POWER - 1) * np.exp(-((across / (_STRAIGHT * step)) ** 2) / 2)
+            weight *= 1.0 if counts is None else np.roll(counts, -(length // 2))
             width = np.hypot(_LEAST_WIDTH, _WIDTH_OF_ONE / length)
             weights += ndimage.gaussian_filter1d(_counted(angle, weight), width / _STEP, mode="wrap")
     return weights

@@ -11,6 +11,7 @@ from ..stage import Monitor
 from ..threads import in_chunks
 from .delaunay import Triangulation, circles, triangulate
 from .grid import plan_box
+from .scattered import scattered
 
 # Points looked for and planes fitted at once, on each core: their arrays stay small beside the cloud.
 _CHUNK, _FIT_CHUNK = 100_000, 20_000
@@ -264,11 +265,13 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
     """
     count = min(n_neighbors, len(nodes) - 1)
     tree = spatial.cKDTree(nodes[:, :2])
-    step = 1 if most is None else max(1, len(nodes) // most)
-    residuals = np.empty(len(nodes[::step]))
+    # By square decimeters: the same nodes, whatever their order and whichever others there are.
+    number = scattered(np.floor(10.0 * nodes[:, :2]).astype(np.int64))
+    taken = np.flatnonzero(number <= max(1.0 / max(1, len(nodes) // (most or len(nodes))), number.min()))
+    residuals = np.empty(len(taken))
 
     def fit(sample: np.ndarray) -> None:
-        rows = sample * step
+        rows = taken[sample]
         neighbors = tree.query(nodes[rows, :2], k=count + 1)[1][:, 1:]
         design = nodes[neighbors] - nodes[rows, None]
         heights = design[..., 2].copy()

@@ -84,8 +84,10 @@ class Survey:
     @property
     def corner(self) -> np.ndarray:
         """Least easting and northing (2,) of the files, m from ``origin``, also where only an extent is read."""
-        corners = [source.header.low[:2] * self.units.horizontal for source in self.sources]
-        return np.min(corners, axis=0) - self.origin[:2]
+        low = np.min([source.header.low[:2] for source in self.sources], axis=0)
+        scale, offset, unit = self.header.scale[:2], self.header.offset[:2], self.units.horizontal
+        # As a cloud has its coordinates, to the last bit: no point lies before the first cell.
+        return np.rint((low - offset) / scale) * (scale * unit) + (offset * unit - self.origin[:2])
 
     @cached_property
     def boxes(self) -> np.ndarray:

@@ -320,6 +320,6 @@ def test_what_lies_inside_the_edge_of_a_roof_is_under_it():
 
 def test_ground_between_two_houses_shows_for_both_where_they_end():
     """The cell of the ground lies beside those of both houses; each house is outlined alone."""
-    houses, ground = np.array([[0.5, 0.5, 5], [2.5, 0.5, 5], [2.6, 0.6, 5]]), np.array([[1.5, 0.5, 0], [9.5, 0.5, 0]])
-    parts = outlining._apart(np.concatenate([houses, ground]), np.arange(3), np.array([3, 4]), 1.0)
+    houses, ground = np.array([[0.5, 0.5], [2.5, 0.5], [2.6, 0.6]]), np.array([[1.5, 0.5], [9.5, 0.5]])
+    parts = outlining._apart(houses, ground, 1.0)
     assert [(own.tolist(), beside.tolist()) for own, beside in parts] == [([0], [0]), ([1, 2], [0])]

@@ -62,6 +62,17 @@ def test_a_file_taken_away_before_a_run_goes_on_gives_no_other_file_its_points(t
         np.testing.assert_array_equal(read_cloud(found).get("cluster_id"), read_cloud(made).get("cluster_id"))
 
 
+def test_cells_of_a_survey_begin_at_its_least_coordinates_to_the_last_bit(tmp_path):
+    """A picometer off, the points at the edge had cells of their own, and what is learned from a sample changed."""
+    for seed in range(5):
+        cloud = read_cloud(tile(tmp_path / f"{seed}.las", (17.3 * seed, 11.7 * seed), seed=seed))
+        low = cloud.get("xyz")[:, :2].min(axis=0)
+        survey = open_survey([tmp_path / f"{seed}.las"])
+        np.testing.assert_array_equal(survey.corner + survey.origin[:2], low + cloud.origin[:2])
+        window = survey.window(survey.box).cloud.get("xyz")
+        assert (window[:, :2].min(axis=0) == survey.corner).all()
+
+
 def test_heights_are_stored_in_the_unit_that_only_the_code_of_the_system_shows(tmp_path):
     # GeoKeys of EPSG:2263 (US survey feet) name no unit.
     ground = np.full(500, 2, np.uint8)
