@@ -34,13 +34,22 @@ def test_points_moved_by_two_millimeters_hardly_move_outlines(name, least_iou, m
     assert np.median(distances) <= most_distance
 
 
-@pytest.mark.parametrize("side", [60.0, 140.0])
-def test_outlines_of_blocks_are_those_of_the_whole(side):
-    """How the survey was sampled counted its noise points, which moved two of the ten outlines by 0.5 and 1.2 m."""
-    name = "buildings/ign-stbarth-4"
+@pytest.mark.parametrize(
+    ("name", "side", "most_distance"),
+    [
+        # How the survey was sampled counted its noise points, which moved two of the ten outlines by 0.5 and 1.2 m.
+        ("buildings/ign-stbarth-4", 60.0, 0.01),
+        ("buildings/ign-stbarth-4", 140.0, 0.01),
+        # With cells at the first point of each window, samples in the order of the points, and directions of walls
+        # beyond the window, 32 and 27 of 51 outlines were within 5 cm.
+        ("buildings/ahn3-delft-4", 100.0, 0.05),
+        ("buildings/ahn3-delft-4", 140.0, 0.05),
+    ],
+)
+def test_outlines_of_blocks_are_those_of_the_whole(name, side, most_distance):
     whole = detected(name)
     one = [[whole.cloud.to_map(ring) for ring in rings] for rings in whole.layers["footprints"].geometries]
     other = in_blocks(path_of(name), side)
     found = match_polygons(one, other, Monitor())
     assert len(found.one) == len(one) == len(other)
-    assert max(hausdorff(one[i], other[j]) for i, j in zip(found.one, found.other)) <= 0.01
+    assert max(hausdorff(one[i], other[j]) for i, j in zip(found.one, found.other)) <= most_distance

@@ -318,6 +318,27 @@ def test_what_lies_inside_the_edge_of_a_roof_is_under_it():
     assert yard < 0.2
 
 
+@pytest.mark.parametrize("density", [4.0, 12.0])
+@pytest.mark.parametrize(
+    ("slit", "bridge", "houses"),
+    # Slits of two spacings are closed, too; bridges of two and three split in three quarters of all draws, or none.
+    [(1.0, 0.0, 1), (3.5, 0.0, 2), (8.0, 1.0, 2), (8.0, 5.0, 1)],
+)
+def test_slits_and_bridges_part_houses_however_points_fall(slit, bridge, houses, density):
+    """Two houses in one cluster, with a slit between them or a bridge of points, in spacings; all points, and 90 %."""
+    spacing = 1 / np.sqrt(density)
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        x, y = rng.uniform(0, [40, 24], (int(960 * density), 2)).T
+        from_middle = np.abs(x - 20) - slit * spacing / 2
+        is_house = (np.abs(y - 12) < 6) & (from_middle > 0) & (from_middle < 11)
+        is_house |= (np.abs(y - 12) < bridge * spacing / 2) & (from_middle <= 0)
+        xyz = np.column_stack([x, y, 6.0 * is_house + rng.normal(0, 0.02, len(x))])
+        for rows in (np.arange(len(x)), np.flatnonzero(rng.random(len(x)) < 0.9)):
+            classes = np.where(is_house[rows], 6, 2)
+            assert len(extract_footprints(xyz[rows], classes, is_house[rows].astype(np.int32))) == houses
+
+
 def test_ground_between_two_houses_shows_for_both_where_they_end():
     """The cell of the ground lies beside those of both houses; each house is outlined alone."""
     houses, ground = np.array([[0.5, 0.5], [2.5, 0.5], [2.6, 0.6]]), np.array([[1.5, 0.5], [9.5, 0.5]])
