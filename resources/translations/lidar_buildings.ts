@@ -8308,7 +8308,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The directions of neighbors within 30 m count, too. Rings with many walls beside these, and round ones, are drawn in chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a building or to the ground. Clusters whose points lie on one line have no area and give no polygon.</source>
+        <source>The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The walls of neighbors within 30 m count, too. Rings with many walls beside these, and round ones, are drawn in chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a building or to the ground. Clusters whose points lie on one line have no area and give no polygon.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
