@@ -102,10 +102,6 @@ class Survey:
         """Return the positions of the files that may have points in a box (2, 2), m."""
         return np.flatnonzero(boxes_meet(self.boxes, box)).tolist()
 
-    def part(self, numbers: Iterable[int]) -> dict[int, Source]:
-        """Return some of the files by their positions."""
-        return {number: self.sources[number] for number in numbers}
-
     def window(self, box: np.ndarray, monitor: Optional[Monitor] = None) -> Optional[Window]:
         """Return the points in a box (2, 2), m: its lower edges belong to it, its upper ones don't; None if none.
 
