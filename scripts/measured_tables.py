@@ -195,6 +195,19 @@ TABLES = {
         ),
         "accuracy.py ground",
     ),
+    "footprints": Shown(
+        ("Delft, outlined",),
+        (
+            Column("intersection over union with class 6", "IoU with class 6", 2),
+            Column("corners of single houses, median, m", "corners of houses, m", 2),
+            Column("of whole blocks, median, m", "of blocks, m", 2),
+        ),
+        (
+            Row(("the buildings found",), "footprints_of_delft", (("Delft, classes", "chain"),)),
+            Row(("the true points of class 6",), "footprints_of_delft", (("Delft, classes", "truth"),)),
+        ),
+        "accuracy.py footprints",
+    ),
     "harder": Shown(
         ("cloud", "made harder"),
         (*_RATES, _F, Column("wrongly building, m²", "wrong, m²", 0)),
