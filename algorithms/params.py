@@ -27,8 +27,8 @@ Thresholds = Annotated[
         "Thresholds",
         "'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for "
         "its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height "
-        "difference 0.2 m "
-        "with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set win.",
+        "difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that "
+        "are set replace these.",
         choices=("automatic", *PAPER_THRESHOLDS),
     ),
 ]

@@ -9,7 +9,7 @@ import numpy as np
 # Darker than this share of the median brightness, color is noise of the camera.
 _DARK = 0.1
 
-# Least difference of the shares of leaves and of roofs over the threshold, such as two thirds and one third.
+# Least difference between the share of leaves and that of roofs above the threshold (two thirds and one third).
 _LEAST_PARTED = 1 / 3
 
 

@@ -16,7 +16,7 @@ _CACHED = 16_000
 # Entropies closer than this are equal but for rounding; of equal ones the smallest neighborhood is taken.
 _EQUAL = 1e-9
 
-# Stands for zero where zero can't: 0 ln 0 is 0.
+# Replaces zero in logarithms, as 0 ln 0 is 0.
 _LEAST = 1e-300
 
 # Beyond this share of the largest eigenvalue the others are what rounding leaves of a line's width.

@@ -197,7 +197,7 @@ def _voted(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarra
     """Return which points lie on the plane through the point that most neighbors vote for."""
     size = offsets.shape
     distance = np.abs(offsets.reshape(-1, 3) @ _half_sphere().T).reshape(size[0], size[1], -1)
-    # Points in the middle of a bin count more: of several planes with all points the best one wins.
+    # Points in the middle of a bin count more: of several planes with all points the best one is taken.
     np.divide(distance, -2 * tolerance, out=distance)
     distance += 1
     np.maximum(distance, 0, out=distance)

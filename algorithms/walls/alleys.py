@@ -13,7 +13,7 @@ from .wall_edges import closed
 from .wall_lines import WallLine
 from .wall_outline import WallOutline
 
-# Walls along a alley are parallel within this angle (cosine): that by which walls of one building are.
+# Walls along an alley are parallel within this angle (cosine): that by which walls of one building are.
 _PARALLEL = np.cos(np.deg2rad(8.0))
 
 # The narrowest alley (m): less is a wall that is seen from both sides, or twice.
@@ -31,7 +31,7 @@ def find_alley(outline: WallOutline, limits: Limits, min_area: float) -> Optiona
     outline : WallOutline
         Outline of the houses that were taken for one building.
     limits : Limits
-        What walls may be like; roofs that meet over a alley jut out over it from both sides.
+        What walls may be like; roofs that meet over an alley jut out over it from both sides.
     min_area : float
         Smallest house, m²: least area of the outline behind each of the two walls.
 

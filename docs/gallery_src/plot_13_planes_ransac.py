@@ -2,7 +2,7 @@
 Planes by RANSAC
 ================
 
-Random samples of three points per voxel, the plane with most points wins :cite:p:`fischler1981,hrutka2022`.
+Random samples of three points per voxel; the plane with most points is taken :cite:p:`fischler1981,hrutka2022`.
 """
 
 from scenes import group_colors, plan, step, town
