@@ -4,7 +4,7 @@
 <context>
     <name>LidarBuildings</name>
     <message>
-        <source>'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set win.</source>
+        <source>'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set replace these.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2064,7 +2064,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Thresholds&lt;/b&gt;: 'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set win. &lt;i&gt;(one of automatic, table 2, 12.5 points/m², table 2, 4 points/m²; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Thresholds&lt;/b&gt;: 'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set replace these. &lt;i&gt;(one of automatic, table 2, 12.5 points/m², table 2, 4 points/m²; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
