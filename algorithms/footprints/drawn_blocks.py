@@ -23,19 +23,9 @@ from .soft_shares import Lattice, Shares
 # is not drawn. With 10, corners of the map in Delft are 0.04 m farther off; with 6 there are more corners, no closer.
 _CORNER = 8.0
 
-# Edges of two rings on both sides of a border, or of a front that goes on, lie this close (spacings) to one line: that
-# of the longest one. They were drawn from the same points.
-_SAME_LINE = 0.75
-
-# Price (spacings, so that a meter costs that area) of a border where an edge was drawn, and elsewhere.
-_DRAWN, _NOT_DRAWN = 0.1, 1.0
-
 # An outline is straight where more than this share of it runs along a main direction and square to that: of a circle
 # drawn along two main directions it is half.
 _MOST = 0.6
-
-# Room (spacings) around the edges of a block.
-_ROOM = 2.0
 
 # A cell's middle lies this close (m) to an edge that bounds it.
 _ON_EDGE = 0.03
@@ -97,7 +87,8 @@ def draw_block(
         Spacing, scale of simplification and least areas.
     """
     rings = [_drawn(ring, directions[piece.building], how) for piece in pieces for ring in piece.rings]
-    edges = [edge for ring in aligned(rings, _SAME_LINE * how.spacing) for edge in ring]
+    # Edges on both sides of a border, or of a front that goes on, were drawn from the same points: within a spacing.
+    edges = [edge for ring in aligned(rings, how.spacing) for edge in ring]
     if not edges:
         return []
     lattice, share, numbers = _shares_of(pieces, shares, edges, how)
@@ -230,8 +221,8 @@ def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: Drawin
     pairs, sides = cells.edges()
     vertices = np.array(cells.vertices)
     start, end = vertices[pairs[:, 0]], vertices[pairs[:, 1]]
-    price = np.where(_are_drawn(start, end, edges), _DRAWN, _NOT_DRAWN) * how.spacing
-    weight = price * np.hypot(*(end - start).T)
+    # Where no edge was drawn a meter of border costs the area of one spacing.
+    weight = np.where(_are_drawn(start, end, edges), 0.0, how.spacing * np.hypot(*(end - start).T))
     most = np.bincount(sides.ravel(), np.repeat(weight, 2), len(cells))
     return cheapest_labels(
         cost, sides, lambda one, other, rows: weight[rows] * (one != other), most, cost.argmin(axis=1)

@@ -23,16 +23,10 @@ from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces
 from .roof_points import edge_weights, find_non_building_points, find_roof_points, topmost
 from .row_houses import ROWS, Houses, split_row
-from .soft_shares import Shares, find_shares
-
-# Distance (spacings) beyond which buildings have no effect on each other's outlines but for their directions.
-_APART = 8.0
+from .soft_shares import APART, LEAST_SPACING, Shares, find_shares
 
 # Tolerance (spacings) of outlines: samples along an edge lie within one spacing of it, and corners are rounded.
 _TOLERANCE_SPACINGS = 1.75
-
-# Least spacing (m) that outlines are drawn by: gutters and small bays are no walls.
-_LEAST_SPACING = 0.25
 
 # Steps of the spacing from one to its double, in which it is rounded: the same cloud with a tenth fewer points, or a
 # part of it, mostly has the same.
@@ -251,7 +245,7 @@ class _Evidence:
 
 def _rounded(spacing: float) -> float:
     """Return the spacing (m) rounded to a step, at least the least one: small changes of the points keep the step."""
-    return max(_LEAST_SPACING, 2.0 ** (round(np.log2(spacing) * _STEPS_PER_OCTAVE) / _STEPS_PER_OCTAVE))
+    return max(LEAST_SPACING, 2.0 ** (round(np.log2(spacing) * _STEPS_PER_OCTAVE) / _STEPS_PER_OCTAVE))
 
 
 def _building_points(classification: np.ndarray, cluster_id: Optional[np.ndarray], monitor: Monitor) -> np.ndarray:
@@ -279,7 +273,7 @@ def _parts(
     beside = find_non_building_points(xyz, classification, building[is_roof], spacing)
     beside = beside[np.lexsort(xyz[beside].T)]
     parts = []
-    for rows, others in _apart(measures.plan(building), measures.plan(beside), _APART * spacing):
+    for rows, others in _apart(measures.plan(building), measures.plan(beside), APART * spacing):
         roof = rows[is_roof[rows]]
         if len(roof) and _has_area(xyz[building[roof], :2]):
             parts.append(_Part(building[rows], building[roof], beside[others], cluster[roof]))

@@ -14,7 +14,7 @@ from ..packages import ndimage, spatial
 from ..stage import Field
 from ..threads import searchers
 from .drawn_blocks import Outlined
-from .soft_shares import Lattice, smoothed
+from .soft_shares import APART, Lattice, smoothed
 
 FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
@@ -47,9 +47,6 @@ _PLANE = 12
 
 # Distance (spacings) of these from the outline, at least: beyond points on the wall.
 _INNER = 2.0
-
-# Distance (spacings) from an outline, at most, of the points of its roof and walls.
-_BESIDE = 8.0
 
 # Least weight of roof points at a position whose height they give: that of one point two spacings away.
 _COVERED = 0.02
@@ -184,7 +181,7 @@ class _Owners:
         for number, outlined in enumerate(outlines):
             self.face[self._nodes(outlined.nodes)] = number
         distance, nearest = ndimage.distance_transform_edt(self.face < 0, return_indices=True)
-        self.nearest = np.where(distance * self.lattice.step <= _BESIDE * spacing, self.face[tuple(nearest)], -1)
+        self.nearest = np.where(distance * self.lattice.step <= APART * spacing, self.face[tuple(nearest)], -1)
 
     def _nodes(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         column, row = np.rint(self.lattice.nodes(positions)).astype(np.int64).T
@@ -243,7 +240,7 @@ def _eave_heights(
         return at_border
     distance, beside = spatial.cKDTree(plan).query(border, min(_PLANE, len(plan)), workers=workers)
     distance, beside = distance.reshape(len(border), -1), beside.reshape(len(border), -1)
-    weight = (distance <= _BESIDE * spacing).astype(float)
+    weight = (distance <= APART * spacing).astype(float)
     factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)
     # A pull to the level, which only points in one line feel.
     matrix = np.einsum("ni,nij,nik->njk", weight, factors, factors) + np.diag([1e-6, *[spacing**2 / 10] * 2])

@@ -13,9 +13,6 @@ from ..geometry.rings import perimeter, signed_area
 from ..packages import spatial
 from .soft_shares import Shares
 
-# Distance (spacings) of samples along rings.
-_SAMPLE = 1.0
-
 # Fewest samples of a ring.
 _FEWEST = 12
 
@@ -67,7 +64,7 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
         if size >= min_area / 2:
             own = [hole for hole in holes if is_inside(hole[0], ring)]
             area = size + sum(map(signed_area, own))
-            pieces.append(Piece(building, [sampled(one, _SAMPLE * spacing) for one in [ring, *own]], area))
+            pieces.append(Piece(building, [sampled(one, spacing) for one in [ring, *own]], area))
     return pieces
 
 

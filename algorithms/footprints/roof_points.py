@@ -11,18 +11,17 @@ from ..geometry.grid import find_cells, fixed_grid_over, grid_over
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
+from .soft_shares import REACH
 
 # Height (m) of another point of the building steeply above one that is no part of the roof: more than roofs are rough.
 _STEP = 0.4
 
-# The same above a point that was only attached to the building, however steeply: bushes under eaves. At least this many
-# spacings, by which a roof of 72° rises from one point to the next.
-_ATTACHED_STEP, _STEP_SPACINGS = 1.0, 3.0
-
-# Height (m) of a roof above adjacent non-building points.
+# Height (m) of a roof above adjacent non-building points, and above points that were only attached to the building,
+# however steeply: bushes under eaves.
 _BELOW = 1.0
 
-# Slope (tangent) up to which the point is a part of a steep roof all the same: 72°.
+# Slope (tangent) up to which the point is a part of a steep roof all the same: 72°. Such a roof rises by as many
+# spacings from one point to the next, which is the least height above attached points.
 _UPRIGHT = 3.0
 
 # Side (spacings) of the cells of which one point is taken for all: four fifths of evenly scattered points remain.
@@ -31,9 +30,6 @@ _THINNED = 0.71
 # Weight of the highest point of a cell with points on a wall: half of the cell is roof. Two fifths of such cells have a
 # point of it, while nearly all of these have one.
 _AT_WALL = 0.43
-
-# Distance (spacings) from a roof up to which points show where it ends.
-_BESIDE = 3.0
 
 # Radius (spacings) in which roof points are counted to decide whether a point lies under a roof: 12 on the average.
 _AROUND = 2.0
@@ -72,7 +68,7 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
     last = np.flatnonzero(np.diff(cell[order], append=-1))
     cells, top = cell[order][last], xyz[order[last]]
     is_roof = np.ones(len(xyz), bool)
-    step = np.where(is_attached, max(_ATTACHED_STEP, _STEP_SPACINGS * spacing), _STEP)
+    step = np.where(is_attached, max(_BELOW, _UPRIGHT * spacing), _STEP)
     steepest = np.where(is_attached, 0.0, _UPRIGHT)
 
     def work(rows: np.ndarray) -> None:
@@ -142,7 +138,7 @@ def find_non_building_points(
     spacing : float
         Point spacing, m.
     """
-    reach = _BESIDE * spacing
+    reach = REACH * spacing
     grid = grid_over(xyz, reach)
     cells = np.unique(grid.number(xyz[roof]))
     near = np.unique(np.concatenate([cells, *(cells + step for step in grid.around)]))

@@ -15,15 +15,14 @@ from ..geometry.groups import components, split_groups
 from ..geometry.line_segments import edge_distances, segments_meet
 from ..packages import ndimage, spatial
 from ..rules import rule
-from .soft_shares import Lattice
+from .soft_shares import LEAST_SPACING, Lattice
 
 
 @dataclass(frozen=True)
 class RowRules:
     """What shows a party wall, and which walls are of a row."""
 
-    step: float = rule(0.25, "m", "physics: of the grid of heights, finer than a fire wall is thick")
-    step_spacings: float = rule(0.6, "point spacings", "least step of that grid, no finer than the points")
+    step: float = rule(0.6, "point spacings", "step of the grid of heights, no finer than the points")
     along: float = rule(1.0, "m", "physics: heights are averaged over it along a line; less than a dormer is wide")
     near: float = rule(0.3, "m", "physics: from where the roof beside a line is measured, beyond the wall itself")
     far: float = rule(1.6, "m", "physics: to where the roof is measured, before the ridge of the narrowest house")
@@ -35,15 +34,13 @@ class RowRules:
     parapet: float = rule(0.3, "m", "fitted on simulated rows: least height of a wall over both roofs")
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
     large_step: float = rule(1.0, "m", "physics: a step between any two roofs, that of half a storey")
-    steepest: float = rule(1.5, "tangent", "physics: 56°, of roofs beside a large step")
     wide: float = rule(2.5, "m", "physics: where half of a step has to be left; a dormer ends before")
     least_share: float = rule(0.75, "share", "of the higher house's height that the lower one has; wings are lower")
     seen: float = rule(0.5, "share", "of a wall that shows a row: what is seen of it beside roofs")
     glimpsed: float = rule(0.3, "share", "the same of a further one: hips hide valleys at their ends")
     evident: float = rule(0.2, "m, or tangent", "mean strength of a wall; noise of matched images reaches 0.17")
     high: float = rule(0.5, "share", "of the median height: lower parts are no roof of a row")
-    shortest: float = rule(4.0, "m", "physics: least depth of a house, the length of its walls")
-    narrowest: float = rule(3.5, "m", "physics: least width of a house")
+    narrowest: float = rule(3.5, "m", "physics: least width and depth of a house")
     largest: float = rule(22.0, "m", "physics: greatest width and depth of a house")
     least_area: float = rule(25.0, "m²", "physics: smaller pieces that walls cut off are parts of a house next to them")
     angle: float = rule(10.0, "°", "physics: between party walls of one row, which are nearly parallel")
@@ -56,7 +53,7 @@ class RowRules:
 
         With four and five points per m² simulated single houses were split.
         """
-        return self.far / (6 * self.step_spacings)
+        return self.far / (6 * self.step)
 
 
 ROWS = RowRules()
@@ -115,7 +112,7 @@ def _lines(
 
     They run along a direction (rad) or square to it.
     """
-    step = max(ROWS.step, ROWS.step_spacings * spacing)
+    step = max(LEAST_SPACING, ROWS.step * spacing)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     positions = lattice.in_plan(np.argwhere(is_inside)[:, ::-1]) @ turn
     low, high = positions.min(axis=0) - 2 * step, positions.max(axis=0) + 2 * step
@@ -213,9 +210,9 @@ def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarr
     # Beside a wall above both roofs the misfit is that of the wall, and its least value says nothing.
     is_sharp = bend > here / 2
     shift = np.where(is_sharp, np.clip((before - after) / np.where(is_sharp, 2 * bend, 1.0), -0.5, 0.5), 0.0)
-    is_clear = (supported >= np.maximum(ROWS.shortest, ROWS.seen * counted)) & (strength >= ROWS.evident * counted)
-    is_long = (length >= ROWS.shortest) & (length <= ROWS.largest)
-    good = np.flatnonzero(is_long & (supported >= ROWS.glimpsed * np.maximum(ROWS.shortest, counted)))
+    is_clear = (supported >= np.maximum(ROWS.narrowest, ROWS.seen * counted)) & (strength >= ROWS.evident * counted)
+    is_long = (length >= ROWS.narrowest) & (length <= ROWS.largest)
+    good = np.flatnonzero(is_long & (supported >= ROWS.glimpsed * np.maximum(ROWS.narrowest, counted)))
     return _Runs(column, first, last, shift, strength, here, is_clear).take(good)
 
 
@@ -232,9 +229,7 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarr
     is_valley = (left_rise > ROWS.rise) & (right_rise > ROWS.rise)
     is_ridge = (left_rise < -ROWS.rise) & (right_rise < -ROWS.rise)
     is_parallel = (jump > ROWS.least_step) & (np.abs(left_rise + right_rise) < ROWS.parallel)
-    is_large = (
-        (jump > ROWS.large_step) & (np.maximum(np.abs(left_rise), np.abs(right_rise)) < ROWS.steepest) & ~is_ridge
-    )
+    is_large = (jump > ROWS.large_step) & ~is_ridge
     is_smooth = np.maximum(left_rough, right_rough) < ROWS.rough
     is_house = np.minimum(left_mean, right_mean) >= ROWS.least_share * np.maximum(left_mean, right_mean)
     above = _above(roof, (left, left_rise), (right, right_rise), step)

@@ -22,11 +22,19 @@ _NEAR = 0.9
 # Standard deviation (spacings) of the surroundings in which a roof's own density is measured: some hundred points.
 _WIDE = 3.0
 
-# Widths of the weights end at this many standard deviations, where a thousandth of them is left.
+# Widths of the weights end at this many standard deviations, where a hundredth of the greatest is left.
 _TRUNCATE = 3.0
 
-# Room (spacings) around the points of a building, so that its shares have fallen to nothing at the edge.
-_MARGIN = 4.0
+# Distance (spacings) from a point up to which it has a weight.
+REACH = _NEAR * _TRUNCATE
+
+# Distance (spacings) beyond which buildings have no effect on each other's outlines but for their directions, and
+# points have none on the attributes of an outline.
+APART = 8.0
+
+# Least spacing (m) that outlines are drawn by, and of the heights in which rows are sought: gutters and small bays are
+# no walls, and a fire wall is thicker.
+LEAST_SPACING = 0.25
 
 # Least density of roofs, as a share of the usual density of one point per square spacing, below which a position is far
 # from any.
@@ -44,7 +52,7 @@ class Lattice:
     @classmethod
     def around(cls, plan: np.ndarray, spacing: float) -> Lattice:
         """Return the nodes around points (n, 2), m, with room for their surroundings."""
-        step, room = spacing / _NODES, int(np.ceil(_MARGIN * _NODES))
+        step, room = spacing / _NODES, int(np.ceil(REACH * _NODES))
         low = np.floor(plan.min(axis=0) / step).astype(np.int64) - room
         high = np.ceil(plan.max(axis=0) / step).astype(np.int64) + room
         columns, rows = (high - low + 1).tolist()

@@ -224,12 +224,11 @@ def step_of(height, left=0.0, right=0.0, low=8.0):
         # A valley from a slope of 0.25 on.
         (step_of(0.0, 0.3, 0.3), step_of(0.0, 0.2, 0.2)),
         # A step of 0.4 m between roofs whose slopes differ by less than 0.35, and one of 1 m between all but
-        # the sides of a ridge and those steeper than 1.5.
+        # the sides of a ridge.
         (step_of(0.45), step_of(0.35)),
         (step_of(0.7, -0.1, 0.4), step_of(0.7, -0.1, 0.5)),
         (step_of(1.1, 0.0, 0.6), step_of(0.9, 0.0, 0.6)),
         (step_of(2.0, -0.2, -0.3), step_of(2.0, -0.3, -0.3)),
-        (step_of(1.2, -1.4, low=20.0), step_of(1.2, -1.6, low=20.0)),
         # A wall 0.3 m above both roofs.
         (lambda x: 8 + 0.4 * (np.abs(x) < 0.2), lambda x: 8 + 0.2 * (np.abs(x) < 0.2)),
         # Roofs deviate by less than 0.25 m from a line.
@@ -256,9 +255,9 @@ def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
 @pytest.mark.parametrize(
     ("depth", "seen", "low", "is_wall", "is_clear"),
     [
-        # A wall is from 4 to 22 m long.
+        # A wall is from 3.5 to 22 m long.
         (5.0, 5.0, 0.0, True, True),
-        (3.5, 3.5, 0.0, False, False),
+        (3.0, 3.0, 0.0, False, False),
         (21.0, 21.0, 0.0, True, True),
         (23.0, 23.0, 0.0, False, False),
         # It is seen on half of the length without low parts of houses, or on three tenths beside clear ones.
