@@ -125,7 +125,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
         futures = [pool.submit(work, item, heard[item]) for item in range(min(ahead, count))]
         for item in range(count):
             while not wait(futures[:1], _BETWEEN_LOOKS).done:
-                monitor.progress(item / count)
+                monitor.progress((item + share * heard[item].reached) / count)
             made = futures.pop(0).result()
             heard[item].pass_on(monitor)
             if item + ahead < count:
@@ -138,16 +138,18 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
 
 
 class _Thread(Monitor):
-    """The monitor of work in a thread: it keeps messages, and ends the work when all is to stop."""
+    """The monitor of work in a thread: it keeps messages and progress, and ends the work when all is to stop."""
 
     def __init__(self, stop: Event) -> None:
         super().__init__()
         self._stop = stop
+        self.reached = 0.0
 
     def progress(self, fraction: float) -> None:
-        """Raise :class:`Cancelled` when all is to stop."""
+        """Keep the progress; raise :class:`Cancelled` when all is to stop."""
         if self._stop.is_set():
             raise Cancelled
+        self.reached = fraction
 
     def pass_on(self, monitor: Monitor) -> None:
         """Pass the messages of this monitor to another one, in the thread of that one."""

@@ -128,17 +128,21 @@ def seeds_by_opening(
     box = plan_box(xyz)
     angles = _turns() if _is_compact(box) else np.zeros(1)
 
-    def view(number: int, slope: Optional[np.ndarray], part: Monitor) -> _View:
-        # Cells begin a third of their side farther east and south in each: no edges of them meet on a whole side.
-        begin = np.array([number, -number, 0.0]) / len(angles) % 1
-        positions = turned_in_plan(xyz, angles[number]) + begin * cell_size
-        cells = _Cells(positions, box, angles[number], cell_size, spacing, low_uphill)
-        return _view(cells, max_building_size, slope, part)
+    count = len(angles)
 
-    first = view(0, None, monitor.part(0, 1 / len(angles)))
-    # The slope changes little from cell to cell: that of the first direction serves for all.
+    def look(number: int, part: Monitor) -> tuple[_Surface, Optional[_View]]:
+        # Cells begin a third of their side farther east and south in each: no edges of them meet on a whole side.
+        begin = np.array([number, -number, 0.0]) / count % 1
+        cells = _Cells(box, angles[number], cell_size, spacing, low_uphill)
+        turned = turned_in_plan(xyz, angles[number]) + begin * cell_size
+        surface = _lowest_surface(turned, cells, max_building_size, part.part(0, 0.3))
+        return surface, None if number else _view(surface, xyz[:, 2], None, part.part(0.3, 1))
+
+    # Threads find the surfaces of the others while the slope of the first is measured: it serves for all, as it changes
+    # little from cell to cell.
+    surfaces, (first, *_) = zip(*made_ahead(look, count, monitor.part(0, 0.7)))
     others = made_ahead(
-        lambda number, part: view(number + 1, first.slope, part), len(angles) - 1, monitor.part(1 / len(angles), 1)
+        lambda number, part: _view(surfaces[number + 1], xyz[:, 2], first.slope, part), count - 1, monitor.part(0.7, 1)
     )
     views = [first, *others]
     candidates = views[0].candidates
@@ -164,8 +168,7 @@ class _View:
 class _Cells:
     """Square cells over points that were turned."""
 
-    xyz: np.ndarray  #: (n, 3), float64: the points as they are turned, m
-    box: np.ndarray  #: (2, 2), float64: the least and greatest easting and northing (m) that they had before
+    box: np.ndarray  #: (2, 2), float64: the least and greatest easting and northing (m) before they were turned
     angle: float  #: By how much they were turned, °
     #: size, spacing: Size of the cells and spacing of the points, m
     size: float
@@ -183,27 +186,45 @@ class _Cells:
         return outside
 
 
-def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.ndarray], monitor: Monitor) -> _View:
-    """Return the evidence of cells; the slope (n,) of the terrain is measured where it is not given."""
-    lowest = lowest_points(cells.xyz, cells.size)
-    surface, unknown = _surface(cells.xyz, lowest, monitor.part(0, 0.1))
+@dataclass(frozen=True)
+class _Surface:
+    """The lowest surface in cells that are laid in one direction, with its free-standing segments."""
+
+    cells: _Cells
+    lowest: Lowest
+    unknown: np.ndarray  #: (rows, columns), bool: gaps and pits
+    removal: ObjectRemoval  #: The surface, its free-standing segments, and how other objects are removed
+    size: float  #: Shorter side (m) of the largest free-standing segment
+
+
+def _lowest_surface(
+    turned: np.ndarray, cells: _Cells, max_building_size: Optional[float], monitor: Monitor
+) -> _Surface:
+    """Return the lowest surface of points (n, 3) that are ``turned`` as the cells are (m)."""
+    lowest = lowest_points(turned, cells.size)
+    surface, unknown = _surface(turned, lowest, monitor.part(0, 0.3))
     size, largest = max_building_size or USUAL_BUILDING, max_building_size or np.inf
     seen = np.where(cells.outside(lowest), np.nan, surface) if cells.angle else surface
     is_free, found = find_free_standing(
-        seen, cells.size, size, largest, cells.spacing, monitor.part(0.1, 0.3), cells.low_uphill
+        seen, cells.size, size, largest, cells.spacing, monitor.part(0.3, 1), cells.low_uphill
     )
-    removal = ObjectRemoval(surface, is_free, size, cells.size, cells.spacing)
-    known = removal.slope(monitor.part(0.3, 0.75)) if slope is None else nearest_known(slope[lowest.index], unknown)
-    is_object = lowest.at_points(removal.objects(known, monitor.part(0.75, 1)))
+    return _Surface(cells, lowest, unknown, ObjectRemoval(surface, is_free, size, cells.size, cells.spacing), found)
+
+
+def _view(seen: _Surface, z: np.ndarray, slope: Optional[np.ndarray], monitor: Monitor) -> _View:
+    """Return the evidence for points of elevations ``z`` (n,), m; their slope (n,) is measured where none is given."""
+    lowest, removal, is_free = seen.lowest, seen.removal, seen.removal.is_free_standing
+    known = removal.slope(monitor.part(0, 0.7)) if slope is None else nearest_known(slope[lowest.index], seen.unknown)
+    is_object = lowest.at_points(removal.objects(known, monitor.part(0.7, 1)))
     slope = lowest.at_points(known)
-    above = cells.xyz[:, 2] - lowest.at_points(surface)
+    above = z - lowest.at_points(removal.surface)
     says_terrain = np.where(is_object, -1, above <= removal.rise(slope)).astype(np.int8)
     # Points seen through a roof, as those of a pit, lie lower than the surface there.
     stands_free = lowest.at_points(is_free) & (above >= 0)
-    if cells.low_uphill:
-        below = lowest.at_points(_rim_levels(surface, is_free)) - cells.xyz[:, 2]
+    if seen.cells.low_uphill:
+        below = lowest.at_points(_rim_levels(removal.surface, is_free)) - z
         stands_free |= (below >= 0) & (below <= MATCHING.rounded)
-    return _View(lowest.points(~unknown), says_terrain, stands_free, found, slope)
+    return _View(lowest.points(~seen.unknown), says_terrain, stands_free, seen.size, slope)
 
 
 def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:

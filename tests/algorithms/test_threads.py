@@ -130,6 +130,19 @@ def test_a_cancellation_ends_what_is_made_ahead(monkeypatch):
     assert threading.enumerate() == before
 
 
+def test_progress_of_an_item_is_heard_while_it_is_made(monkeypatch):
+    monkeypatch.setattr(threads, "_TOLD", [2])
+    monitor, is_heard = Listening(), threading.Event()
+    monkeypatch.setattr(monitor, "progress", lambda fraction: fraction == 0.125 and is_heard.set())
+
+    def work(item, own):
+        own.progress(0.5)
+        return is_heard.wait(60)
+
+    # Half of the first of two items, of which making is half.
+    assert next(made_ahead(work, 2, monitor, share=0.5))
+
+
 def test_an_exception_of_an_item_is_that_of_the_whole(count_of_threads):
     def work(item, own):
         if item == 2:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms import threads
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
@@ -281,8 +282,9 @@ def test_progress_only_grows():
     assert monitor.heard[-1] == 1.0
 
 
-def test_the_search_for_pits_can_be_stopped(rng):
-    """In a dense forest there are as many as trees."""
+def test_the_search_for_pits_can_be_stopped(rng, monkeypatch):
+    """In a dense forest there are as many as trees. One thread hears of each step of the search itself."""
+    monkeypatch.setattr(threads, "_TOLD", [1])
     plan, monitor = even(60, 60), Listening(stop_at=0.01)
     z = np.where(rng.random(len(plan)) < 0.1, 0.0, rng.uniform(18, 22, len(plan)))
     with pytest.raises(Cancelled):
@@ -304,8 +306,8 @@ def seeds_of_views(monkeypatch, reported):
     usual = {"says_terrain": 1, "stands_free": 0, "size": 0.0}
     views = {angle: {**usual, **one} for angle, one in zip((0.0, 30.0, 60.0), reported)}
 
-    def view(cells, largest, slope, monitor):
-        now, n = views.pop(cells.angle), len(cells.xyz)
+    def view(seen, z, slope, monitor):
+        now, n = views.pop(seen.cells.angle), len(z)
         says, free = np.full(n, now["says_terrain"], np.int8), np.full(n, bool(now["stands_free"]))
         return _View(np.array([1]), says, free, now["size"], np.zeros(n))
 
@@ -355,7 +357,7 @@ def test_the_largest_building_is_what_the_first_direction_finds_or_larger(sizes,
 def test_a_narrow_strip_is_looked_at_in_one_direction(width, directions, rng, monkeypatch):
     """Turned, it would lie in a raster that is empty for the most part."""
     looked, view = [], module._view
-    monkeypatch.setattr(module, "_view", lambda cells, *given: looked.append(cells.angle) or view(cells, *given))
+    monkeypatch.setattr(module, "_view", lambda seen, *given: looked.append(seen.cells.angle) or view(seen, *given))
     plan = even(100, width)
     seeds, *_ = seeds_by_opening(np.column_stack([plan, np.zeros(len(plan))]), 1.0, None, Monitor())
     # The others are looked at side by side.
@@ -396,5 +398,5 @@ def test_every_lowest_point_of_a_steep_slope_is_terrain_in_each_direction(angle)
 
 def seen_from(angle, plan, z):
     turned = turned_in_plan(np.column_stack([plan, z]), angle)
-    cells = module._Cells(turned, np.array([plan.min(axis=0), plan.max(axis=0)]), angle, 1.0, 0.7)
-    return module._view(cells, None, None, Monitor())
+    cells = module._Cells(np.array([plan.min(axis=0), plan.max(axis=0)]), angle, 1.0, 0.7)
+    return module._view(module._lowest_surface(turned, cells, None, Monitor()), z, None, Monitor())
