@@ -402,11 +402,6 @@ WHOLE = (
         "buildings.building_columns:COLUMNS",
         _set("buildings.building_columns:COLUMNS", sparse_share=9.0),
     ),
-    _out(
-        "complete: crowns at walls",
-        "buildings.building_columns:Columns.is_beside_crown",
-        lambda self, points: np.zeros(self.building.shape, bool),
-    ),
     _out("images: surfaces amid rough points", "buildings.complete_buildings:amid_rough", _nowhere_of_points),
     _out("images: vehicles", "buildings.complete_buildings:without_vehicles", lambda extent, *found: found),
     _out("images: smeared walls", "buildings.roof_extent:RoofExtent.faces", lambda self, building: building),
@@ -559,7 +554,7 @@ def _moved_both_ways(name: str, of_rule: dict[str, dict[str, Any]], mean: str, o
 
 
 def _in_markdown(columns: tuple[str, ...], rows: list[list[Any]]) -> str:
-    lines = [" | ".join(f"{one:.2f}" if isinstance(one, float) else str(one) for one in row) for row in rows]
+    lines = [" | ".join(f"{round(one, 2) + 0.0:.2f}" if isinstance(one, float) else str(one) for one in row) for row in rows]
     return "\n".join(f"| {line} |" for line in (" | ".join(columns), " | ".join(["---"] * len(columns)), *lines))
 
 
@@ -602,7 +597,9 @@ Rules of little worth on these clouds stay for what the clouds do not show:
 - *Halls in parts*, *machines on halls*: half, and 2 %, of a simulated estate of halls becomes ground.
 - *Surfaces that go on into the ground*: simulated ramps and bridges.
 - *Wide in plan*: lines of points far apart; on zigzag lines F of Delft was 47 % and became 88 %.
-- *Crowns at walls*: trees that touch a flat roof. *Smeared walls*: the walls of a town in matched images.
+- *Bushes*: hedges at walls become houses on 14 of 18 clouds, by up to 0.39. *Structures on roofs*: turrets and lift
+  houses. *Last returns only*: first returns of crowns can't be the ground.
+- *Smeared walls*: the walls of a town in matched images.
 {moved}
 ## The constants
 
