@@ -554,7 +554,9 @@ def _moved_both_ways(name: str, of_rule: dict[str, dict[str, Any]], mean: str, o
 
 
 def _in_markdown(columns: tuple[str, ...], rows: list[list[Any]]) -> str:
-    lines = [" | ".join(f"{round(one, 2) + 0.0:.2f}" if isinstance(one, float) else str(one) for one in row) for row in rows]
+    lines = [
+        " | ".join(f"{round(one, 2) + 0.0:.2f}" if isinstance(one, float) else str(one) for one in row) for row in rows
+    ]
     return "\n".join(f"| {line} |" for line in (" | ".join(columns), " | ".join(["---"] * len(columns)), *lines))
 
 
