@@ -23,7 +23,7 @@ _STEPS, _TURN = 3, -0.5
 
 @dataclass(frozen=True)
 class Recording:
-    """What a scanner recorded of its points, each array (n,) or None where the cloud has it not."""
+    """What a scanner recorded of its points, each array (n,), or None where the cloud lacks it."""
 
     gps_time: Optional[np.ndarray] = None  #: Time of the pulses
     scan_angle: Optional[np.ndarray] = None  #: Angles of the beams

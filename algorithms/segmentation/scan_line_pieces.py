@@ -17,7 +17,7 @@ class NearPoints:
 
     distance: float  #: Largest distance in space, m
     slope: float  #: Tangent of the steepest line between them
-    step: float  #: Difference in height that needs no distance: noise, m
+    step: float  #: Difference in height that is accepted at any distance in plan, as noise, m
 
     def hold(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """Return which points (k, 3) of a line belong to the piece of others (k, 3), m."""

@@ -68,7 +68,7 @@ class Evidence:
     noise: float
     tolerance: float
     spacing: float
-    positions: np.ndarray  #: (n, 3): all points, m, sorted by elevation, those of all segments where they are
+    positions: np.ndarray  #: (n, 3): all points, m, of all segments if there are any, sorted by elevation
 
     def is_round(self, cylinder: Cylinder, own: Points, near: Points) -> bool:
         """Return whether points (k) look like those of a cylinder among all points (m) near it."""

@@ -29,7 +29,7 @@ def photograph(
     Parameters
     ----------
     scene : Scene
-        What there is to see.
+        The scene that is photographed.
     density : float
         Points per square meter of open ground, all views together.
     oblique : float

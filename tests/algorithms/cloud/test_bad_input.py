@@ -27,7 +27,7 @@ def good(tmp_path, rng):
 
 
 def refuse(path, message):
-    """Reading raises one ValueError, which says ``message`` and is one sentence, and takes little memory."""
+    """Reading raises one ValueError, which has ``message`` in its one sentence, and takes little memory."""
     tracemalloc.start()
     try:
         with pytest.raises(ValueError, match=message) as caught:
@@ -57,13 +57,13 @@ def test_a_look_at_the_header_finds_what_is_wrong(good, tmp_path, kind):
 
 
 @pytest.mark.parametrize("place", [10**12, 2**64 - 1])
-def test_where_records_would_start_that_a_file_has_none_of_does_not_matter(good, tmp_path, place):
+def test_the_start_of_extended_records_is_ignored_where_there_are_none(good, tmp_path, place):
     (tmp_path / "a.las").write_bytes(patched(good[".las"], 235, "<Q", place))
     assert len(read_cloud(tmp_path / "a.las")) == 60_000
 
 
-def test_a_damaged_record_does_not_spoil_the_sentence(good, tmp_path):
-    """Its name is whatever bytes are there, line breaks and other signs that can't be shown among them."""
+def test_the_name_of_a_damaged_record_is_left_out_if_it_can_not_be_shown(good, tmp_path):
+    """The bytes of the name have a line break and control characters."""
     path = tmp_path / "a.laz"
     raw = good[".laz"]
     assert raw[377:391] == b"laszip encoded"
@@ -183,7 +183,7 @@ def test_no_laz_package(good, tmp_path, monkeypatch):
     assert not list(tmp_path.glob("*b.*laz*"))
 
 
-def test_not_enough_memory_is_said(make_las, monkeypatch):
+def test_too_little_memory_is_refused(make_las, monkeypatch):
     def none_left(*_):
         raise MemoryError
 
@@ -196,7 +196,7 @@ def test_degrees_are_refused(make_las):
     refuse(make_las(vlrs=(vlr("LASF_Projection", 2112, b'GEOGCS["WGS 84",UNIT["degree",0.0174]]\0'),)), "degrees")
 
 
-def test_unreadable_file_is_said(make_las, monkeypatch):
+def test_an_unreadable_file_is_refused(make_las, monkeypatch):
     path = make_las()
 
     def closed(*_, **__):

@@ -1,4 +1,4 @@
-"""What pages say of the run that made them."""
+"""The part of pages that describes the run that made them."""
 
 from lidar_buildings.algorithms.report.page import Row, build_page, with_run
 from lidar_buildings.algorithms.report.run_facts import StepFacts, draw_first, draw_last

@@ -199,7 +199,7 @@ def test_fewer_points_than_a_plane(n):
     assert np.isnan(normals).all()
 
 
-def test_only_walls_says_that_none_has_the_slope(rng):
+def test_a_cloud_of_walls_alone_gives_a_warning_on_the_slope(rng):
     monitor = Monitor()
     xyz = plane(rng, 90)
     assert not segment_planes_ransac(xyz, np.ones(len(xyz)), monitor=monitor)[0].any()

@@ -95,7 +95,7 @@ def test_walls_become_square_where_their_points_allow_it(rng, angle, squared):
     assert between == pytest.approx(90 if squared else min(angle, 180 - angle), abs=1e-6 if squared else 0.5)
 
 
-def test_a_short_noisy_wall_gives_way_and_a_long_precise_one_does_not(rng):
+def test_a_short_noisy_wall_becomes_square_and_a_long_precise_one_does_not(rng):
     """A degree and a half off: within the noise of 2.5 m with few points, outside that of 12 m with many."""
     turn = np.deg2rad(88.5)
     way = np.array([np.cos(turn), np.sin(turn)])
@@ -124,7 +124,7 @@ def test_a_short_wall_that_a_bush_turns_keeps_the_direction_of_the_others(rng):
 
 
 def test_a_short_wall_without_anything_else_keeps_its_own_direction(rng):
-    """Six degrees off at 3 m, as precise as the others: no noise excuses it."""
+    """Six degrees off at 3 m, as precise as the others: more than noise explains."""
     turn = np.deg2rad(84)
     sides = [wall(rng, (0, 0), (8, 0), 20, 0.02), wall(rng, (0, 5), (8, 5), 20, 0.02)]
     xy = np.concatenate([*sides, wall(rng, (8, 0), (8 + 3 * np.cos(turn), 3 * np.sin(turn)), 20, 0.02)])
