@@ -1,4 +1,4 @@
-"""The methods of LiDAR Buildings as numpy functions that know nothing of QGIS.
+"""The methods of LiDAR Buildings as numpy functions, independent of QGIS.
 
 Conventions, written once and kept by every stage:
 

@@ -18,7 +18,7 @@ from .texts import tr
 # The group that the toolbox shows first.
 FIRST_GROUP = "Models"
 
-# What people look for that holds for every algorithm.
+# Search words that apply to every algorithm.
 _TAGS_OF_ALL = ("las", "laz", "copc", "pdal", "lidar", "point cloud")
 
 

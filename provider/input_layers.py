@@ -162,7 +162,7 @@ def _brought_to(
 
 
 def _range(box: QgsRectangle) -> str:
-    """Return the coordinates of a box as people read them."""
+    """Return the coordinates of a box as text for users."""
     return f"x {box.xMinimum():.7g} to {box.xMaximum():.7g}, y {box.yMinimum():.7g} to {box.yMaximum():.7g}"
 
 

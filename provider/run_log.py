@@ -106,7 +106,7 @@ def _short(value: Any) -> str:
 
 
 def written(tunable: Tunable, value: Any) -> str:
-    """Return the value of a tunable as people read it."""
+    """Return the value of a tunable as text."""
     if value is None:
         return tunable.param.unset
     if value == "" or isinstance(value, bool):

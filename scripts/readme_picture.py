@@ -1,6 +1,6 @@
 """Take the picture of the README in the 3D view: models of the buildings of a cloud.
 
-Runs inside QGIS, with the plugin enabled in the profile, on a screen that need not be there. TILE is the cloud; the
+Runs inside QGIS, with the plugin enabled in the profile, on a real or virtual screen. TILE is the cloud; the
 picture in the repository shows ahn3-delft (AHN3, Dutch open data)::
 
     TILE=tile.laz xvfb-run -s "-screen 0 1400x900x24" qgis --nologo --noversioncheck --code scripts/readme_picture.py

@@ -35,7 +35,7 @@ class Cloud:
     Attributes
     ----------
     header : Header
-        Of the file, or as made for a new cloud.
+        The header of the file, or the one made for a new cloud.
     points : structured array, (n,)
         The records, laid out as ``header.layout``. The array is never changed; moving
         points puts another in its place.
@@ -185,7 +185,7 @@ class Cloud:
         return copy
 
     def named(self, name: str) -> np.ndarray:
-        """Return any dimension that the cloud has, (n,), by the name that people know it by.
+        """Return any dimension that the cloud has, (n,), by the name that users see.
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ class Cloud:
 
     @property
     def dimension_names(self) -> list[str]:
-        """Names of all dimensions as people know them, see :meth:`named`."""
+        """Names of all dimensions as users see them, see :meth:`named`."""
         return list(dict.fromkeys(shown for shown, _ in self._known().values()))
 
     def _known(self) -> dict[str, tuple[str, Callable[[], np.ndarray]]]:

@@ -52,7 +52,7 @@ NO_CRS = "The input has no coordinate reference system; its coordinates are take
 
 @dataclass(frozen=True)
 class Units:
-    """Meters per unit of the file's coordinates, and what a person should know about them."""
+    """Meters per unit of the file's coordinates, and a warning for users about them."""
 
     horizontal: float = 1.0
     vertical: float = 1.0

@@ -1,1 +1,1 @@
-"""Geometry of plain arrays: grids, rings, segments, triangulations, and groups of items. Knows no point cloud."""
+"""Geometry of plain arrays: grids, rings, segments, triangulations, and groups of items; no point clouds."""

@@ -169,7 +169,7 @@ def merged(occurring: np.ndarray, groups: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def _called(numbers: np.ndarray) -> str:
-    """Return what people call classes: their numbers, and the name of their kind or of the class."""
+    """Return the names of classes for users: their numbers, and the name of their kind or of the class."""
     classes = {int(number) for number in numbers}
     kinds = {"unclassified": _UNCLASSIFIED, **_KINDS}
     kind = next((name for name, members in kinds.items() if len(classes) > 1 and classes <= set(members)), "")

@@ -366,5 +366,5 @@ def _shift_rows(moved: np.ndarray) -> list[Row]:
 
 
 def _meters(value: float) -> str:
-    """Return a length as people read it."""
+    """Return a length as text for users."""
     return "undefined" if math.isnan(value) else f"{value:.3f} m"

@@ -50,7 +50,7 @@ _POSITION = re.compile(r'<span data-east="([-\d.]+)" data-north="([-\d.]+)">[^<]
 
 @dataclass(frozen=True)
 class Row:
-    """One figure: its name, its value as people read it, and a sentence that says what it means."""
+    """One figure: its name, its value as text, and a sentence that says what it means."""
 
     name: str
     value: str
@@ -58,7 +58,7 @@ class Row:
 
 
 def percent(value: float) -> str:
-    """Return a percentage as people read it."""
+    """Return a percentage as text."""
     return "undefined" if math.isnan(value) else f"{value:.1f} %"
 
 

@@ -12,10 +12,10 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 from .candidate_points import candidates
 
-# A gap of three spacings is no accident of random sampling on a surface: one point in 10^12 has such a hole around it.
+# A gap of three spacings is hardly due to random sampling of a surface: one point in 10^12 has such a hole around it.
 _RADIUS_SPACINGS = 3.0
 
-# The corner of a surface sees a quarter of what its middle sees.
+# A point at the corner of a surface has a quarter of the neighbors of one in its middle.
 _CORNER = 0.25
 
 

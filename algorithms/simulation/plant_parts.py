@@ -1,4 +1,4 @@
-"""The parts of an industrial plant: surfaces that are sampled with points and know what they are."""
+"""The parts of an industrial plant: surfaces that are sampled with points, each with its kind."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ Both may write ``xyz``, and both leave withheld points out.
 
 Everything a user sees of a stage (dialog, tooltip, help, bounds, composite
 parameters) is derived from this declaration and written nowhere else. This
-package needs the standard library and numpy only and knows nothing of QGIS.
+package needs the standard library and numpy only, and is independent of QGIS.
 """
 
 from .arguments import REFERENCE_PREFIX

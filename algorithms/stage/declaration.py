@@ -53,10 +53,10 @@ class Stage:
     #: Values that it measures on its results, and of which parts of a cloud take those of the whole, see
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
-    #: What the second cloud is, of a stage that reads one
+    #: Description of the second cloud of a stage that reads one
     reference: str = "The same points with the true values, to compare with."
-    #: Of a stage that makes a page of layers and, optionally, points: a function that returns of these layers the boxes
-    #: (k, 2, 2), m, in which it shows every point. Elsewhere the topmost points are enough, as it is given of a survey.
+    #: For a stage that makes a page of layers and, optionally, points: a function that returns the boxes (k, 2, 2), m,
+    #: in which it shows every point. Elsewhere it shows the topmost points, and of a survey it gets no others there.
     shows: Optional[Callable[..., np.ndarray]] = None
 
     @property

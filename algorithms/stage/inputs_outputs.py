@@ -87,7 +87,7 @@ class InputLayer:
 
     @property
     def objects(self) -> str:
-        """What people call its geometries: polygons, lines or points."""
+        """The name of its geometries for users: polygons, lines or points."""
         return {"Polygon": "polygons", "LineString": "lines", "Point": "points"}[self.geometry]
 
 

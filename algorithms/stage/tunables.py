@@ -30,7 +30,7 @@ class Param:
 
     @property
     def title(self) -> str:
-        """Label with its unit, as people read it."""
+        """Label with its unit, for users."""
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
     @property
@@ -56,7 +56,7 @@ class Param:
         return " and ".join(part for part in (low, high) if part)
 
     def written(self, number: float) -> str:
-        """Return a number with the unit, as people write it: 4 m², 20°, 10,000 m."""
+        """Return a number with the unit, as text: 4 m², 20°, 10,000 m."""
         digits = f"{number:,d}" if isinstance(number, int) else f"{number:g}"
         return digits + self.unit if self.unit == "°" else f"{digits} {self.unit}".rstrip()
 

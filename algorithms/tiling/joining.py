@@ -154,7 +154,7 @@ def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:
 class References:
     """How points refer to features by a dimension: the numbers of features are those of their points."""
 
-    counts: list[dict[int, int]]  #: Of each block how many of its points have each number there
+    counts: list[dict[int, int]]  #: For each block the number of its points with each number there
     #: What numbers of features are now, by the position of the block and the number in it
     known: dict[tuple[int, int], int] = field(default_factory=dict)
 

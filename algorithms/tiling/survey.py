@@ -54,7 +54,7 @@ class Survey:
     """Files that are tiles of one cloud."""
 
     sources: tuple[Source, ...]  #: The files
-    header: Header  #: Of all points as one cloud: finest scale, all dimensions
+    header: Header  #: The header of all points as one cloud: finest scale, all dimensions
     units: Units  #: Meters per unit of the coordinates
     wkt: str  #: Coordinate reference system, as :attr:`.Cloud.wkt`
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))  #: What local coordinates are relative to, m

@@ -54,7 +54,7 @@ class TiledPipeline:
 
     @property
     def title(self) -> str:
-        """What people call it."""
+        """Its name for users."""
         return f"{self.pipeline.title}, in tiles"
 
     @property

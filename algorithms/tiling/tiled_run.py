@@ -37,7 +37,7 @@ class RunSettings:
     monitor: Monitor
     workers: Workers
     tunables: dict[str, Any]
-    suffix: str  #: Of tiles: LAZ or LAS
+    suffix: str  #: Extension of the tiles: LAZ or LAS
     crs_units: Optional[Resolver]
     crs: Optional[tuple[str, str]]
     shown: bool

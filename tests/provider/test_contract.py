@@ -196,7 +196,7 @@ def test_the_toolbox_begins_with_the_models_and_these_with_detect_buildings(prov
         ("pdal", "detectbuildings"),
     ],
 )
-def test_words_that_people_type_find_it(provider, word, wanted):
+def test_words_that_users_type_find_it(provider, word, wanted):
     assert word in [tag.lower() for tag in provider.algorithm(wanted).tags()]
 
 

@@ -32,7 +32,7 @@ def block():
 
 
 def test_outlines_follow_fronts_with_their_bays_and_recesses(block):
-    """Corners of fronts within 2 cm, although the outlines know none of the steps; those of the yard stay."""
+    """Corners of fronts within 2 cm, although the outlines have none of the steps; those of the yard stay."""
     made, layers, _ = block
     found = np.concatenate([rings[0][:-1, :2] for rings in made.layers["buildings"].geometries])
     fronts = np.concatenate([ring[:2, :2] for (ring,) in layers["facades"].geometries])

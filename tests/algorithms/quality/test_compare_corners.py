@@ -262,7 +262,7 @@ def test_swapping_the_maps_turns_the_arrows():
     assert there[2].values["missed"] == back[2].values["new"] == 1
 
 
-# --- what people give ------------------------------------------------------------------------------------------------
+# --- parameters of users ---------------------------------------------------------------------------------------------
 
 
 def test_buildings_are_called_by_their_id():

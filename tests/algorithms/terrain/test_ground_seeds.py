@@ -107,7 +107,7 @@ def test_a_dike_is_terrain_though_windows_lift_it_off(rng):
 
 
 def test_a_steep_ridge_is_terrain_as_its_slope_is_measured_anew(rng):
-    """Rock at 50°: most of it is lifted off as by windows over flat terrain, and not by those that know its slope."""
+    """Rock at 50°: most of it is removed by windows over flat terrain, and not by those that follow its slope."""
     plan = even(120, 60, 0.9) + rng.uniform(-0.4, 0.4, (len(even(120, 60, 0.9)), 2))
     z = 1.2 * np.clip(30 - np.abs(plan[:, 0] - 60), 0, 27) + rng.normal(0, 0.02, len(plan))
     seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), 1.0, None, Monitor())
@@ -150,7 +150,7 @@ def test_a_narrow_yard_is_no_pit(rng):
     assert is_yard[seeds].sum() >= 9
 
 
-def test_what_lies_deep_farther_off_makes_no_terrain_of_stray_points(rng):
+def test_stray_points_as_deep_as_ground_farther_off_are_no_terrain(rng):
     """On a terrace some points lie as deep as the plain; at its edge they may be of it, but not 15 m from there."""
     plan = even(100, 60, 1.0) + rng.uniform(0.0, 0.9, (len(even(100, 60, 1.0)), 2))
     is_stray = (rng.random(len(plan)) < 0.03) & (plan[:, 0] < 45)
@@ -218,7 +218,7 @@ def test_a_flat_hill_as_large_as_a_hall_is_terrain(rng):
 
 
 def test_a_low_house_with_a_large_roof_on_a_slope_is_no_bank(rng):
-    """Windows shave its hip roof down little by little, and uphill its eaves are hardly 1.3 m over the lawn."""
+    """Growing windows remove its hip roof little by little, and uphill its eaves are hardly 1.3 m over the lawn."""
     plan = even(70, 70, 0.5) + rng.uniform(-0.2, 0.2, (len(even(70, 70, 0.5)), 2))
     terrain = 0.08 * plan[:, 0]
     inward = 7.0 - np.abs(plan - 35).max(axis=1)
@@ -240,7 +240,7 @@ def test_a_garage_built_into_the_slope_beside_a_high_building_is_no_terrain(rng)
     assert (~is_roof[seeds]).sum() > 0.45 * (~is_roof).sum()
 
 
-def test_a_roof_that_meets_a_steep_slope_is_none_where_it_is_high_over_it(rng):
+def test_a_roof_that_meets_a_steep_slope_is_no_terrain_where_it_is_high_over_it(rng):
     """A house of 12 m on a slope of 0.5: 6 m over the terrain downhill, where it would be no steeper than that."""
     plan = even(80, 80) + rng.uniform(-0.3, 0.3, (len(even(80, 80)), 2))
     terrain = 0.5 * plan[:, 0]
