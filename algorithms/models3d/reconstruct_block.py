@@ -121,7 +121,7 @@ def reconstruct_block(
     outline of its eaves and moves onto it; walls with less than 3 m between them are joined. Of two parallel walls the
     outer one hides the end of the inner one, so the step between them is at the end of the outer one. A facade that
     ends near a corner of the footprint is the corner. Windows and doors lie in the plane of the wall, 3 cm from its
-    edges at least; those that cross an edge of a wall are left out, and their number is said.
+    edges at least; those that cross an edge of a wall are left out, and their number is reported.
 
     References
     ----------

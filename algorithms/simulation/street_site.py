@@ -62,7 +62,7 @@ def _position(x: float, y: float) -> tuple[float, float]:
 
 
 def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np.random.Generator) -> None:
-    """Put a house with balconies on its front, as high over the middle of its ground as is said."""
+    """Put a house with balconies on its front, whose height counts from the middle of its ground."""
     number, ground = scene.new_id(), float(scene.relief.ground(rect.x, rect.y))
     tops = gable(rect, ground + eave, _PITCH) if has_gable else flat(rect, ground + eave)
     solids = [Solid(rect, tops, ground - 3.0, PointClass.BUILDING, number)]

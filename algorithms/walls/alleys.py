@@ -31,7 +31,7 @@ def find_alley(outline: WallOutline, limits: Limits, min_area: float) -> Optiona
     outline : WallOutline
         Outline of the houses that were taken for one building.
     limits : Limits
-        What walls may be like; roofs that meet over an alley jut out over it from both sides.
+        Limits of walls; roofs that meet over an alley jut out over it from both sides.
     min_area : float
         Smallest house, m²: least area of the outline behind each of the two walls.
 

@@ -167,7 +167,7 @@ _ODD_FLOATS = (
 
 
 def odd_integer(rng: np.random.Generator, size: int, raw: bytes, old: int) -> int:
-    """Return an integer of ``size`` bytes as damage and malice make them, as unsigned."""
+    """Return an odd integer of ``size`` bytes, as in damaged or hostile files, as unsigned."""
     bits = 8 * size
     choices = (
         lambda: 0, lambda: 1, lambda: 2**bits - 1, lambda: 2**bits - 2, lambda: 2 ** (bits - 1),
@@ -180,7 +180,7 @@ def odd_integer(rng: np.random.Generator, size: int, raw: bytes, old: int) -> in
 
 
 def odd_float(rng: np.random.Generator, old: float = 1.0) -> float:
-    """Return a number of 8 bytes as damage and malice make them."""
+    """Return an odd number of 8 bytes, as in damaged or hostile files."""
     with np.errstate(all="ignore"):
         related = (-old, old * 1e6, old * 1e-6, old + 1e9, rng.normal() * 1e4)
     choices = (*_ODD_FLOATS, *related, struct.unpack("<d", rng.bytes(8))[0])

@@ -41,7 +41,7 @@ def test_a_canal_is_water_however_few_pulses_come_back(share, fall):
     assert f_score(on_ground(xyz), is_water) > 95
 
 
-def test_what_gives_all_pulses_back_is_no_water():
+def test_surfaces_that_return_all_pulses_are_no_water():
     assert not on_ground(canal(share=1.0)[0]).any()
 
 

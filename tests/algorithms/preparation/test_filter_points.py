@@ -1,4 +1,4 @@
-"""What passes a filter, point by point."""
+"""Which points a filter keeps."""
 
 import numpy as np
 import pytest
@@ -84,7 +84,7 @@ def test_limits_may_be_as_large_as_values_are():
     assert made.tolist() == [2, 3, 4]
 
 
-def test_limits_of_what_is_not_there_are_refused():
+def test_limits_of_missing_dimensions_are_refused():
     with pytest.raises(ValueError, match="need HeightAboveGround; run 'Height above ground' first or set none"):
         kept(max_height=2.5)
     with pytest.raises(ValueError, match="are limits of a dimension; name it"):
