@@ -58,6 +58,15 @@ _CLOUDS = {
     "ign-stbarth": ("villas on a hillside (IGN; bushes at the walls are class 6 there)", "25"),
     "ign-stbarth-4": ("the same, thinned", "4"),
 }
+_ALL_CLASSES = {
+    "ahn3-delft-4": ("Delft, thinned", "4"),
+    "amsterdam-centre-10": ("Amsterdam, canal belt", "4"),
+    "ahn-amsterdam-1": ("Amsterdam", "16"),
+    "ign-stbarth-4": ("villas on a hillside, thinned", "4"),
+    "ign-chalet": ("house in a forest", "54"),
+    "ign-forest-none": ("river in a forest", "87"),
+    "ign-bridge-none": ("motorway bridge", "26"),
+}
 _OURS, _PUBLISHED = (("chain", "default"),), (("chain", "2019"),)
 _RATES = (Column("completeness, %", "completeness"), Column("correctness, %", "correctness"))
 _F = Column("**F**, %", "F", bold=True)
@@ -194,6 +203,22 @@ TABLES = {
             Row(("Delft (AHN3, class 2)",), "ground", (("cloud", "ahn3-delft"),)),
         ),
         "accuracy.py ground",
+    ),
+    "classes": Shown(
+        ("cloud", "points per m²"),
+        tuple(
+            column
+            for heading, figure in (
+                ("accuracy, %", "accuracy, %"),
+                *((f"F of {one}", f"F of {one}") for one in ("ground", "plants", "buildings", "water")),
+            )
+            for column in (
+                Column(heading, figure, 1, (("program", "Detect buildings"),), bold=True),
+                Column("Whitebox's", figure, 1, (("program", "Whitebox classify_lidar"),)),
+            )
+        ),
+        tuple(Row(labels, "classes", (("cloud", name),)) for name, labels in _ALL_CLASSES.items()),
+        "accuracy.py classes",
     ),
     "footprints": Shown(
         ("Delft, outlined",),
