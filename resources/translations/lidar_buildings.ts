@@ -3480,7 +3480,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A wall belongs to the nearest footprint within 1.6 m. An edge of the footprint up to 0.5 m before a wall is the outline of its eaves and moves onto it; walls with less than 3 m between them are joined. Of two parallel walls the outer one hides the end of the inner one, so the step between them is at the end of the outer one. A facade that ends near a corner of the footprint is the corner. Windows and doors lie in the plane of the wall, 3 cm from its edges at least; those that cross an edge of a wall are left out, and their number is said.</source>
+        <source>A wall belongs to the nearest footprint within 1.6 m. An edge of the footprint up to 0.5 m before a wall is the outline of its eaves and moves onto it; walls with less than 3 m between them are joined. Of two parallel walls the outer one hides the end of the inner one, so the step between them is at the end of the outer one. A facade that ends near a corner of the footprint is the corner. Windows and doors lie in the plane of the wall, 3 cm from its edges at least; those that cross an edge of a wall are left out, and their number is reported.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
