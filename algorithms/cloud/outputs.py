@@ -103,7 +103,7 @@ def _identity(path: Path) -> tuple[int, ...]:
 
 
 class _File(io.FileIO):
-    """A file that remembers why writing failed: LAZ libraries pass on that it failed, not why."""
+    """A file that stores why writing failed: LAZ libraries report that it failed, not why."""
 
     failure: Optional[OSError] = None
 

@@ -1,4 +1,4 @@
-"""Houses of a row: where the roofs above an outline say that one house ends and the next begins.
+"""Houses of a row: where the roofs above an outline show that one house ends and the next begins.
 
 A party wall is seen along a straight line from one side of a building to the other. There two roofs rise away from it
 (the valley between gables side by side), parallel roofs step, or a wall rises above both.
@@ -166,7 +166,7 @@ class _Runs:
     shift : ndarray of shape (r,)
         Columns from there to where two lines fit the roof best.
     strength : ndarray of shape (r,)
-        How much speaks for it, m².
+        Strength of the evidence for it, m².
     misfit : ndarray of shape (r,)
         Mean deviation of the roof from two lines, m.
     is_clear : ndarray of shape (r,), bool
@@ -207,7 +207,7 @@ def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarr
     beside = (np.clip(column + at, 0, roof.shape[1] - 1) for at in (-1, 0, 1))
     before, here, after = (_sums(misfit, at, first, last) * step / length for at in beside)
     bend = before - 2 * here + after
-    # Beside a wall above both roofs the misfit is that of the wall, and its least value says nothing.
+    # Beside a wall above both roofs the misfit is that of the wall, and its least value is no evidence.
     is_sharp = bend > here / 2
     shift = np.where(is_sharp, np.clip((before - after) / np.where(is_sharp, 2 * bend, 1.0), -0.5, 0.5), 0.0)
     is_clear = (supported >= np.maximum(ROWS.narrowest, ROWS.seen * counted)) & (strength >= ROWS.evident * counted)
@@ -301,7 +301,7 @@ def _sums(values: np.ndarray, column: np.ndarray, first: np.ndarray, last: np.nd
 
 
 def _distinct(runs: _Runs, same: float) -> np.ndarray:
-    """Return one of the runs that lie side by side: where two lines fit the roof best, of those with much for them."""
+    """Return one of the runs that lie side by side: where two lines fit best, of those with strong evidence."""
     found = []
     column, first, last, strength = runs.column, runs.first, runs.last, runs.strength
     is_left = np.ones(len(column), bool)

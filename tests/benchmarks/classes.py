@@ -37,7 +37,7 @@ MERGED = {
     "noise": NOISE,
 }
 
-# A Python that has the package whitebox_workflows, which need not be this one.
+# The environment variable that names a Python with the package whitebox_workflows; by default it is this one.
 WHITEBOX = "WHITEBOX_PYTHON"
 _BY_WHITEBOX = """
 import sys, whitebox_workflows
@@ -48,7 +48,7 @@ environment.write_lidar(environment.lidar.filtering_classification.classify_lida
 
 
 def classes() -> list[Table]:
-    """Print the accuracy of merged classes and F of each, of *Detect buildings* and of Whitebox where it is."""
+    """Print the accuracy of merged classes and F of each, of *Detect buildings* and of Whitebox if installed."""
     figures = [f"F of {name}" for name in MERGED]
     table = Table("classes", "cloud", "program", "accuracy, %", *figures, texts=2)
     for name in WITH_CLASSES:
@@ -59,7 +59,7 @@ def classes() -> list[Table]:
 
 
 def rates(true: np.ndarray, made: np.ndarray) -> list[Optional[float]]:
-    """Return the accuracy of merged classes and F of each, percent; None of classes that the truth has not."""
+    """Return the accuracy of merged classes and F of each, percent; None for classes that the truth lacks."""
     is_true, is_made = (_merged(one) for one in (true, made))
     counted = is_true < len(MERGED)
     matrix = confusion(is_true[counted], is_made[counted], len(MERGED) + 1)

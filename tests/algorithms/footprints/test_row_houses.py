@@ -77,7 +77,7 @@ def test_houses_of_a_row_are_polygons_that_share_their_walls(rng, roof, density)
 
 @pytest.mark.parametrize("density", [6, 8])
 def test_triangles_that_a_wall_cuts_off_at_the_outline_cost_no_house(density):
-    """A corner of a triangle behind a wall was taken for a piece too small for a house, and the wall was given up."""
+    """A corner of a triangle behind a wall was taken for a piece too small for a house, and the wall was left out."""
     for seed in range(6):
         found, _ = outlined(np.random.default_rng(seed), flat_steps, density, houses=8, angle=0.3 * seed)
         assert found.columns["area"] == pytest.approx([WIDTH * DEPTH] * 8, rel=0.2)
@@ -144,7 +144,7 @@ def test_objects_side_by_side_that_are_no_houses_are_no_row(rng, roof):
     assert len(outlined(rng, roof, 12)[0]) == 1
 
 
-def test_no_house_is_narrower_than_houses_are(rng):
+def test_no_house_is_narrower_than_the_least_width(rng):
     """Steps every 3 m: at least 3.5 m lie between two walls, so that every other step is left out."""
 
     def narrow(a, v, number):

@@ -40,7 +40,7 @@ def test_outside_the_ground_the_nearest_ground_point_is_used_and_the_log_has_the
     assert "4 of 9 points" in monitor.infos[0]
 
 
-def test_inside_the_ground_nothing_is_said():
+def test_inside_the_ground_nothing_is_reported():
     monitor = Monitor()
     compute_height_above_ground(np.array([[0, 0, 1], [4, 0, 2], [0, 4, 3], [1, 1, 4.0]]), [2, 2, 2, 1], monitor=monitor)
     assert monitor.warnings == monitor.infos == []
@@ -100,7 +100,7 @@ def test_points_above_change_nothing(rng):
     np.testing.assert_array_equal(everything[:350], some)
 
 
-def test_what_stands_on_a_bridge_is_measured_from_its_deck():
+def test_objects_on_a_bridge_are_measured_from_its_deck():
     """A deck 6 m over a road, a car on it, and a lamp beside the road under it."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 20, 0.5), np.arange(0, 20, 0.5)))
     road = np.column_stack([x, y, np.zeros(len(x))])
