@@ -43,8 +43,14 @@ def fields_of(layer: Layer, features: LayerFeatures) -> QgsFields:
     """Return the fields of a layer, and those of other columns that its features have: attributes of a map."""
     fields = QgsFields()
     for declared in _all_fields(layer, features):
-        fields.append(QgsField(declared.name, _TYPES[declared.type]))
+        fields.append(QgsField(declared.name, _type_in_qgis(declared, features.columns[declared.name])))
     return fields
+
+
+def _type_in_qgis(declared: Field, column: Sequence) -> QMetaType.Type:
+    """Return the type of a field: with 64 bits where a whole number needs them, as keys of buildings in maps do."""
+    is_long = declared.type is int and any(value is not None and abs(value) >= 2**31 for value in column)
+    return QMetaType.Type.LongLong if is_long else _TYPES[declared.type]
 
 
 def _all_fields(layer: Layer, features: LayerFeatures) -> list[Field]:

@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry.groups import components
 from .heights_around import HeightsAround
 from .mending import mended
-from .roof_partition import FARTHEST, Partition, divide_footprint, empty_partition
+from .roof_partition import FARTHEST, Partition, divide_footprint, empty_partition, inside_rings
 from .roof_planes import RoofPlanes, find_roof_planes, with_level_patches
 from .roof_points import are_on_roof, distances, root_mean_square, share_off
 from .solids import Solid
@@ -270,16 +270,17 @@ def _enter(
     model.off = share_off(off)
     roof = over & are_on_roof(above, top.is_low)
     model.ridge = float(np.percentile(top.xyz[roof, 2], _RIDGE)) if roof.any() else np.nan
-    model.covered = _covered(top, partition)
+    model.covered = _covered(top)
     model.face_rms = {
         int(plane): root_mean_square(_off(top, above, label == plane)) for plane in np.unique(label[over])
     }
 
 
-def _covered(top: _Top, partition: Partition) -> float:
-    """Return the share of the footprint that has points, counted in cells of two spacings."""
+def _covered(top: _Top) -> float:
+    """Return the share of the footprint that has points: of the cells of two spacings whose middles it holds."""
     size = 2 * top.settings.spacing
-    area = float(partition.cells.areas()[partition.label >= 0].sum())
-    rows = [partition.cells.members[c] for c in np.flatnonzero(partition.label >= 0)]
-    cells = np.unique(np.floor(top.xyz[np.concatenate(rows), :2] / size), axis=0)
-    return min(1.0, len(cells) * size**2 / area) if area > 0 else np.nan
+    low, high = (np.floor(end / size).astype(int) for end in (top.rings[0].min(axis=0), top.rings[0].max(axis=0)))
+    cells = low + np.indices(high - low + 1).reshape(2, -1).T
+    cells = cells[inside_rings((cells + 0.5) * size, top.rings)]
+    used = set(map(tuple, np.floor(top.xyz[:, :2] / size).astype(int).tolist()))
+    return float(np.mean([tuple(cell) in used for cell in cells.tolist()])) if len(cells) else np.nan

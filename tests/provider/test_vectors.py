@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from qgis.core import Qgis
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
+    QgsVariantUtils,
+    QgsVectorFileWriter,
+    QgsVectorLayer,
+)
 
 from lidar_buildings.algorithms.stage import Field, Layer, LayerFeatures
 from lidar_buildings.provider.vectors import fields_of, plain, qgis_features, wkb_type
@@ -99,3 +106,16 @@ def test_other_columns_are_fields_of_their_type():
     first, second = qgis_features(layer, made, shifted)
     assert (first["year"], first["share"], first["mixed"]) == (1652, 0.5, "1")
     assert second["mixed"] == "y"
+
+
+def test_keys_of_a_map_with_more_than_32_bits_come_whole_into_a_file(tmp_path):
+    layer = Layer("things", "Things", "Polygon", FIELDS)
+    keys = [1680100000012345, None]
+    made = LayerFeatures([[SQUARE]] * 2, {"id": [1, 2], "height": [1.0, 2.0], "word": ["a", "b"], "key": keys})
+    path, options = str(tmp_path / "keys.gpkg"), QgsVectorFileWriter.SaveVectorOptions()
+    crs, context = QgsCoordinateReferenceSystem("EPSG:28992"), QgsCoordinateTransformContext()
+    writer = QgsVectorFileWriter.create(path, fields_of(layer, made), Qgis.WkbType.Polygon, crs, context, options)
+    assert writer.addFeatures(list(qgis_features(layer, made, shifted))), writer.errorMessage()
+    del writer
+    read = QgsVectorLayer(path, "keys", "ogr").getFeatures()
+    assert [None if QgsVariantUtils.isNull(one["key"]) else one["key"] for one in read] == keys

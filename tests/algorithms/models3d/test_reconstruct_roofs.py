@@ -188,6 +188,31 @@ def test_wrecked_models_sort_apart():
     assert sound["buildings"].columns["gap_area"][0] < 10
 
 
+@pytest.mark.parametrize("density", [4.0, 12.0])
+def test_the_area_of_a_hole_is_measured(density):
+    """Cells that reach beyond the outline counted whole, and hid a hole of a seventh of the roof."""
+    points, ring = SHAPES["gable"].scanned(density)
+    hole = np.hypot(*(points[:, :2] - [6.0, 4.0]).T) < 2.14
+    ground = np.random.default_rng(0).uniform((-5, -5, 0), (17, 13, 0), (1500, 3))
+    xyz = np.concatenate([points[~hole], ground])
+    classes = np.repeat([6, 2], [np.sum(~hole), len(ground)]).astype(np.uint8)
+    layers, _, _ = reconstructed(xyz, classes, LayerFeatures([[ring]], {"id": [1]}))
+    facts = layers["buildings"].columns
+    # Cells are two spacings wide: up to half of those that the edge of the hole crosses may count as full.
+    edge = 2 * np.pi * 2.14 * 2 / np.sqrt(density) / 2
+    assert facts["gap_area"] == pytest.approx([np.pi * 2.14**2], abs=edge)
+    assert facts["covered"] == pytest.approx([1 - facts["gap_area"][0] / 96], abs=0.01)
+
+
+def test_keys_of_sixteen_digits_are_whole_where_others_are_missing():
+    xyz, classes, footprints = scene(SHAPES["gable"])
+    beside = [[footprints.geometries[0][0] + 40.0]]
+    house = LayerFeatures(footprints.geometries + beside, {"key": np.array([1680100000012345.0, np.nan])})
+    layers, files, _ = reconstructed(xyz, classes, house, id_field="key")
+    assert layers["buildings"].columns["building"] == ["1680100000012345"]
+    assert list(json.loads(written(files, "cityjson", CITYJSON))["CityObjects"]) == ["1680100000012345"]
+
+
 def test_five_points_make_no_model():
     xyz, classes, footprints = scene(SHAPES["flat"])
     few = np.flatnonzero(classes == 6)[::230]
