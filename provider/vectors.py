@@ -23,7 +23,12 @@ from qgis.PyQt.QtCore import QMetaType
 
 from ..algorithms.stage import Field, Layer, LayerFeatures
 
-_TYPES = {int: QMetaType.Type.Int, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
+_TYPES = {
+    bool: QMetaType.Type.Bool,
+    int: QMetaType.Type.Int,
+    float: QMetaType.Type.Double,
+    str: QMetaType.Type.QString,
+}
 _WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
 SOURCE_TYPES = {
     "Polygon": Qgis.ProcessingSourceType.VectorPolygon,
@@ -62,7 +67,7 @@ def _all_fields(layer: Layer, features: LayerFeatures) -> list[Field]:
 def _type_of(column: Sequence) -> type:
     """Return the type that all values of a column have, text where they differ."""
     types = {type(value) for value in column if value is not None}
-    return next((kind for kind in (int, float) if types and types <= {int, kind}), str)
+    return bool if types == {bool} else next((kind for kind in (int, float) if types and types <= {int, kind}), str)
 
 
 def wkb_type(layer: Layer, features: LayerFeatures) -> Qgis.WkbType:

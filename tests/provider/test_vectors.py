@@ -12,6 +12,7 @@ from qgis.core import (
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import QMetaType
 
 from lidar_buildings.algorithms.stage import Field, Layer, LayerFeatures
 from lidar_buildings.provider.vectors import fields_of, plain, qgis_features, wkb_type
@@ -96,16 +97,18 @@ def test_other_columns_are_fields_of_their_type():
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], float)
     columns = {"id": [1, 2], "height": [1.0, 2.0], "word": ["a", "b"]}
     others = {"year": [1652, None], "share": [0.5, 1], "name": ["x", None], "mixed": [1, "y"], "empty": [None, None]}
+    others["listed"] = [True, None]
     made = LayerFeatures([[square]] * 2, {**columns, **others})
     fields = fields_of(layer, made)
     types = {field.name(): field.typeName().lower() for field in fields}
-    assert list(types)[3:] == ["year", "share", "name", "mixed", "empty"]
+    assert list(types)[3:] == ["year", "share", "name", "mixed", "empty", "listed"]
     assert types["year"] == types["id"]
     assert types["share"] == types["height"]
     assert types["name"] == types["mixed"] == types["empty"] == types["word"]
     first, second = qgis_features(layer, made, shifted)
     assert (first["year"], first["share"], first["mixed"]) == (1652, 0.5, "1")
     assert second["mixed"] == "y"
+    assert (first["listed"], fields["listed"].type()) == (True, QMetaType.Type.Bool)
 
 
 def test_keys_of_a_map_with_more_than_32_bits_come_whole_into_a_file(tmp_path):
