@@ -2596,7 +2596,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;gap_area (m²)&lt;/i&gt;: its area without points</source>
+        <source>&lt;i&gt;gap_area (m²)&lt;/i&gt;: its area without points; largest first, it shows holes too small for check</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
