@@ -34,7 +34,7 @@ from ..algorithms.tiling.settings import SETTINGS
 from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
 from ..algorithms.tiling.tile_writing import SHOWN
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
-from ..algorithms.tiling.tiled_run import TilesOutcome
+from ..algorithms.tiling.tiled_run import TilesOptions, TilesOutcome
 from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
@@ -263,16 +263,18 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             self.paths,
             folder,
             monitor.part(0.0, _DONE),
-            workers=self.workers,
-            block_side=None if side is None else self.parameterAsDouble(parameters, BLOCK_SIDE, context),
-            compressed=self.parameterAsBool(parameters, COMPRESSED, context),
-            crs_units=crs_units,
-            extent=self.extent,
-            find_layers=find_layers,
-            take_raster=take_raster if wanted else None,
-            take_file=take_file,
-            crs=(self.crs.toWkt(FULL), code_of(self.crs)) if self.crs.isValid() else None,
-            shown=self.shows,
+            TilesOptions(
+                workers=self.workers,
+                block_side=None if side is None else self.parameterAsDouble(parameters, BLOCK_SIDE, context),
+                compressed=self.parameterAsBool(parameters, COMPRESSED, context),
+                crs_units=crs_units,
+                extent=self.extent,
+                find_layers=find_layers,
+                take_raster=take_raster if wanted else None,
+                take_file=take_file,
+                crs=(self.crs.toWkt(FULL), code_of(self.crs)) if self.crs.isValid() else None,
+                shown=self.shows,
+            ),
             **self.tunables,
         )
 

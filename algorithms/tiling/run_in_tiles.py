@@ -17,8 +17,7 @@ import numpy as np
 
 from ..cloud.copc_index import has_index
 from ..cloud.files import readable
-from ..cloud.outputs import LAS, LAZ
-from ..cloud.units import Resolver
+from ..cloud.outputs import LAS
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
@@ -38,19 +37,14 @@ from .tiled_run import (
     JOINED,
     SAMPLED,
     WORKED,
-    FindLayers,
     RunSettings,
-    TakeFile,
-    TakeRaster,
+    TilesOptions,
     TilesOutcome,
     WorkedOn,
 )
 from .tiled_steps import in_blocks, layers_of, owners, tunables_of, why_whole
 from .work_folder import remove_work, work_folder
-from .workers import Workers, run_all
-
-# A file of more points is cut first: read again for each of its blocks it would be read too often.
-_LARGEST_FILE = 25_000_000
+from .workers import run_all
 
 # Seconds between two messages about how far it is.
 _BETWEEN_MESSAGES = 10.0
@@ -61,18 +55,7 @@ def run_in_tiles(
     paths: Iterable[Union[str, Path]],
     folder: Union[str, Path],
     monitor: Optional[Monitor] = None,
-    *,
-    workers: Optional[Workers] = None,
-    block_side: Optional[float] = None,
-    compressed: bool = True,
-    crs_units: Optional[Resolver] = None,
-    largest_file: int = _LARGEST_FILE,
-    extent: Optional[np.ndarray] = None,
-    find_layers: Optional[FindLayers] = None,
-    take_raster: Optional[TakeRaster] = None,
-    take_file: Optional[TakeFile] = None,
-    crs: Optional[tuple[str, str]] = None,
-    shown: bool = False,
+    options: Optional[TilesOptions] = None,
     **tunables: Any,
 ) -> TilesOutcome:
     """Run a composite on a survey; write its classified tiles to a folder and return its layers.
@@ -88,37 +71,15 @@ def run_in_tiles(
     pipeline : Pipeline
         A composite that works on one cloud and keeps its points.
     paths : iterable of str or Path
-        Files, virtual point clouds or folders. Each file becomes a tile of the same name; a file of more than
-        ``largest_file`` points becomes tiles of the size of a block. It is cut by its index where it is a COPC file,
+        Files, virtual point clouds or folders. Each file becomes a tile of the same name; a file of more points than
+        ``options.largest_file`` becomes tiles of the size of a block. It is cut by its index where it is a COPC file,
         else into pieces that lie uncompressed beside the tiles while they are worked on.
     folder : str or Path
         Where the tiles go; it is made where it is missing.
     monitor : Monitor, optional
         Receives progress, and how far it is in words.
-    workers : Workers, optional
-        Processes of this machine, one for each core, where nothing is given.
-    block_side : float, optional
-        Side of a block, m; None is the largest multiple of 50 m from 100 to 1600 m with room for its points, of 10 m
-        where none has.
-    compressed : bool
-        Tiles as LAZ, or as LAS.
-    crs_units : callable, optional
-        As for :func:`.read_cloud`.
-    largest_file : int
-        Points of the largest file that is read as it is.
-    extent : ndarray of shape (2, 2), optional
-        Least and greatest easting and northing, in coordinates of the files: only points within are worked on, and
-        written, edges included.
-    find_layers : callable, optional
-        Is given the survey, and returns by name the layers that the composite is given, in meters from its origin.
-    take_raster : callable, optional
-        Is given the survey and each raster, while the parts of it are there.
-    take_file : callable, optional
-        Is given the survey, and name and content of each text file, while the parts of it are there.
-    crs : tuple of str, optional
-        The coordinate reference system of files that name none, as for :func:`.open_survey`; tiles get it too.
-    shown : bool
-        Write each tile as COPC too, into a folder "shown" among the tiles: QGIS shows the points of no other tiles.
+    options : TilesOptions, optional
+        How files are read, worked on and written.
     **tunables
         Tunables of the composite, by their names.
 
@@ -128,20 +89,15 @@ def run_in_tiles(
         If the composite can't be run in tiles, an input can't be read or is in the folder, another run works in it, or
         a tunable is unknown.
     """
-    monitor, workers, folder = monitor or Monitor(), workers or Workers(), Path(folder)
+    monitor, options, folder = monitor or Monitor(), options or TilesOptions(), Path(folder)
     check_can_be_tiled(pipeline)
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
     given = [Path(path) for path in paths]
-    survey = open_survey(given, crs_units, monitor, extent, crs)
+    survey = open_survey(given, options.crs_units, monitor, options.extent, options.crs)
     check_folder(folder, [*files_of_survey(given), *given])
     with work_folder(folder) as work:
-        suffix = LAZ if compressed else LAS
-        settings = RunSettings(
-            *(pipeline, folder, work, monitor, workers, tunables, suffix, crs_units, crs, shown),
-            *(find_layers, take_raster, take_file),
-        )
-        outcome = _Run(settings, survey).all(block_side, largest_file)
+        outcome = _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
     if not outcome.failures:
         # Windows removes no lock that is open.
         remove_work(work)
@@ -182,13 +138,13 @@ class _Run:
         # Large files that are cut by their index.
         self.by_index: list[Path] = []
 
-    def all(self, block_side: Optional[float], largest_file: int) -> TilesOutcome:
+    def all(self) -> TilesOutcome:
         """Sample, work on the blocks, join what they found, write the tiles."""
         settings, folders = self.settings, {source.path.parent for source in self.survey.sources}
-        plan = self._plan(block_side, largest_file)
+        plan = self._plan()
         outcome = TilesOutcome(self.survey, [], sampling=plan.samplings[""], side=plan.side, points=len(self.survey))
         steps = SurveySteps(settings, outcome)
-        with settings.workers.open(folders | {settings.folder}) as executor:
+        with settings.options.workers.open(folders | {settings.folder}) as executor:
             blocks = self._work_on_blocks(executor, plan)
             outcome.take(blocks)
             kept = self._join(blocks, outcome)
@@ -203,15 +159,15 @@ class _Run:
         self.monitor.progress(1.0)
         return outcome
 
-    def _plan(self, block_side: Optional[float], largest_file: int) -> _Plan:
+    def _plan(self) -> _Plan:
         """Measure how the survey is sampled and choose the side of its blocks; cut files that are too large."""
         settings = self.settings
         halo = settings.pipeline.reach(settings.tunables)
         samplings = samplings_of(settings.pipeline, self.survey, settings.tunables, self.monitor.part(0.0, CUT))
-        side = block_side or side_of_blocks(samplings[""].density, halo)
+        side = settings.options.block_side or side_of_blocks(samplings[""].density, halo)
         self.monitor.resolved(sampling=samplings[""])
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
-        self._cut_large_files(side, largest_file)
+        self._cut_large_files(side)
         return _Plan(samplings, side, halo)
 
     def _join(self, blocks: WorkedOn, outcome: TilesOutcome) -> dict[str, np.ndarray]:
@@ -226,21 +182,21 @@ class _Run:
 
     def _pass_on(self, blocks: WorkedOn, kept: dict[str, np.ndarray]) -> None:
         """Hand over rasters, text files and warnings."""
-        settings, paths = self.settings, [path for _, path in blocks.done]
-        if settings.take_raster:
+        settings, options, paths = self.settings, self.settings.options, [path for _, path in blocks.done]
+        if options.take_raster:
             for mosaic in join_rasters(paths, blocks.found):
-                settings.take_raster(self.survey, mosaic)
-        if settings.take_file:
+                options.take_raster(self.survey, mosaic)
+        if options.take_file:
             for name, content in join_files(settings.pipeline, paths, kept).items():
-                settings.take_file(self.survey, name, content)
+                options.take_file(self.survey, name, content)
         self._warn_of_blocks(blocks.found)
 
-    def _cut_large_files(self, side: float, largest_file: int) -> None:
+    def _cut_large_files(self, side: float) -> None:
         """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place.
 
         Of a COPC file each block reads what it needs.
         """
-        large = [source for source in self.survey.sources if source.header.count > largest_file]
+        large = [source for source in self.survey.sources if source.header.count > self.settings.options.largest_file]
         self.by_index = [source.path for source in large if has_index(source.header)]
         large = [source for source in large if source.path not in self.by_index]
         if not large:
@@ -266,7 +222,8 @@ class _Run:
 
     def _opened(self, paths: list[Path]) -> Survey:
         """Return files as a survey of the same extent."""
-        return open_survey(paths, self.settings.crs_units, extent=self.survey.extent, crs=self.settings.crs)
+        options = self.settings.options
+        return open_survey(paths, options.crs_units, extent=self.survey.extent, crs=options.crs)
 
     def _key(self, paths: Iterable[Path], *facts: Any) -> str:
         """Return a name for the result of files in their present state, of facts, tunables and this version."""

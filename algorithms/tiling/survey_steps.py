@@ -50,7 +50,8 @@ class SurveySteps:
         settings, outcome = self.settings, self.outcome
         if not steps or not outcome.layers:
             return
-        given = settings.find_layers(outcome.survey) if settings.find_layers else {}
+        find = settings.options.find_layers
+        given = find(outcome.survey) if find else {}
         chosen = {step.name: of_step for step, of_step in settings.pipeline.by_step(settings.tunables)}
         for step in steps:
             monitor = settings.monitor.part(JOINED, JOINED, f"{step.name}_")

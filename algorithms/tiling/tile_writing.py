@@ -51,7 +51,7 @@ class TileWriter:
     def _tasks(self, blocks: WorkedOn, becomes: list[Path]) -> list[TileTask]:
         """Return the tiles to write."""
         settings, outcome, survey = self.settings, self.outcome, self.outcome.survey
-        if settings.shown:
+        if settings.options.shown:
             (settings.folder / SHOWN).mkdir(exist_ok=True)
         tasks: list[TileTask] = []
         done, boxes, lost = blocks.done, _boxes(blocks.positions), _boxes([block for block, _ in blocks.failed])
@@ -89,10 +89,10 @@ class TileWriter:
     ) -> TileTask:
         """Return the task of a tile that a file, or a piece of it, becomes."""
         settings, survey = self.settings, self.outcome.survey
-        target = settings.folder / f"{name}{settings.suffix}"
-        shown = settings.folder / SHOWN / f"{name}{COPC}" if settings.shown else None
+        target = settings.folder / f"{name}{settings.options.suffix}"
+        shown = settings.folder / SHOWN / f"{name}{COPC}" if settings.options.shown else None
         of_survey = settings.stop, survey.units, survey.extent
-        return TileTask(path, number, target, parts, numbers, *of_survey, piece, self.view, settings.crs, shown)
+        return TileTask(path, number, target, parts, numbers, *of_survey, piece, self.view, settings.options.crs, shown)
 
 
 def _boxes(blocks: list[Block]) -> np.ndarray:

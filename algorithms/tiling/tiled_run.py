@@ -8,6 +8,7 @@ from typing import Any, Callable, Optional
 
 import numpy as np
 
+from ..cloud.outputs import LAS, LAZ
 from ..cloud.units import Resolver
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
@@ -28,6 +29,41 @@ TakeFile = Callable[[Survey, str, FileContent], None]
 
 
 @dataclass(frozen=True)
+class TilesOptions:
+    """How a survey is read, worked on and written in tiles, and who gives and takes what is no point."""
+
+    #: Processes of this machine, by default one for each core
+    workers: Workers = Workers()
+    #: Side of a block, m; None is the largest multiple of 50 m from 100 to 1600 m with room for its points, of 10 m
+    #: where none has
+    block_side: Optional[float] = None
+    #: Points of the largest file that is read as it is: of a larger one too much is read again for each of its blocks
+    largest_file: int = 25_000_000
+    #: Least and greatest easting and northing (2, 2), in coordinates of the files: only points within are worked on,
+    #: and written, edges included
+    extent: Optional[np.ndarray] = None
+    #: As for :func:`.read_cloud`
+    crs_units: Optional[Resolver] = None
+    #: The coordinate reference system of files that name none, as for :func:`.open_survey`; tiles get it too
+    crs: Optional[tuple[str, str]] = None
+    #: Tiles as LAZ, or as LAS
+    compressed: bool = True
+    #: Write each tile as COPC too, into a folder "shown" among the tiles: QGIS shows the points of no other tiles
+    shown: bool = False
+    #: Is given the survey, and returns by name the layers that the composite is given, in meters from its origin
+    find_layers: Optional[FindLayers] = None
+    #: Is given the survey and each raster, while the parts of it are there
+    take_raster: Optional[TakeRaster] = None
+    #: Is given the survey, and name and content of each text file, while the parts of it are there
+    take_file: Optional[TakeFile] = None
+
+    @property
+    def suffix(self) -> str:
+        """Extension of the tiles."""
+        return LAZ if self.compressed else LAS
+
+
+@dataclass(frozen=True)
 class RunSettings:
     """Arguments of :func:`.run_in_tiles.run_in_tiles`, and the folder of the work in progress."""
 
@@ -35,15 +71,8 @@ class RunSettings:
     folder: Path
     work: Path
     monitor: Monitor
-    workers: Workers
+    options: TilesOptions
     tunables: dict[str, Any]
-    suffix: str  #: Extension of the tiles: LAZ or LAS
-    crs_units: Optional[Resolver]
-    crs: Optional[tuple[str, str]]
-    shown: bool
-    find_layers: Optional[FindLayers]
-    take_raster: Optional[TakeRaster]
-    take_file: Optional[TakeFile]
 
     @property
     def stop(self) -> Path:

@@ -19,6 +19,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, match_polygons, one_to_one, regularity
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.benchmarks.results import Table
 from lidar_buildings.tests.real.clouds import DELFT, detected, path_of, run_on, truth
@@ -175,7 +176,7 @@ def in_blocks(path: Path, side: float) -> list:
     """Return the footprints, in map coordinates, of *Detect buildings* in blocks of a side (m)."""
     with tempfile.TemporaryDirectory() as folder:
         detect = PIPELINES["detect_buildings"]
-        outcome = run_in_tiles(detect, [path], folder, workers=Workers(processes=1), block_side=side)
+        outcome = run_in_tiles(detect, [path], folder, options=TilesOptions(Workers(processes=1), side))
     origin = outcome.survey.origin[:2]
     return [[ring + origin for ring in rings] for rings in outcome.layers["footprints"].geometries]
 

@@ -46,6 +46,7 @@ from lidar_buildings.algorithms.tiling.block_plan import MOST_POINTS  # noqa: E4
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles  # noqa: E402
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles  # noqa: E402
 from lidar_buildings.algorithms.tiling.survey import open_survey  # noqa: E402
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions  # noqa: E402
 from lidar_buildings.algorithms.tiling.tiled_steps import of_survey  # noqa: E402
 from lidar_buildings.algorithms.tiling.workers import Workers  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
@@ -160,8 +161,7 @@ def measured(paths: list[Path], processes: int, block_side: Optional[float] = No
             paths,
             Path(folder) / "out",
             Watching(),
-            workers=Workers(processes=processes),
-            block_side=block_side,
+            TilesOptions(Workers(processes=processes), block_side),
         )
         seconds = time.monotonic() - start
     return Measured(seconds, memory.peak, memory.each, outcome, kept)
@@ -307,7 +307,7 @@ def agree(folder: Path) -> list[Table]:
         path = TILE.parents[1] / f"{cloud_name}.laz"
         whole = run_pipeline(of_survey(PIPELINES[name]), read_cloud(path), kept=()).cloud
         target = folder / f"{name}-{path.stem}"
-        made = run_in_tiles(PIPELINES[name], [path], target, block_side=side, compressed=False)
+        made = run_in_tiles(PIPELINES[name], [path], target, options=TilesOptions(block_side=side, compressed=False))
         tile = read_cloud(made.tiles[0])
         values = [_in_plan_order(one, dimension) for one in (whole, tile)]
         same, building = ((values[0] == values[1]).mean(), ((values[0] == 6) == (values[1] == 6)).mean())

@@ -32,6 +32,7 @@ from lidar_buildings.algorithms.simulation.simulate_plant import simulate_plant 
 from lidar_buildings.algorithms.simulation.simulate_street import simulate_street  # noqa: E402
 from lidar_buildings.algorithms.stage import LayerFeatures  # noqa: E402
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles  # noqa: E402
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions  # noqa: E402
 from lidar_buildings.algorithms.tiling.workers import Workers  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 
@@ -69,8 +70,8 @@ def compare(
         path = Path(folder) / "cloud.las"
         write_cloud(as_cloud(xyz, classification), path)
         start = time.process_time()
-        options = {"workers": Workers(processes=1), "block_side": side, "compressed": False}
-        outcome = run_in_tiles(pipeline, [path], Path(folder) / "tiles", **options, **tunables)
+        options = TilesOptions(Workers(processes=1), side, compressed=False)
+        outcome = run_in_tiles(pipeline, [path], Path(folder) / "tiles", options=options, **tunables)
         took.append(time.process_time() - start)
     others[f"{outcome.blocks} blocks"] = outcome.layers, outcome.survey.origin
     for layer, features in whole.items():

@@ -2,6 +2,7 @@
 
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import crs_of_survey, files_of_survey
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.las_files import made_las, random_records, vlr
 
@@ -25,6 +27,7 @@ QUICK = Pipeline("quick", "Quick", "Tests", "", "", "", "", (Step("clusters", "s
 RD = 'PROJCS["RD",UNIT["metre",1],AUTHORITY["EPSG","28992"]]'
 BOUNDS_AT = 179
 FEET = 'PROJCS["Oregon",UNIT["foot",0.3048],AUTHORITY["EPSG","2992"]]'
+OF_BLOCKS = TilesOptions(Workers(processes=1), 50.0, compressed=False)
 
 
 @pytest.fixture(autouse=True)
@@ -47,7 +50,7 @@ def make_las(tmp_path):
 
 
 def run(paths, folder):
-    return run_in_tiles(QUICK, paths, folder, workers=Workers(processes=1), block_side=50.0, compressed=False)
+    return run_in_tiles(QUICK, paths, folder, options=OF_BLOCKS)
 
 
 def tile(path, low, high, n=500, seed=0):
@@ -141,9 +144,7 @@ def test_a_tile_without_points_is_left_out_with_a_warning(laspy, tmp_path, first
     good = [tile(tmp_path / f"{name}.laz", (i * 20, 0), (i * 20 + 20, 20), seed=i) for i, name in enumerate("bc")]
     empty = without_points(laspy, tmp_path / ("a.laz" if first else "d.laz"))
     monitor = Monitor()
-    outcome = run_in_tiles(
-        QUICK, [tmp_path], tmp_path / "out", monitor, workers=Workers(processes=1), block_side=50.0, compressed=False
-    )
+    outcome = run_in_tiles(QUICK, [tmp_path], tmp_path / "out", monitor, OF_BLOCKS)
     assert not outcome.failures
     assert [one.name for one in outcome.tiles] == ["b.las", "c.las"]
     assert outcome.points == 1000
@@ -218,7 +219,7 @@ def test_a_point_far_from_all_others_is_worked_on_with_them(tmp_path, monkeypatc
         tile(tmp_path / "land.laz", (0, 0), (50, 50), n=2000),
         tile(tmp_path / "bird.laz", (250, 20), (251, 21), n=1),
     ]
-    done = run_in_tiles(ground, paths, tmp_path / "out", workers=Workers(processes=1), block_side=50.0)
+    done = run_in_tiles(ground, paths, tmp_path / "out", options=replace(OF_BLOCKS, compressed=True))
     assert not done.failures
     assert len(read_cloud(tmp_path / "out" / "bird.laz")) == 1
     assert (read_cloud(tmp_path / "out" / "land.laz").get("classification") == 2).mean() > 0.9
@@ -233,7 +234,7 @@ def test_islands_too_far_apart_for_one_surface_are_worked_on_one_by_one(tmp_path
     ]
     with pytest.raises(SparsePointsError):
         run_pipeline(ground, create_cloud({"xyz": np.concatenate([in_map(read_cloud(path)) for path in paths])}))
-    done = run_in_tiles(ground, paths, tmp_path / "out", workers=Workers(processes=1), block_side=50.0)
+    done = run_in_tiles(ground, paths, tmp_path / "out", options=replace(OF_BLOCKS, compressed=True))
     assert not done.failures
     for path in done.tiles:
         assert (read_cloud(path).get("classification") == 2).mean() > 0.9
@@ -251,18 +252,15 @@ def house_and_meadow(folder):
     return paths
 
 
-OF_BLOCKS = {"workers": Workers(processes=1), "block_side": 50.0, "compressed": False}
-
-
 def test_that_some_blocks_have_no_building_is_no_warning(tmp_path, monkeypatch):
     """It says nothing of the survey, unless no block has any."""
     outlines = Pipeline("outlines", "Outlines", "Tests", "", "", "", "", (Step("roofs", "extract_footprints"),))
     monkeypatch.setitem(PIPELINES, outlines.name, outlines)
     paths, monitor = house_and_meadow(tmp_path), Monitor()
-    outcome = run_in_tiles(outlines, paths, tmp_path / "out", monitor, **OF_BLOCKS)
+    outcome = run_in_tiles(outlines, paths, tmp_path / "out", monitor, OF_BLOCKS)
     assert len(next(iter(outcome.layers.values()))) == 1
     assert not [sentence for sentence in monitor.warnings if "No point is called" in sentence]
-    run_in_tiles(outlines, paths[1:], tmp_path / "meadow", monitor, **OF_BLOCKS)
+    run_in_tiles(outlines, paths[1:], tmp_path / "meadow", monitor, OF_BLOCKS)
     assert "No point is called building (class 6), so there are no footprints." in monitor.warnings
 
 
@@ -279,8 +277,8 @@ def test_a_warning_of_some_blocks_has_their_number(tmp_path, monkeypatch):
     monkeypatch.setitem(STAGES, "classify_warned", classify_warned.stage)
     monkeypatch.setitem(PIPELINES, warned.name, warned)
     paths, monitor = house_and_meadow(tmp_path), Monitor()
-    run_in_tiles(warned, paths, tmp_path / "out", monitor, **OF_BLOCKS)
-    run_in_tiles(warned, paths[:1], tmp_path / "house", monitor, **OF_BLOCKS)
+    run_in_tiles(warned, paths, tmp_path / "out", monitor, OF_BLOCKS)
+    run_in_tiles(warned, paths[:1], tmp_path / "house", monitor, OF_BLOCKS)
     said = [sentence for sentence in monitor.warnings if "buildings" in sentence]
     assert said == ["In 1 of 2 blocks: There are buildings.", "There are buildings."]
 

@@ -1,5 +1,7 @@
 """Composites whose steps reach far give the same result in blocks as on the whole cloud, point by point."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,12 +14,14 @@ from lidar_buildings.algorithms.stage import stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.tiled_steps import in_blocks, of_survey, preparing
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import crown, roof
 from lidar_buildings.tests.monitors import Listening
 
 CORNER = np.array([600_010.0, 5_000_010.0, 3.0])
+OPTIONS = TilesOptions(Workers(processes=1), 40.0, compressed=False)
 SIZE = 90.0
 
 
@@ -74,9 +78,7 @@ def test_blocks_give_what_the_whole_cloud_gives(cloud, tmp_path, name, tunables,
         tiles_of(cloud, tmp_path / "tiles"),
         tmp_path / "out",
         monitor,
-        workers=Workers(processes=1),
-        block_side=40.0,
-        compressed=False,
+        OPTIONS,
         **tunables,
     )
     assert made.blocks == 9
@@ -107,10 +109,7 @@ def test_cells_of_a_part_of_a_survey_are_those_of_the_whole(cloud, tmp_path, mon
         cells,
         tiles_of(cloud, tmp_path / "tiles"),
         tmp_path / "out",
-        workers=Workers(processes=1),
-        block_side=40.0,
-        compressed=False,
-        extent=np.array([[11.0, 24.0], [61.0, 83.0]]) + CORNER[:2],
+        options=replace(OPTIONS, extent=np.array([[11.0, 24.0], [61.0, 83.0]]) + CORNER[:2]),
     )
     times, found = in_order([read_cloud(path) for path in made.tiles], "gps_time", "classification")
     whole_times, whole = in_order([expected], "gps_time", "classification")
@@ -140,8 +139,7 @@ def middle(monkeypatch):
 def in_blocks_of(pipeline, cloud, folder):
     """Return the classes of points by their times, of a survey in tiles."""
     (folder / "tiles").mkdir()
-    options = {"workers": Workers(processes=1), "block_side": 40.0, "compressed": False}
-    made = run_in_tiles(pipeline, tiles_of(cloud, folder / "tiles"), folder / "out", **options)
+    made = run_in_tiles(pipeline, tiles_of(cloud, folder / "tiles"), folder / "out", options=OPTIONS)
     assert not made.failures
     return in_order(map(read_cloud, made.tiles), "classification")[0]
 

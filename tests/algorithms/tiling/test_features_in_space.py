@@ -11,6 +11,7 @@ from lidar_buildings.algorithms.stage import Field, Layer, LayerFeatures, Monito
 from lidar_buildings.algorithms.tiling.blocks import Block
 from lidar_buildings.algorithms.tiling.joining import References, join_features, refer_to_features
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.facades import street_floor, wall
 
@@ -61,8 +62,8 @@ def whole(points):
 def in_tiles(points, folder, parts):
     for number, part in enumerate(parts):
         write_cloud(as_cloud(*points, part), folder / f"tile{number}.las")
-    options = {"workers": Workers(processes=1), "block_side": SIDE, "compressed": False}
-    return run_in_tiles(FACADES, sorted(folder.glob("*.las")), folder / "result", **options)
+    options = TilesOptions(Workers(processes=1), SIDE, compressed=False)
+    return run_in_tiles(FACADES, sorted(folder.glob("*.las")), folder / "result", options=options)
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import MapFrame
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.solid_validity import assert_valid_cityjson
 
@@ -50,9 +51,8 @@ def survey(cloud, tmp_path_factory):
         for called in ("CityJSON", "CityJSONSeq") if name == "cityjson" else ("Wavefront OBJ",):
             texts[called] = "".join(content.pieces(called, frame))
 
-    outcome = run_in_tiles(
-        MODEL, paths, folder / "out", workers=Workers(processes=1), block_side=SIDE, take_file=take_file
-    )
+    options = TilesOptions(Workers(processes=1), SIDE, take_file=take_file)
+    outcome = run_in_tiles(MODEL, paths, folder / "out", options=options)
     return outcome, texts
 
 

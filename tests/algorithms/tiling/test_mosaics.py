@@ -12,6 +12,7 @@ from lidar_buildings.algorithms.stage import Layer, LayerFeatures, Monitor
 from lidar_buildings.algorithms.tiling.blocks import Block
 from lidar_buildings.algorithms.tiling.joining import join_belonging, join_features
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.villages import village
 
@@ -40,8 +41,8 @@ def ground(rng):
 
 
 def run(pipeline, paths, folder, monitor=None, **options):
-    options = {"workers": Workers(processes=1), "block_side": 25.0, "compressed": False, **options}
-    return run_in_tiles(pipeline, paths, folder, monitor, **options)
+    chosen = TilesOptions(**{"workers": Workers(processes=1), "block_side": 25.0, "compressed": False, **options})
+    return run_in_tiles(pipeline, paths, folder, monitor, chosen)
 
 
 def assembled(found):

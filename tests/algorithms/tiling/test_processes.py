@@ -19,6 +19,7 @@ from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.tiling import processes
 from lidar_buildings.algorithms.tiling.block_result import BlockResult
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.work_folder import remove_work, work_folder
 from lidar_buildings.algorithms.tiling.workers import Workers, run_all
 from lidar_buildings.tests.builders import roof
@@ -72,7 +73,7 @@ def is_running(number):
 
 
 def run(survey, folder, monitor=None, **options):
-    return run_in_tiles(TERRAIN, [survey], folder, monitor, compressed=False, **{"block_side": 20.0, **options})
+    return run_in_tiles(TERRAIN, [survey], folder, monitor, TilesOptions(block_side=20.0, compressed=False, **options))
 
 
 def contents(folder):
@@ -167,9 +168,8 @@ def test_a_block_s_task_is_small(survey, tmp_path, monkeypatch):
         "submit",
         lambda self, fn, *args: sizes.append(len(pickle.dumps(args))) or submit(self, fn, *args),
     )
-    run_in_tiles(
-        PIPELINES["detect_buildings"], [survey], tmp_path / "out", block_side=30.0, workers=Workers(processes=2)
-    )
+    options = TilesOptions(Workers(processes=2), 30.0)
+    run_in_tiles(PIPELINES["detect_buildings"], [survey], tmp_path / "out", options=options)
     assert len(sizes) > 6
     assert max(sizes) < 10_000
 
@@ -180,9 +180,11 @@ sys.path.insert(0, sys.argv[1])
 import conftest
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 print("started", flush=True)
-run_in_tiles(PIPELINES["model_terrain"], [sys.argv[2]], sys.argv[3], block_side=20.0, workers=Workers(processes=2))
+options = TilesOptions(Workers(processes=2), 20.0)
+run_in_tiles(PIPELINES["model_terrain"], [sys.argv[2]], sys.argv[3], options=options)
 print("done", flush=True)
 """
 

@@ -19,6 +19,7 @@ from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
 from lidar_buildings.algorithms.tiling.block_plan import side_of_blocks
 from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.tiles import rows_of
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import crown, roof
@@ -66,9 +67,9 @@ def tiles_of(folder, xyz, times, *parts):
     return paths
 
 
-def run(paths, folder, monitor=None, pipeline=DETECT, **options):
-    options = {"workers": HERE, "block_side": SIDE, "compressed": False, **options}
-    return run_in_tiles(pipeline, paths, folder, monitor, **options)
+def run(paths, folder, monitor=None, pipeline=DETECT, tunables=None, **options):
+    chosen = TilesOptions(**{"workers": HERE, "block_side": SIDE, "compressed": False, **options})
+    return run_in_tiles(pipeline, paths, folder, monitor, chosen, **(tunables or {}))
 
 
 @pytest.fixture(autouse=True)
@@ -312,7 +313,7 @@ def stopped(paths, folder, done, **tunables):
     """Stop a run in the middle; return the blocks that were finished."""
     before = len(done)
     with pytest.raises(Cancelled):
-        run(paths, folder, Listening(stop_at=0.5), pipeline=QUICK, block_side=10.0, **tunables)
+        run(paths, folder, Listening(stop_at=0.5), pipeline=QUICK, block_side=10.0, tunables=tunables)
     return set(done[before:])
 
 
@@ -408,7 +409,7 @@ def test_tiles_and_their_folder_are_checked_before_anything_runs(points, tmp_pat
     with pytest.raises(ValueError, match="There are no point clouds in the folder"):
         run([tmp_path / "empty"], tmp_path / "result")
     with pytest.raises(ValueError, match="has no tunable 'nonsense'"):
-        run(paths, tmp_path / "result", nonsense=1)
+        run(paths, tmp_path / "result", tunables={"nonsense": 1})
     assert can_be_tiled(DETECT)
     assert not (tmp_path / "result").exists()
 

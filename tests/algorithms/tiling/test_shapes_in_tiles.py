@@ -11,6 +11,7 @@ from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 from lidar_buildings.algorithms.tiling.blocks import Block
 from lidar_buildings.algorithms.tiling.joining import References, join_features
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.industry import pipe
 
@@ -48,8 +49,8 @@ def points():
 def in_tiles(xyz, folder, parts):
     for number, part in enumerate(parts):
         write_cloud(as_cloud(xyz, part), folder / f"tile{number}.las")
-    options = {"workers": Workers(processes=1), "block_side": SIDE, "compressed": False, **OPTIONS}
-    return run_in_tiles(INDUSTRY, sorted(folder.glob("*.las")), folder / "result", **options)
+    options = TilesOptions(Workers(processes=1), SIDE, compressed=False)
+    return run_in_tiles(INDUSTRY, sorted(folder.glob("*.las")), folder / "result", options=options, **OPTIONS)
 
 
 @pytest.fixture(scope="module")

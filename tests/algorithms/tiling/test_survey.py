@@ -17,6 +17,7 @@ from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import open_survey
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.las_files import descriptor, made_las, vlr
 from lidar_buildings.tests.monitors import Listening
@@ -33,8 +34,8 @@ def _known(monkeypatch):
 
 
 def run(paths, folder, pipeline=CLUSTERS, monitor=None, **options):
-    options = {"workers": Workers(processes=1), "block_side": 50.0, "compressed": False, **options}
-    return run_in_tiles(pipeline, paths, folder, monitor, **options)
+    chosen = TilesOptions(**{"workers": Workers(processes=1), "block_side": 50.0, "compressed": False, **options})
+    return run_in_tiles(pipeline, paths, folder, monitor, chosen)
 
 
 def tile(path, low, side=20.0, n=500, seed=0, epsg=28992, **dimensions):

@@ -18,6 +18,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.tiling.processes import own_python
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import roof
 
@@ -100,10 +101,11 @@ class Killing(Monitor):
 
 def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile, cluster, tmp_path):
     address, files, processes = cluster
-    expected = run_in_tiles(DETECT, [tile], tmp_path / "here", block_side=20.0, workers=Workers(processes=1))
+    expected = run_in_tiles(DETECT, [tile], tmp_path / "here", options=TilesOptions(Workers(processes=1), 20.0))
     workers = Workers(scheduler=address, certificates=files)
     begun = time.monotonic()
-    outcome = run_in_tiles(DETECT, [tile], tmp_path / "there", Killing(processes[1]), block_side=20.0, workers=workers)
+    options = TilesOptions(workers, 20.0)
+    outcome = run_in_tiles(DETECT, [tile], tmp_path / "there", Killing(processes[1]), options)
     assert time.monotonic() - begun < 120
     assert processes[1].poll() is not None
     assert outcome.failures == []
