@@ -123,6 +123,9 @@ def find_free_standing(
     rough cells on its roof belong to it. Of smaller segments windows see the whole, unless the end of the cloud cuts
     them off: the more of one is cut off, the higher its walls must be.
 
+    Segments at the walls of free-standing ones are judged by the rest of their edge. Their steps have to be as high as
+    the lowest roof on the mean: wings are, and terraces below a house or below one another are not.
+
     A level roof on a slope has its highest steps downhill and its lowest uphill, which may be those of any roof. Quays
     and platforms are low all round, so that with ``low_uphill`` the mean of the steps distinguishes these from halls.
     """
@@ -161,18 +164,18 @@ def _are_free_standing(segments: _Segments, least: float, usual: float, largest:
     ``least`` is the least height of a step (m), ``usual`` and ``largest`` are widths in cells. With ``low_uphill``
     wide segments need high steps only on the mean.
     """
-    is_wide = segments.width > usual
-    is_low = is_wide & (segments.mean_step_down(least) < LASER.lowest_roof) if low_uphill else is_wide
+    is_wide, is_high = segments.width > usual, segments.mean_step_down(least) >= LASER.lowest_roof
+    is_low = is_wide & ~is_high if low_uphill else is_wide
     least_step = np.where(is_low, max(LASER.lowest_roof, least), least)
     least_step[segments.width > largest] = np.inf
-    is_free = np.zeros(len(segments.width), bool)
-    # The highest come first; lower segments at their walls are judged by the rest of their edge.
+    is_free = _bounded_by_steps(segments, np.zeros(len(segments.width), bool), least_step, least)
+    # Lower segments at walls of these are judged by the rest of their edge: wings are as high as a roof there, and the
+    # steps of terraces below one another are lower.
     while True:
-        found = _bounded_by_steps(segments, is_free, least_step, least) & ~is_free
+        found = _bounded_by_steps(segments, is_free, least_step, least) & is_high & ~is_free
         if not found.any():
-            break
+            return is_free
         is_free |= found
-    return is_free
 
 
 def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.ndarray, least: float) -> np.ndarray:

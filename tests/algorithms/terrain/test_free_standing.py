@@ -253,6 +253,17 @@ def test_a_low_house_beside_a_tower_is_judged_by_the_rest_of_its_edge():
     np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], low | tower)
 
 
+@pytest.mark.parametrize(("height", "is_object"), [(1.2, False), (1.9, False), (2.1, True)])
+def test_what_surrounds_a_house_is_as_high_as_a_roof_or_a_terrace(height, is_object):
+    """Two terraces, each lower by ``height``, below a house whose walls are high."""
+    surface = slope(60, 60)
+    terraces = block(surface, slice(10, 50), slice(10, 50), height)
+    terraces |= block(surface, slice(16, 44), slice(16, 44), height)
+    house = block(surface, slice(24, 36), slice(24, 36), 4.0)
+    found = find_free_standing(surface, 1.0, USUAL)[0]
+    np.testing.assert_array_equal(found, house | (terraces & is_object))
+
+
 def test_terraces_and_hills_are_terrain():
     """A terrace has its step on one side, and nothing is known of the others; a hill has no step, however high."""
     terraces = np.floor(slope(90, 60) + np.arange(90)[:, None] / 30) * 4.0
