@@ -101,7 +101,7 @@ def model_building(
     planes = with_level_patches(local, ~is_low, planes, settings.spacing, settings.min_points)
     tops = {"1.2": _single_top, "1.3": _level_tops, "2.2": _roof}
     limits = HeightsAround(around - [*origin, 0.0])
-    top = _Top(local, is_low, plan, planes, settings, base, limits)
+    top = _Top(local, is_low, plan, planes, settings, base)
     if np.median(xyz[top.is_roof, 2]) <= base:
         model.reason = "its roof is not above the ground beside it"
         return model
@@ -132,17 +132,10 @@ class _Top:
     """What the partitions of one building are made of."""
 
     def __init__(
-        self,
-        xyz: np.ndarray,
-        is_low: np.ndarray,
-        rings: list,
-        planes: RoofPlanes,
-        settings: Settings,
-        base: float,
-        limits: HeightsAround,
+        self, xyz: np.ndarray, is_low: np.ndarray, rings: list, planes: RoofPlanes, settings: Settings, base: float
     ) -> None:
         self.xyz, self.is_low, self.rings = xyz, is_low, rings
-        self.planes, self.settings, self.base, self.limits = planes, settings, base, limits
+        self.planes, self.settings, self.base = planes, settings, base
         self._roof: Optional[Partition] = None
 
     @property
@@ -157,7 +150,7 @@ class _Top:
         if self._roof is None and len(self.planes):
             s = self.settings
             self._roof = divide_footprint(
-                self.xyz, ~self.is_low, self.planes, self.rings, s.spacing, s.tolerance, self.base, self.limits
+                self.xyz, ~self.is_low, self.planes, self.rings, s.spacing, s.tolerance, self.base
             )
         return self._roof
 

@@ -11,7 +11,6 @@ from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.points_in_polygons import are_within
 from ..geometry.subdivision import SNAP, Subdivision
 from ..packages import spatial
-from .heights_around import HeightsAround
 from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
 
@@ -39,9 +38,6 @@ _GAP_SPACINGS, _GAP_WEIGHT = 2.0, 0.3
 # Roofs end no lower over the ground (m), and reach no farther (m) below their points. A plane that leaves these limits
 # within a cell is charged with more (m²) than any cell's points could.
 _LEAST_HEIGHT, _BELOW_POINTS, _FORBIDDEN = 0.5, 1.5, 1000.0
-
-# A meter by which a corner is above all points around costs as much as this area (m²) that no plane explains.
-_TOO_HIGH = 1.0
 
 # Cells of the grid on which gaps are looked for, m.
 _GAP_CELL = 0.5
@@ -109,7 +105,6 @@ def divide_footprint(
     spacing: float,
     tolerance: float,
     base: float,
-    limits: HeightsAround,
 ) -> Partition:
     """Divide a footprint among roof planes so that points and borders cost least.
 
@@ -127,8 +122,6 @@ def divide_footprint(
         Mean distance of neighboring points, and the one at which a point lies on a plane (m).
     base : float
         Height of the ground (m).
-    limits : HeightsAround
-        How high roofs may reach.
 
     Returns
     -------
@@ -142,7 +135,7 @@ def divide_footprint(
     used = np.flatnonzero(inside)
     cost = np.zeros((len(cells), len(planes)))
     cost[used] = _costs(xyz, is_top, planes, cells, used, spacing, tolerance)
-    cost[used] += _forbidden(planes, cells, used, xyz, base, limits)
+    cost[used] += _forbidden(planes, cells, used, xyz, base)
     label = np.full(len(cells), -1)
     label[used] = _labels(planes, cells, used, cost[used])
     return Partition(cells, label, planes.coefficients, cost)
@@ -229,16 +222,10 @@ def _lattice_in(corners: np.ndarray) -> np.ndarray:
     return xy[(left >= -1e-9).all(axis=1)]
 
 
-def _forbidden(
-    planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np.ndarray, base: float, limits: HeightsAround
-) -> np.ndarray:
-    """Return a charge (len(used), m) for planes that reach into the ground or above the points around within a cell."""
+def _forbidden(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np.ndarray, base: float) -> np.ndarray:
+    """Return a charge (len(used), m) for planes that reach into the ground within a cell."""
     low = max(base + _LEAST_HEIGHT, float(xyz[planes.label >= 0, 2].min()) - _BELOW_POINTS)
     size = np.array([len(cells.loops[cell]) for cell in used])
-    corner = np.concatenate([cells.loops[cell] for cell in used])
-    some, position = np.unique(corner, return_inverse=True)
-    xy = np.array(cells.vertices)[some]
+    xy = np.array(cells.vertices)[np.concatenate([cells.loops[cell] for cell in used])]
     z = xy @ planes.coefficients[:, :2].T + planes.coefficients[:, 2]
-    above = np.maximum(z - limits.highest(xy)[:, None], 0.0)
-    charge = np.where(z < low, _FORBIDDEN, _TOO_HIGH * above)
-    return np.maximum.reduceat(charge[position], np.cumsum(size) - size, axis=0)
+    return _FORBIDDEN * np.logical_or.reduceat(z < low, np.cumsum(size) - size, axis=0)
