@@ -10,7 +10,6 @@ import numpy as np
 from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.points_in_polygons import are_within
 from ..geometry.subdivision import SNAP, Subdivision
-from ..packages import spatial
 from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
 
@@ -31,16 +30,9 @@ FARTHEST, _FAR_WEIGHT = 1.0, 0.5
 # meter of the wall between them, up to a step of 1 m. A dormer of 1.5 m by 1.5 m has 6 m of border.
 _BORDER, _STEP, _MOST_STEP = 0.10, 0.05, 1.0
 
-# Positions farther from the points of planes (spacings) than this are gaps; evidence from the nearest point counts
-# there for this share of the area.
-_GAP_SPACINGS, _GAP_WEIGHT = 2.0, 0.3
-
 # Roofs end no lower over the ground (m), and reach no farther (m) below their points. A plane that leaves these limits
 # within a cell is charged with more (m²) than any cell's points could.
 _LEAST_HEIGHT, _BELOW_POINTS, _FORBIDDEN = 0.5, 1.5, 1000.0
-
-# Cells of the grid on which gaps are looked for, m.
-_GAP_CELL = 0.5
 
 
 @dataclass
@@ -177,49 +169,12 @@ def _costs(
         cell[cells.members[c]] = number
     counted = np.flatnonzero((on_plane | is_top) & (cell >= 0))
     cost = np.zeros((len(used), len(planes)))
-    if not len(counted):
-        return cost
-    of_gap, nearest = _gaps(xyz[counted], cells, used, spacing)
-    sample = np.concatenate([counted, counted[nearest]])
-    of_cell = np.concatenate([cell[counted], of_gap])
-    weight = np.full(len(sample), spacing**2)
-    weight[len(counted) :] = _GAP_WEIGHT * _GAP_CELL**2
-    # The nearest point of a gap decides its plane, not its height.
     for plane in range(len(planes)):
-        off = np.abs(xyz[sample, 2] - planes.height(plane, xyz[sample, :2])) * planes.cosine[plane]
-        share = on_plane[sample] * np.minimum(off / (_FAR_OFF * tolerance), 1.0) ** 2
+        off = np.abs(xyz[counted, 2] - planes.height(plane, xyz[counted, :2])) * planes.cosine[plane]
+        share = on_plane[counted] * np.minimum(off / (_FAR_OFF * tolerance), 1.0) ** 2
         share += _FAR_WEIGHT * np.minimum(off / FARTHEST, 1.0) ** 2
-        cost[:, plane] = np.bincount(of_cell, weight * share, len(used))
+        cost[:, plane] = spacing**2 * np.bincount(cell[counted], share, len(used))
     return cost
-
-
-def _gaps(xyz: np.ndarray, cells: Subdivision, used: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cell of each sample of gaps, numbered as in ``used``, and the nearest of the points ``xyz``."""
-    tree = spatial.cKDTree(xyz[:, :2])
-    positions, of_cell = [], []
-    for number, c in enumerate(used):
-        corners = np.array([cells.vertices[v] for v in cells.loops[c]])
-        if len(cells.members[c]) * spacing**2 > 0.5 * cells.area(cells.loops[c]):
-            continue
-        inside = _lattice_in(corners)
-        positions.append(inside)
-        of_cell.append(np.full(len(inside), number))
-    if not positions:
-        return np.zeros(0, int), np.zeros(0, int)
-    xy, of = np.concatenate(positions), np.concatenate(of_cell)
-    distance, nearest = tree.query(xy)
-    far = distance > _GAP_SPACINGS * spacing
-    return of[far], nearest[far]
-
-
-def _lattice_in(corners: np.ndarray) -> np.ndarray:
-    """Return the positions (k, 2) of a lattice in a convex cell."""
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    axes = [np.arange(np.ceil(a / _GAP_CELL), np.floor(b / _GAP_CELL) + 1) * _GAP_CELL for a, b in zip(low, high)]
-    xy = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
-    edge = np.roll(corners, -1, axis=0) - corners
-    left = edge[:, 0] * (xy[:, 1:] - corners[:, 1]) - edge[:, 1] * (xy[:, :1] - corners[:, 0])
-    return xy[(left >= -1e-9).all(axis=1)]
 
 
 def _forbidden(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np.ndarray, base: float) -> np.ndarray:
