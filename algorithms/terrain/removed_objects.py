@@ -61,7 +61,7 @@ class ObjectRemoval:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
         first = np.full(self.surface.shape, REMOVAL.flat_slope)
         # Free-standing objects are left out, or a low roof and a higher one beside it were as wide as both together.
-        removed = self.is_free_standing | self.removed_by_opening(first, monitor.part(0, 0.5))
+        removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
         slope = self._slope_without(removed)
         return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
 
@@ -75,31 +75,35 @@ class ObjectRemoval:
         return REMOVAL.step + (REMOVAL.flat_slope + slope) * self.cell_size
 
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return which cells a window removes."""
-        removed = np.zeros(self.surface.shape, bool)
+        """Return the radius (cells) of the first window that removes each cell, 0 where none does."""
+        removed_by = np.zeros(self.surface.shape, np.int32)
         opened = self.surface
         for done, radius in enumerate(self.windows, start=1):
             previous, opened = opened, open_surface(opened, radius, self.is_free_standing)
             reach = radius * self.cell_size
-            removed |= previous - opened > REMOVAL.step + (REMOVAL.flat_slope + slope) * reach
+            is_removed = previous - opened > REMOVAL.step + (REMOVAL.flat_slope + slope) * reach
+            removed_by[is_removed & (removed_by == 0)] = radius
             monitor.progress(done / len(self.windows))
-        return removed
+        return removed_by
 
-    def without_joined(self, removed: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    def without_joined(self, removed_by: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """Return which cells are objects: free-standing ones, and removed ones but for regions that join the terrain.
 
         Parameters
         ----------
-        removed : ndarray of shape (rows, columns), bool
-            Cells that a window removed.
+        removed_by : ndarray of shape (rows, columns), int32
+            Radius (cells) of the window that removed each cell, 0 for terrain.
         slope : ndarray of shape (rows, columns), float64
             Slope of the terrain (rise over run).
         """
-        objects = removed | self.is_free_standing
-        region, count = ndimage.label(objects)
-        sides = _sides(self.surface, slope, self.cell_size, self.spacing)
-        is_terrain = _region_edges(region, count, objects, sides).join_terrain()
-        return objects & (~is_terrain[region] | self.is_free_standing)
+        objects = (removed_by > 0) | self.is_free_standing
+        is_large = removed_by > FREE.most * self.windows[-1]
+        sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
+        for group in (objects & ~is_large, is_large):
+            region, count = ndimage.label(group)
+            is_terrain = _region_edges(region, count, objects, sides).join_terrain()
+            objects &= ~is_terrain[region] | self.is_free_standing
+        return objects
 
     def _without_level(self, objects: np.ndarray) -> np.ndarray:
         """Return the objects but for smooth parts that are no higher than the terrain around on a share of their area.
