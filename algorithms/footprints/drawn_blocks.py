@@ -88,11 +88,15 @@ def draw_block(
     """
     rings = [_drawn(ring, directions[piece.building], how) for piece in pieces for ring in piece.rings]
     # Edges on both sides of a border, or of a front that goes on, were drawn from the same points: within a spacing.
-    edges = [edge for ring in aligned(rings, how.spacing) for edge in ring]
+    # So was an edge beside a party wall: a strip between the two would be left for the house beyond.
+    numbers = sorted({piece.building for piece in pieces})
+    both = [ends for number in numbers if number in houses for ends in houses[number].walls]
+    there_and_back = [[Edge(start, end, True), Edge(end, start, True)] for start, end in both]
+    made = aligned([*rings, *there_and_back], how.spacing)
+    edges, walls = [edge for ring in made[: len(rings)] for edge in ring], [ring[0] for ring in made[len(rings) :]]
     if not edges:
         return []
-    lattice, share, numbers = _shares_of(pieces, shares, edges, how)
-    walls = [Edge(start, end, True) for number in numbers if number in houses for start, end in houses[number].walls]
+    lattice, share = _shares_of(pieces, numbers, shares, edges, how)
     cells = _cut([*edges, *walls], lattice)
     label = _without_scraps(cells, _labels(cells, _costs(cells, share, lattice), edges, how), how)
     building = np.array([0, *numbers])
@@ -150,14 +154,13 @@ def _drawn(ring: np.ndarray, directions: np.ndarray, how: Drawing) -> list[Edge]
 
 
 def _shares_of(
-    pieces: list[Piece], shares: dict[int, Shares], edges: list[Edge], how: Drawing
-) -> tuple[Lattice, np.ndarray, list[int]]:
-    """Return the lattice of a block, the share of the ground and of each building in it, and the buildings.
+    pieces: list[Piece], numbers: list[int], shares: dict[int, Shares], edges: list[Edge], how: Drawing
+) -> tuple[Lattice, np.ndarray]:
+    """Return the lattice of a block, and the share of the ground and of each of its buildings in it.
 
     Other parts of these buildings, which are not of this block, have no share.
     """
     corners = np.array([edge.start for edge in edges])
-    numbers = sorted({piece.building for piece in pieces})
     lattice = Lattice.around(
         np.concatenate([corners, *(ring for piece in pieces for ring in piece.rings)]), how.spacing
     )
@@ -167,7 +170,7 @@ def _shares_of(
         rings = [ring for piece in pieces if piece.building == number for ring in piece.rings]
         _copy_overlap(share[at], lattice, own.lattice, np.where(_is_near(own, rings), own.share, 0.0))
     share[0] = 1 - share[1:].sum(axis=0)
-    return lattice, share, numbers
+    return lattice, share
 
 
 def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:

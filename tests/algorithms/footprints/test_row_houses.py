@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.footprints import extract_footprints as outlining
 from lidar_buildings.algorithms.footprints import row_houses as rows
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
@@ -189,6 +190,30 @@ def test_houses_are_the_same_in_any_order_and_place(rng):
     order = rng.permutation(len(xyz))
     moved = extract_footprints(xyz[order] + [6e5, 5e6, 0], classification[order])
     assert sorted(moved.columns["area"]) == pytest.approx(areas, rel=1e-3)
+
+
+def test_a_wall_beside_a_front_leaves_no_strip_for_the_house_behind_it(rng, monkeypatch):
+    """Of two houses set against each other, one reached along the side of the other as wide as the wall was off."""
+    plan = np.mgrid[-8:20:0.3, -8:22:0.3].reshape(2, -1).T + 0.1
+    plan += rng.normal(0, 0.02, plan.shape)
+    x, y = plan.T
+    is_roof = ((x > 0) & (x < 6) & (y > 0) & (y < 10)) | ((x > 6) & (x < 12) & (y > 4) & (y < 14))
+    xyz = np.column_stack([plan, np.where(is_roof, 6.0, 0.0)])
+
+    def split(lattice, is_inside, roof, *_):
+        # The wall is found a fifth of a meter off the sides of both.
+        west, south = roof.min(axis=0)
+        is_right = lattice.positions[:, 0].reshape(is_inside.shape) > west + 6.1
+        ends = np.add([[[6.1, -1.3], [6.1, 15.3]]], [west, south])
+        return rows.Houses(ends, np.where(is_inside, 1 + is_right, 0))
+
+    monkeypatch.setattr(outlining, "split_row", split)
+    found = extract_footprints(xyz, np.where(is_roof, 6, 2))
+    left, right = sorted((rings[0] for rings in found.geometries), key=lambda ring: ring[:, 0].min())
+    assert left.max(axis=0) == pytest.approx([6, 10], abs=0.3)
+    assert right.min(axis=0) == pytest.approx([6, 4], abs=0.3)
+    assert_valid([left])
+    assert_valid([right])
 
 
 @pytest.mark.parametrize("spacing", [3.0, 1.4])
