@@ -45,9 +45,9 @@ class LabeledCells:
         return lattice(self.cells.centers[self.chosen, :2], RULES.half).sum(axis=1) % 2
 
     def sample(self, cluster_id: np.ndarray) -> np.ndarray:
-        """Return cells (j, 3 + f) to learn from: half, mark of the building, label and features of each.
+        """Return cells (j, 4 + f) to learn from: number, half, mark of the building, label and features of each.
 
-        Marks distinguish buildings, also those of other parts of a survey; 0 is no building. ``cluster_id`` (n,) are
+        Numbers, 0 to 1, depend on the cell alone; samples of parts of a survey are cells of the least numbers. Marks distinguish buildings, also those of other parts of a survey; 0 is no building. ``cluster_id`` (n,) are
         the buildings of the points, from 1; 0 if unassigned.
         """
         is_building = cluster_id > 0
@@ -55,8 +55,10 @@ class LabeledCells:
         mark = np.zeros(len(self.cells.count))
         mark[self.cells.cell[is_building]] = 1.0 + np.abs(east[cluster_id[is_building]])
         # A cell more or less, as at the edge of a cloud, changes no other row of the sample.
-        rows = np.sort(np.argsort(scattered(self.cells.voxels[self.chosen]), kind="stable")[: SURFACES.sample])
-        return np.column_stack([self.half[rows], mark[self.chosen[rows]], self.label[rows], self.features[rows]])
+        number = scattered(self.cells.voxels[self.chosen])
+        rows = _least(number)
+        columns = number[rows], self.half[rows], mark[self.chosen[rows]], self.label[rows], self.features[rows]
+        return np.column_stack(columns)
 
     def smooth(self, likely: np.ndarray) -> np.ndarray:
         """Return probabilities (k,) halfway to the mean of the cells around, which count by their raised points."""
@@ -65,19 +67,20 @@ class LabeledCells:
 
 
 def learn_halves(sample: np.ndarray) -> tuple[float, ...]:
-    """Return the two regressions, as numbers, that were learned on the halves of a sample (j, 3 + f).
+    """Return the two regressions, as numbers, that were learned on the halves of a sample (j, 4 + f).
 
     Empty where it has fewer than two buildings, or a half has only points of one kind.
     """
-    marks = np.unique(sample[:, 1])
-    sample = sample[_spread(len(sample), SURFACES.sample)]
-    half, label = sample[:, 0], sample[:, 2]
+    marks = np.unique(sample[:, 2])
+    # Of several parts of a survey, those cells that one sample of them all would have.
+    sample = sample[_least(sample[:, 0])]
+    half, label = sample[:, 1], sample[:, 3]
     halves = [half == number for number in (0, 1)]
     has_both = all(rows.any() and 0 < label[rows].mean() < 1 for rows in halves)
     # A single building has no other of its kind to learn from.
     if (marks > 0).sum() < 2 or not has_both:
         return ()
-    fitted = [LogisticRegression.fit(sample[rows, 3:], label[rows]) for rows in halves]
+    fitted = [LogisticRegression.fit(sample[rows, 4:], label[rows]) for rows in halves]
     return tuple(np.concatenate([part for one in fitted for part in (one.mean, one.scale, one.weights)]).tolist())
 
 
@@ -106,6 +109,6 @@ def shared_by_surfaces(likely: np.ndarray, segment_id: Optional[np.ndarray]) -> 
     return np.where(on_surface, (1 - share) * likely + share * mean[segment_id], likely)
 
 
-def _spread(count: int, most: int) -> np.ndarray:
-    """Return ``most`` of ``count`` rows, at even distances, or all."""
-    return np.arange(most) * count // most if count > most else np.arange(count)
+def _least(numbers: np.ndarray) -> np.ndarray:
+    """Return the rows of the least numbers, as many as a sample has at most, ascending."""
+    return np.sort(np.argsort(numbers, kind="stable")[: SURFACES.sample])

@@ -204,9 +204,23 @@ def test_a_house_less_leaves_the_sample_of_the_others_as_it_is(village, monkeypa
         sampling = CloudSampling(lambda rows=rows: village.xyz[rows], corner=np.zeros(2))
         village.refine(rows, sampling=sampling, density=4.0)
         tables.append(next(iter(sampling.samples.values()))[0])
-    one, other = ({tuple(row) for row in np.round(table[:, 3:], 6).tolist()} for table in tables)
+    one, other = ({tuple(row) for row in np.round(table[:, 4:], 6).tolist()} for table in tables)
     assert len(one) > 250
     assert len(one & other) > 0.8 * len(one)
+
+
+def test_parts_of_a_survey_are_learned_from_as_the_whole(rng, monkeypatch):
+    """Of a part with a tenth of the cells, a tenth of the sample is taken: its cells have other features."""
+    monkeypatch.setattr(scene_learning, "SURFACES", replace(scene_learning.SURFACES, sample=400))
+    size = 4000
+    half, label = rng.integers(0, 2, (2, size))
+    is_small = np.arange(size) < size // 10
+    features = rng.normal(label[:, None] * np.where(is_small, -1, 1)[:, None], 1.0, (size, 2))
+    number = rng.random(size)
+    table = np.column_stack([number, half, label * rng.integers(1, 5, size), label, features])
+    parts = [part[np.argsort(part[:, 0])[:400]] for part in (table[is_small], table[~is_small])]
+    expected = scene_learning.learn_halves(table[number <= np.sort(number)[399]])
+    np.testing.assert_allclose(scene_learning.learn_halves(np.concatenate(parts)), expected, rtol=1e-5, atol=1e-5)
 
 
 def test_without_confidence_and_reason_none_are_made(village):
