@@ -14,24 +14,20 @@ DIMENSIONS = ("classification", "cluster_id", "height_above_ground")
 
 @pytest.mark.parametrize(
     ("name", "least_iou", "most_distance"),
-    # Reached: 0.12 and 0.07 m. Traced alpha shapes moved by 0.7 m in Delft.
+    # Reached in the worst of three draws: 0.12 and 0.08 m. Traced alpha shapes moved by 0.7 m in Delft.
     [("buildings/ign-stbarth-4", 0.98, 0.15), ("buildings/ahn3-delft-4", 0.985, 0.15)],
 )
 def test_points_moved_by_two_millimeters_hardly_move_outlines(name, least_iou, most_distance):
     cloud = detected(name).cloud
     xyz, arrays = cloud.get("xyz"), {dimension: cloud.get(dimension) for dimension in DIMENSIONS}
     one = extract_footprints(xyz, **arrays).geometries
-    iou, distances = [], []
-    # One draw of a cloud with three dozen outlines is good to 0.03 m.
     for seed in (1, 2, 3):
         moved = xyz + np.random.default_rng(seed).normal(0, 0.002, xyz.shape)
         other = extract_footprints(moved, **arrays).geometries
         found = match_polygons(one, other, Monitor())
         assert len(found.one) == len(one)
-        iou += found.iou.tolist()
-        distances += [hausdorff(one[i], other[j]) for i, j in zip(found.one, found.other)]
-    assert np.median(iou) >= least_iou
-    assert np.median(distances) <= most_distance
+        assert np.median(found.iou) >= least_iou
+        assert np.median([hausdorff(one[i], other[j]) for i, j in zip(found.one, found.other)]) <= most_distance
 
 
 @pytest.mark.parametrize(
