@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..geometry.grid import distinct, lattice
+from ..geometry.grid import distinct
 from ..neighborhoods.covariance import dimensionality, shannon_entropy, smallest_eigenvectors, symmetric_eigenvalues
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from .space_cells import SpaceCells, covariances
@@ -92,22 +92,20 @@ def _columns(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.nd
     Share of ground, height of the topmost point, distances of the middle of the cell's points from the topmost and the
     lowest point, and spread of elevations, m.
     """
-    # As wide in plan as a cell with those around it.
-    side, upward = 3 * cells.size, np.argsort(points.xyz[:, 2], kind="stable")
-    first = np.empty(len(cells.count), np.int64)
-    first[cells.cell] = np.arange(len(cells.cell))
-    rows, level = first[chosen], cells.centers[chosen, 2]
-    east, north = (lattice(points.xyz[:, axis], side) for axis in (0, 1))
+    # As wide in plan as a cell with those around it, and all of each cell, also where rounding decides on its edge.
+    east, north = (cells.voxels[:, :2] // 3).T
     east, north = east - east.min(), north - north.min()
-    values, column = distinct(north * (int(east.max()) + 1) + east)
+    values, of_cell = distinct(north * (int(east.max()) + 1) + east)
+    column, of, level = of_cell[cells.cell], of_cell[chosen], cells.centers[chosen, 2]
     z, count = points.xyz[:, 2], np.bincount(column, minlength=len(values))
-    # Of several points of a column the one that is written last stays.
+    # Of several points of a column the one that is written last stays: of topmost ones of the same elevation the one
+    # highest above ground, whatever their order in the cloud.
+    upward = np.lexsort((points.height, z))
     top, bottom, height = (np.empty(len(values)) for _ in range(3))
     top[column[upward]], height[column[upward]] = z[upward], points.height[upward]
     bottom[column[upward[::-1]]] = z[upward[::-1]]
     above = z - bottom[column]
     mean, square = (np.bincount(column, above**power, len(values)) / count for power in (1, 2))
     ground = np.bincount(column, points.is_ground, len(values)) / count
-    of = column[rows]
     spread = np.sqrt(np.maximum(square - mean**2, 0))
     return np.column_stack([ground[of], height[of], top[of] - level, level - bottom[of], spread[of]])

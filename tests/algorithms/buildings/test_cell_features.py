@@ -48,6 +48,22 @@ def test_the_column_holds_ground_top_and_bottom(rng):
     np.testing.assert_allclose(found[roof, -5:], expected, atol=1e-9)
 
 
+def test_features_do_not_depend_on_the_order_of_points(rng):
+    """Coordinates of full centimeters: many columns have several topmost points, which differ in height above ground.
+
+    Cells of 0.7 m and columns of 2.1 m, both divided as floats, have edges on the same centimeters.
+    """
+    xyz = np.round(rng.uniform(0, [20, 20, 0.3], (20_000, 3)), 2)
+    height = xyz[:, 2] + rng.uniform(0, 1, len(xyz))
+    found = []
+    for order in (np.arange(len(xyz)), rng.permutation(len(xyz))):
+        cells = SpaceCells(xyz[order], 0.7)
+        every = np.arange(len(cells.count))
+        points = CellPoints(xyz[order], height[order], np.zeros(len(xyz), bool), None, None)
+        found.append(cell_features(points, cells, every, cells.around(every)))
+    np.testing.assert_allclose(found[0][:, -5:], found[1][:, -5:], atol=1e-9)
+
+
 def test_returns_and_intensity_are_means_of_the_cell_and_the_cells_around():
     """Two cells side by side, of one and of three points."""
     xyz = np.array([[0.5, 0.5, 0.5], [1.2, 0.5, 0.5], [1.5, 0.5, 0.5], [1.8, 0.5, 0.5]])
