@@ -78,7 +78,7 @@ MinFrequency = Annotated[
     Param(
         "Minimum frequency",
         "Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, "
-        "and thin things such as wires with it.",
+        "and thin objects such as wires with it.",
         low=1,
         high=10_000,
     ),

@@ -63,12 +63,12 @@ def run_stage(
 ) -> Outcome:
     """Run ``stage`` and return its results.
 
-    ``cloud`` is several clouds for a stage that merges. It sees them from the zero of the map, about which it may turn
-    them; they, and the cloud that it makes, get the origin of the first.
+    ``cloud`` is several clouds for a stage that merges. Their coordinates are then relative to the zero of the map,
+    about which the stage may turn them; afterwards they and the merged cloud get the origin of the first.
     A cloud is changed in place: the dimensions that the stage writes are stored in it. Withheld
     points are not shown to the stage; in its result they keep their classification and are
-    undefined in everything else. A stage that selects or merges makes a new cloud instead, in
-    which withheld points are not. Coordinates of ``input_layers`` and of layers and rasters made are
+    undefined in everything else. A stage that selects or merges makes a new cloud instead,
+    without withheld points. Coordinates of ``input_layers`` and of layers and rasters made are
     meters relative to the cloud's origin.
 
     ``sampling`` is how the cloud was sampled, or the survey that it is a part of. Where it is not given, it is
@@ -160,8 +160,8 @@ class _RunSampling:
     Parameters
     ----------
     given : mapping of str to CloudSampling
-        That of the points of ``cloud``, by the name "", and those of what steps make, by their names; each holds until
-        the next one, or until a step makes a cloud of other points.
+        The sampling of ``cloud`` by the name "", and those of clouds that steps make by the names of the steps. Each
+        applies until the next one, or until a step makes a cloud of other points.
     cloud : Cloud or several, optional
         The input of the pipeline.
     monitor : Monitor
@@ -175,7 +175,7 @@ class _RunSampling:
         self.given = given.get("") if isinstance(cloud, Cloud) else None
         self.points = cloud.points if isinstance(cloud, Cloud) else None
         self.counted: Optional[np.ndarray] = None
-        # Points that a step leaves out do not move the cells of the next ones.
+        # Cells of all steps begin at the corner of the input, also where a step removes the points there.
         self.corner = _corner(cloud) if isinstance(cloud, Cloud) and self.given is None else None
 
     def after(self, step: Step, cloud: Any) -> None:
@@ -332,7 +332,7 @@ def run_pipeline(
     reference: Optional[Cloud] = None,
     **tunables: Any,
 ) -> Results:
-    """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
+    """Run all steps on ``cloud``, changing it as the steps do, and return all results.
 
     ``cloud`` is several clouds where the pipeline merges. ``input_layers`` are the layers that the pipeline
     is given, by name, in meters relative to the cloud's origin. ``kept`` are the steps whose clouds
@@ -414,7 +414,7 @@ def _selected_by_all(outcomes: Iterable[Outcome]) -> Optional[np.ndarray]:
 def _layer(
     step: Step, input_layer: str, outcomes: dict[str, Outcome], given: dict[str, Optional[LayerFeatures]]
 ) -> Optional[LayerFeatures]:
-    """Return the layer that an input layer of a step is: one of an earlier step, or the given one."""
+    """Return the layer for an input layer of a step: one of an earlier step, or the given one."""
     if input_layer not in step.layers:
         return given[input_layer]
     earlier, layer = step.layers[input_layer].split(".")

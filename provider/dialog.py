@@ -54,7 +54,7 @@ class GroupedPanel(ParametersPanel):
         """Make QGIS's widgets, and arrange them."""
         super().initWidgets()
         self._presets: list[Preset] = []
-        # A widget put into a layout that QGIS made stays Python's, and would go with its last name.
+        # Python owns a widget put into a layout of QGIS, and deletes it with the last reference to it.
         self._kept: list[QWidget] = []
         sections = sections_of(self.algorithm())
         for section in sections:
@@ -77,7 +77,7 @@ class GroupedPanel(ParametersPanel):
         self._set_codes()
 
     def _set_codes(self) -> None:
-        """Begin with the class codes of the options."""
+        """Set the class codes to those chosen in the options of the plugin."""
         if _CODES in self.wrappers and CODES.value != CODES.default:
             self.wrappers[_CODES].setParameterValue(CODES.value, self.processing_context)
 

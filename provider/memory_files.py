@@ -1,7 +1,7 @@
 """Files that GDAL makes in memory before they are written to a disk.
 
-On a disk that fills up GDAL fails where it can't report it: when it closes a file. Files written from memory here are
-complete, or writing fails with the reason of the system.
+When a disk is full, GDAL fails at closing a file, where it reports no error. Files copied from memory by this module
+are complete, or copying raises the error of the system.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from osgeo import gdal
 
 from ..algorithms.cloud.outputs import os_errors_as_messages
 
+# Bytes that are copied at once: 16 MiB.
 _PIECE = 2**24
 
 
@@ -41,7 +42,7 @@ def copy_file(made: str, stream: BinaryIO) -> None:
 
 
 def copy_folder(made: str, target: Path) -> None:
-    """Copy everything in a folder of GDAL's beside ``target``, which is one of the files.
+    """Copy all files of a folder in GDAL's memory into the folder of ``target``, the name of one of them.
 
     Raises
     ------

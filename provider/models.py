@@ -57,7 +57,7 @@ def pipeline_parameters(pipeline: Pipeline) -> dict[str, QgsProcessingParameterD
 
 
 class _Layout:
-    """Where things are drawn: one band per step, its parameters on the left, its algorithm right of them."""
+    """Positions in the drawing of a model: one band per step, parameters on the left, the algorithm on the right."""
 
     columns, cell, box = 3, QSizeF(250, 66), QSizeF(220, 52)
     child = QSizeF(260, 50)

@@ -1,4 +1,4 @@
-"""The Processing provider: every stage and every pipeline, whatever they are."""
+"""The Processing provider: one algorithm for every stage and every pipeline."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Provider(QgsProcessingProvider):
         """Add one algorithm per stage and per pipeline, and one per pipeline that runs in tiles."""
         for stage in STAGES.values():
             self.addAlgorithm(StageAlgorithm(stage))
-        # A model finds its outputs by asking its children, which have to be there.
+        # A model gets its outputs from its children, which must be registered before it.
         for pipeline in PIPELINES.values() if self._with_pipelines else ():
             self.addAlgorithm(PipelineAlgorithm(pipeline))
         self.addAlgorithm(CutAlgorithm())
@@ -50,7 +50,7 @@ class Provider(QgsProcessingProvider):
         return "LiDAR Buildings"
 
     def longName(self) -> str:  # noqa: N802 - QGIS asks for this name
-        """Return the name with what it is for."""
+        """Return the name with the purpose."""
         return "LiDAR Buildings (buildings from point clouds)"
 
     def icon(self) -> QIcon:

@@ -213,7 +213,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def _run(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> tuple[Outcome, Place]:
         """Read clouds and layers and run the stage; return what it made, and where on Earth that lies."""
         paths = self.job.paths
-        # Where memory ends while they are read, no warning comes through any more.
+        # Before reading: a process that runs out of memory is ended without a message.
         warn_if_memory_is_short(self._points(), monitor)
         share = _READ / max(1, len(paths))
         parts = [monitor.part(i * share, (i + 1) * share) for i in range(len(paths))]
@@ -287,7 +287,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def _write_report(
         self, html: str, place: Place, log: RunLog, parameters: dict, context: QgsProcessingContext
     ) -> dict:
-        """Write the page of numbers, if it is wanted; return its output. That of a step, the chain completes."""
+        """Write the page of numbers, if it is wanted; return its output. The chain completes the page of a step."""
         target = self.parameterAsFileOutput(parameters, REPORT, context)
         if not target:
             return {}

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# Words that a reader holds in mind until a sentence ends.
+# Most words of a sentence that is not counted as too long.
 LONGEST = 35
 
 

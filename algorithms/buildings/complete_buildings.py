@@ -83,7 +83,7 @@ def complete_buildings(
         Param(
             "Minimum share of roof surfaces",
             "Share of the points at about the height of a building's roof, within the clearance above and below, that "
-            "must lie on roof surfaces. In crowns with a smooth side it is less. 0 takes any; in clouds of matched "
+            "must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched "
             "images it is not examined.",
             low=0,
             high=1,

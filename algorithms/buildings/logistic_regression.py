@@ -14,7 +14,9 @@ class _Rules:
     """How the regression is fitted."""
 
     steps: int = rule(20, "steps", "numerics: Newton's method converges in 6 to 9")
-    digits: int = rule(6, "decimals", "numerics: of weights; last bits change none, smaller steps end the fit")
+    digits: int = rule(
+        6, "decimals", "numerics: of the weights, so that rounding changes none; smaller steps end the fit"
+    )
     block: int = rule(64, "rows", "numerics: products this small are computed by one thread, in one order")
 
 
@@ -35,9 +37,9 @@ class LogisticRegression:
         mean, scale = features.mean(axis=0), features.std(axis=0)
         scale = np.where(scale > 0, scale, 1.0)
         terms = _terms(features, mean, scale)
-        # Weights are expected to be of the standard normal distribution: features that say the same do not cancel.
+        # A standard normal prior of the weights: correlated features do not get large weights of opposite sign.
         penalty = np.ones(terms.shape[1])
-        # The constant is free; the little that is left keeps a single class from an infinite one.
+        # The constant is nearly free: this small penalty keeps it finite where all labels are equal.
         penalty[0] = 10.0**-_RULES.digits
         weights = np.zeros(terms.shape[1])
         for _ in range(_RULES.steps):

@@ -95,7 +95,7 @@ def predict(learned: tuple[float, ...], features: np.ndarray, half: np.ndarray) 
         def work(rows: np.ndarray, regression: LogisticRegression = regression) -> None:
             likely[rows] = regression.predict(features[rows])
 
-        # As many numbers at once as in rows of coordinates.
+        # A row has ``count`` features, not three coordinates: chunks hold the same number of values.
         in_chunks(work, np.flatnonzero(half != number), max(1, ROWS_AT_ONCE * 3 // count), Monitor())
     return likely
 

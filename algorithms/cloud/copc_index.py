@@ -47,7 +47,7 @@ def has_index(header: Header) -> bool:
 
 
 def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray) -> CopcIndex:
-    """Return the index of a COPC file, held against the chunks of points that the file has.
+    """Return the index of a COPC file, checked against the chunks of points that the file has.
 
     Parameters
     ----------

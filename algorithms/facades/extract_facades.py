@@ -52,7 +52,7 @@ FACADE_FIELDS = (
     Field("normal_y", float, "Outward unit normal, northward component"),
     Field("normal_z", float, "Outward unit normal, upward component"),
     Field("rms", float, "Root mean square distance of its points from the plane", "m"),
-    Field("points", int, "Its points"),
+    Field("points", int, "Number of its points"),
     Field("density", float, "Points per square meter of the polygon", "points/m²"),
     Field("hull_share", float, "Area within the boundary, as a share of the convex hull of the points"),
     Field("seen_share", float, "Share of the area within the boundary that has points, openings with points included"),

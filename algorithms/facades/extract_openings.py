@@ -32,7 +32,7 @@ OPENING_FIELDS = (
     Field("facade", int, "Number of its facade", of="facades"),
     Field("kind", str, "window or door"),
     Field("row", int, "Row on the facade, from 1 at the bottom"),
-    Field("place", int, "Place in the row, from 1 at the left, seen from outside"),
+    Field("place", int, "Position in the row, from 1 at the left, seen from outside"),
     Field("width", float, "Width", "m"),
     Field("height", float, "Height", "m"),
     Field("area", float, "Area", "m²"),

@@ -44,7 +44,7 @@ LINE_FIELDS = (
     Field("height", float, "That elevation over the lowest of its line", "m"),
     Field("distance", float, "Distance of its middle from the scanner in plan", "m"),
     Field("length", float, "Distance between its first and last point", "m"),
-    Field("points", int, "Its points"),
+    Field("points", int, "Number of its points"),
 )
 
 

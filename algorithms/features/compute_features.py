@@ -67,7 +67,7 @@ _NNeighbors = Annotated[
     Param(
         "Nearest points",
         "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
-        "More of them smooth noise away and blur small things.",
+        "More of them smooth noise away and blur small objects.",
         low=3,
         high=1000,
     ),
@@ -137,9 +137,9 @@ def compute_features(
     Wires are linear, roofs and ground are planar, crowns are scattered; the entropy says how mixed the
     three are. Choose which features to keep: each becomes a dimension that can be drawn and filtered.
 
-    How large a neighborhood should be depends on the noise, the density and the size of things. One number of
+    How large a neighborhood should be depends on the noise, the density and the size of objects. One number of
     points for the whole cloud gives smooth results; the number that is best for each point ('optimal') keeps small
-    things apart and follows the noise more.
+    objects apart and follows the noise more.
 
     Parameters
     ----------

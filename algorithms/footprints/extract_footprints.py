@@ -119,15 +119,15 @@ def extract_footprints(
     cluster_entropy : ndarray of shape (n,), optional
         Mean entropy of the cluster, for the attributes only.
     confidence : ndarray of shape (n,), optional
-        Sureness of being a building, 0 to 1, for the attributes only.
+        Confidence of being a building, 0 to 1, for the attributes only.
     reason : ndarray of shape (n,), optional
         Why points are called building, see :class:`~..cloud.reasons.Reason`, for the attributes and to find walls.
 
     Returns
     -------
     LayerFeatures
-        One valid polygon per building part that is not connected with others, or per house of a row, largest cluster
-        number last; no two overlap. Attributes without the dimension they come from are NaN. None at all where
+        One valid polygon per building part that is not connected with others, or per house of a row, in the order
+        of cluster numbers; no two overlap. Attributes without the dimension they come from are NaN. No polygons where
         there is no building.
 
     Notes
@@ -149,8 +149,7 @@ def extract_footprints(
     Houses of a row are parted along straight lines from one side of a building to the other, in its main directions.
     Along such a line both roofs slope up from it, parallel roofs step by 0.4 m, any by 1 m, or a wall rises 0.3 m above
     both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low
-    parts; 30 % are enough for a further one. Two roofs may be one house. Low parts and pieces under 25 m² belong to
-    one. At a step the lower house must have three quarters of the height of the higher one. Houses keep the number of
+    parts; 30 % are enough for a further one. Two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have three quarters of the height of the higher one. Houses keep the number of
     their cluster.
 
     References
@@ -178,7 +177,7 @@ def extract_footprints(
     spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
     if not merge_touching and spacing > ROWS.max_spacing:
         monitor.inform(
-            f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they are left in one."
+            f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they stay in one."
         )
     if tolerance is None:
         tolerance = _TOLERANCE_SPACINGS * spacing
@@ -309,7 +308,7 @@ def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list
 
 
 def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidence:
-    """Return the shares, pieces and direction weights of the buildings of a part."""
+    """Return the shares, pieces and rings of the buildings of a part."""
     top = topmost(measures.local(part.roof), part.label, how.spacing)
     other = topmost(measures.local(part.beside), np.zeros(len(part.beside), np.int64), how.spacing)
     roof, beside = measures.local(part.roof[top]), measures.plan(part.beside[other])
@@ -347,7 +346,7 @@ def _shared_directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]
 def _houses(
     part: _Part, evidence: _Evidence, directions: dict[int, np.ndarray], measures: PointMeasures, how: Drawing
 ) -> dict[int, Houses]:
-    """Return the houses of each building of a part; none where blocks are to be whole."""
+    """Return the houses of each building of a part, {} where touching buildings are merged."""
     if how.is_merged:
         return {}
     height = measures.over_lowest(part.roof, part.members)

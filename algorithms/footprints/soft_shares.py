@@ -28,12 +28,12 @@ _TRUNCATE = 3.0
 # Distance (spacings) from a point up to which it has a weight.
 REACH = _NEAR * _TRUNCATE
 
-# Distance (spacings) beyond which buildings have no effect on each other's outlines but for their directions, and
-# points have none on the attributes of an outline.
+# Distance (spacings) beyond which buildings affect only the directions of each other's outlines, and points do not
+# affect the attributes of an outline.
 APART = 8.0
 
-# Least spacing (m) that outlines are drawn by, and of the heights in which rows are sought: gutters and small bays are
-# no walls, and a fire wall is thicker.
+# Least spacing (m) assumed when outlines are drawn, and least step of the grid of heights in which rows of houses are
+# separated: gutters and small bays are no walls, and a fire wall is thicker.
 LEAST_SPACING = 0.25
 
 # Least density of roofs, as a share of the usual density of one point per square spacing, below which a position is far
@@ -157,7 +157,7 @@ def find_shares(
     filled = empty * np.clip(2 * around / np.maximum(usual, _NOWHERE) - 1, 0.0, 1.0)
     total = np.maximum(density + other + empty, _NOWHERE)
     numbers = np.unique(building)
-    # Of a gap each building takes what it has of the roofs around.
+    # A gap is shared among buildings in proportion to their roofs around it.
     of_gaps = filled / np.maximum(around, _NOWHERE)
     shares: dict[int, tuple[Lattice, np.ndarray]] = {}
     best, second = np.zeros((2, *lattice.shape), np.float32)

@@ -145,7 +145,7 @@ def cheapest_cut(
     start, end = start[has_room], end[has_room]
     inside = np.zeros(n + 2, bool)
     inside[source] = True
-    # All that edges with room lead to from the source.
+    # All nodes that the source reaches over edges with capacity left.
     while (leads_on := inside[start] & ~inside[end]).any():
         inside[end[leads_on]] = True
     return inside[:n]

@@ -56,10 +56,10 @@ def _along_diagonals(surface: np.ndarray, length: int, rising: bool, running: Ca
     """Run a one-dimensional filter along the diagonals: sheared, they are columns."""
     rows, columns = surface.shape
     if rows > columns:
-        # It takes rows times the sum of both; the diagonals of the transposed surface are the same.
+        # Time grows with rows * (rows + columns): transposed there are fewer rows, and the same diagonals.
         return _along_diagonals(surface.T, length, rising, running, outside).T
     width = rows + columns - 1
-    # What starts one cell later in each row of this width starts in the same column of rows that are a cell longer.
+    # Written in rows of width + 1 and read in rows of width, each row is shifted one cell more: diagonals are columns.
     sheared, filtered = np.full(rows * (width + 1), outside), np.empty(rows * (width + 1))
     order = slice(None, None, 1 if rising else -1)
     sheared.reshape(rows, width + 1)[:, :columns] = surface[order]

@@ -32,7 +32,7 @@ _TRIAL = 64
 # Cosine of the angle between edges of one line, at least: 10°.
 _NEARLY = 0.985
 
-# Lines with a smaller sine between them are taken for parallel; their crossing says nothing of where they part.
+# Lines with a smaller sine between them are taken for parallel; the position of their intersection is undetermined.
 _PARALLEL = 0.05
 
 # Greatest distance (steps) of a corner from where the runs part: the corner of a sharp angle lies that far off.
@@ -43,19 +43,19 @@ _FARTHEST = 6.0
 class Prices:
     """What corners and directions cost; each is a multiple of ``corner``."""
 
-    corner: float  #: Of a right-angled corner, m³: as much as a bay of two spacings by four that is not drawn
-    flat: float = 1.5  #: Of a corner that turns by less than 20°, which noise makes more easily than a sharper one
-    step: float = 2.0  #: Of a step or a turn by 180°, both of which are drawn with two corners
-    sharp: float = 4.0  #: Of a corner that turns by 170° or more; from 110° on the price grows toward it
-    #: Of an edge along the second main direction. With 1.0 the short side of a house whose front is askew followed the
-    #: front.
+    corner: float  #: Price of a right-angled corner, m³: that of leaving out a bay of two spacings by four
+    flat: float = 1.5  #: Corner that turns by less than 20°, which noise makes more easily than a sharper one
+    step: float = 2.0  #: Step or turn by 180°, both of which are drawn with two corners
+    sharp: float = 4.0  #: Corner that turns by 170° or more; from 110° on the price grows to this
+    #: Edge along the second main direction. With 1.0, the short side of a house whose front is oblique was drawn
+    #: parallel to the front's direction.
     second: float = 0.5
-    other: float = 1.75  #: Of an edge along neither of them
-    #: curved, other_curved: Of a ring with curved walls, and of each of its edges along neither direction, where that
-    #: is less together
+    other: float = 1.75  #: Edge along neither main direction
+    #: curved, other_curved: A ring with curved walls pays ``curved`` once and ``other_curved`` for each edge along
+    #: neither main direction, if this sum is less than with ``other``
     curved: float = 15.0
     other_curved: float = 0.5
-    round: float = 0.2  #: Of a corner of a ring without main directions, which is drawn in chords
+    round: float = 0.2  #: Corner of a ring without main directions, which is drawn in chords
 
 
 @dataclass(frozen=True)

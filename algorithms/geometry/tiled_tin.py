@@ -2,7 +2,7 @@
 
 A triangle belongs to the Delaunay triangulation of all nodes when none of them lies inside its circle, whichever nodes
 it was found among. So only the nodes close to the points of a tile are triangulated, and every triangle under a point
-is held to that rule: the surface is that of one triangulation, without seams.
+is tested by that rule: the surface is that of one triangulation, without seams.
 
 The far corners that surround the nodes of a tile take no part: where one of them spoils the flat triangles along the
 hull of the nodes, these are triangulated again without it.
@@ -22,8 +22,8 @@ from .delaunay import circles
 from .grid import grid_over, plan_box
 from .tin import CORNERS, Tin
 
-# Nodes and points of a tile at most: of few nodes each is triangulated in less than half the time that it takes among
-# twenty thousand, and of fewer the surroundings of tiles count.
+# Nodes and points of a tile at most: per node, tiles of this size take less than half the time of tiles of twenty
+# thousand; in smaller ones the overlap of tiles takes more.
 _NODES, _PLACES = 5_000, 20_000
 
 # Tiles that a thread works on between two reports.
@@ -32,7 +32,7 @@ _TILES_AT_ONCE = 4
 # Cells around positions, in distances between nodes: most triangles have their corners in such a cell or the next.
 _CELL = 1.5
 
-# Nodes inside a circle that are taken in at once.
+# Nodes inside a circle that are added at once.
 _INTRUDERS = 8
 
 # Nodes whose width in plan is a smaller share of their length than this lie on a line, and no point lies between them.
@@ -52,10 +52,10 @@ class TiledTin:
     """
 
     def __init__(self, nodes: np.ndarray) -> None:
-        # In this order rows, ascending, are in the same one however the nodes came.
+        # Sorted, so that the order of the input has no influence.
         self.nodes = nodes = _lowest_of_each_position(nodes)
         self._box = plan_box(nodes)
-        # Small numbers keep their digits when they are squared. Triangulations of tiles, of the same box, have it too.
+        # Squares of coordinates near zero lose fewer digits. Triangulations of tiles have the same box and shift.
         self._shift = self._box.mean(axis=0)
         self._tree = spatial.cKDTree(nodes[:, :2] - self._shift, balanced_tree=False)
 
@@ -156,7 +156,7 @@ class TiledTin:
         is_wrong = self._tree.query(center)[0] < limit
         distance, node = self._tree.query(center[is_wrong], np.arange(1, min(_INTRUDERS, len(self.nodes)) + 1))
         is_new = (distance < limit[is_wrong, None]) & ~np.isin(node, rows)
-        # Where all of them are known, it is rounding.
+        # Circles in which all nodes found were triangulated already are wrong by rounding only.
         is_wrong[is_wrong] = is_new.any(axis=1)
         return node[is_new], is_wrong
 

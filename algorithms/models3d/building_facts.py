@@ -64,7 +64,9 @@ BUILDING_FIELDS = (
     Field("off", float, f"share of its roof points more than {RULES.off} m above or below the model, 0 to 1"),
     Field("explained", float, "share of its roof points that lie on the model, 0 to 1"),
     Field("covered", float, "share of its area that has points, 0 to 1"),
-    Field("gap_area", float, "its area without points; largest first, it shows holes too small for check", "m²"),
+    Field(
+        "gap_area", float, "area of its footprint without points; sort by it to find holes too small for check", "m²"
+    ),
     Field(
         "check",
         int,

@@ -51,22 +51,22 @@ class BuildingModel:
     """A building's solids by level of detail, and the facts about its best level."""
 
     base: float  #: Height of the ground (m): that of the base of the solids
-    level: str = ""  #: The best level that it has, "" where it has none
-    reason: str = ""  #: Why it is not the level that was wanted, "" where it is
-    #: By level; parts of the footprint that only touch in a point are solids of their own
+    level: str = ""  #: Best level of the building, "" without any
+    reason: str = ""  #: Why ``level`` is not the level asked for, "" where it is
+    #: Solids by level; parts of the footprint that only touch in a point are separate solids
     solids: dict[str, list[Solid]] = field(default_factory=dict)
     terrain: float = np.nan  #: Median height of the ground along the outline (m)
     ridge: float = np.nan  #: 98th percentile of the heights of the roof points (m)
     rms: float = np.nan  #: Root mean square height of the roof points above or below the best level (m)
-    #: That of the points on planes by level, none farther than counts when levels are compared
+    #: Root mean square distance (m) of the points on planes by level, each distance at most ``FARTHEST``
     rms_of: dict[str, float] = field(default_factory=dict)
-    #: explained, off, covered: Shares of the roof points that lie on the model and that are off it, and of its area
-    #: that has points, 0 to 1
+    #: explained, off, covered: Share of the roof points that lie on the model, share of those that are off it, and
+    #: share of the footprint's area that has points, 0 to 1
     explained: float = np.nan
     off: float = np.nan
     covered: float = np.nan
-    n_points: int = 0  #: Points of the building
-    face_rms: dict[int, float] = field(default_factory=dict)  #: Of each plane of the best level (m)
+    n_points: int = 0  #: Number of points of the building
+    face_rms: dict[int, float] = field(default_factory=dict)  #: Root mean square by plane of the best level (m)
 
     @property
     def best(self) -> list[Solid]:
@@ -82,17 +82,17 @@ def model_building(
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
-        Its points (m).
+        Points of the building (m).
     is_low : ndarray of shape (n,), bool
-        Which of them have a higher one beside them; see :func:`.are_low`.
+        Which of these points have a higher one near them; see :func:`.are_low`.
     around : ndarray of shape (m, 3)
-        Points of buildings over its footprint and beside it (m).
+        Points of any building over the footprint and around it (m).
     rings : list of ndarray
-        Its footprint: closed rings (m).
+        Closed rings of the footprint (m).
     base : float
         Height of the ground (m).
     settings : Settings
-        How it is modelled.
+        Tolerances and level of the model.
     """
     origin = np.floor(rings[0][:, :2].min(axis=0))
     local, plan = xyz - [*origin, 0.0], [ring[:, :2] - origin for ring in rings]

@@ -71,7 +71,7 @@ def mended(
         partition.cells = partition.cells.copy()
     mending = _Mending(partition, xyz, limits, percentile)
     for count in range(_MENDINGS):
-        # What a fault raises may have another one when it is lowered: after some rounds it stays.
+        # Lowering a corner may cause the fault again that was mended by raising it: later rounds lower none.
         if count < _ROUNDS:
             mending.lower_high_cells()
         mending.join_small_parts()

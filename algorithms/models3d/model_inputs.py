@@ -10,13 +10,13 @@ from ..stage import Monitor
 # Rings with less area (m²) are no footprints.
 NO_AREA = 0.5
 
-# Points of a roof lie on its plane within this many times their roughness; in the mean of many that is all of them.
+# A point lies on a plane within this many times the roughness of surfaces: 99.7 % do if errors are normal.
 _TOLERANCE_ROUGHNESS = 3.0
 
-# Tolerances (m) that are neither finer than the courses of tiles, nor coarser than the steps that parts have.
+# Least and greatest tolerance (m): above the courses of tiles, below the steps between parts of a roof.
 _TOLERANCES = 0.08, 0.35
 
-# What a stage says of its automatic tolerance.
+# Text about the automatic tolerance in the help of stages.
 TOLERANCE_TEXT = (
     f"{_TOLERANCE_ROUGHNESS:g} times the roughness of the cloud's surfaces, {_TOLERANCES[0]} to {_TOLERANCES[1]} m."
 )
@@ -40,7 +40,7 @@ def require_ground(classification: np.ndarray) -> None:
 
 
 def tell_without_area(n_sound: int, count: int, monitor: Monitor) -> None:
-    """Say how many of ``count`` footprints have no area; refuse with a ValueError if none has one."""
+    """Warn how many of ``count`` footprints have no area; refuse with a ValueError if none has one."""
     if not n_sound:
         raise ValueError(f"None of the {count} footprints has an area of {NO_AREA} m² or more; choose another layer.")
     if n_sound < count:

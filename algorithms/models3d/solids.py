@@ -26,7 +26,7 @@ class Solid:
     #: last vertex is not the first one again)
     faces: list[list[Ring]] = field(default_factory=list)
     kinds: list[str] = field(default_factory=list)  #: "roof", "wall" or "ground"
-    planes: list[int] = field(default_factory=list)  #: Of which plane a roof face is part, -1 for others
+    planes: list[int] = field(default_factory=list)  #: Plane of each roof face, -1 for other faces
 
     @cached_property
     def normals(self) -> np.ndarray:

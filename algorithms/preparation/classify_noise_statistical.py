@@ -67,8 +67,8 @@ def classify_noise_statistical(
     """Find points far from their nearest neighbors, and groups of points apart from all others.
 
     The distances to neighbors find points that are alone. Then come isolated points, alone or many together, by their
-    distance to the scene: loose things in the open air, and few points under the ground. Low noise (class 7) lies under
-    its neighbors, high noise (class 18) over them.
+    distance to the scene: loose objects in the open air, and few points under the ground. Low noise (class 7) lies
+    under its neighbors, high noise (class 18) over them.
 
     Parameters
     ----------

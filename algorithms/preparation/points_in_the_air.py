@@ -18,7 +18,7 @@ from .points_under_ground import mask_of, near_cells
 # wires closer.
 _LINK = 2.4
 
-# The same in point spacings, where that is more: of points at random hardly any has none within it.
+# The same in point spacings, where that is more: hardly any point of a random sample has no other within it.
 _LINK_SPACINGS = 3.5
 
 # Share of the pulses that an object stops, below which it is not solid.
@@ -27,7 +27,7 @@ _SOLID_SHARE = 0.3
 # Side (point spacings) of the columns in which this share is measured: 16 points of the scene in each.
 _SHARE_SPACINGS = 4.0
 
-# Points that a column counts as having at least: those that the edge of the cloud cuts count as half full.
+# Least number of points assumed in a column: columns cut by the edge of the cloud count as half full.
 _LEAST_IN_COLUMN = 8
 
 # Size (m) up to which three points or more are the head of a lamp: birds are farther apart.
@@ -66,7 +66,7 @@ _TUBE_LENGTH = 12.0
 # Nearest points of each point through which lines are tried.
 _TUBE_NEIGHBORS = 24
 
-# Least distance (m) between the two points of a line: between nearer ones its direction is chance.
+# Least distance (m) between the two points of a line: between nearer ones its direction is random.
 _TUBE_NEAREST = 1.0
 
 # Largest distance (m) between the two points of a line.

@@ -37,8 +37,8 @@ _BUILDINGS = Layer(
             f"with others; {SPLIT}: it has several; {MISSED}: it has none; "
             f"{INVENTED}: a footprint that isn't in the reference",
         ),
-        Field("building", str, "its attribute id in its own layer, or its number there"),
-        Field("counterpart", str, "what it was compared with in the other layer, the best first, separated by commas"),
+        Field("building", str, "attribute id of the building in its own layer, or its number in it"),
+        Field("counterpart", str, "names of the footprints that belong to it, the best first, separated by commas"),
         Field("area", float, "area", "m²"),
         Field("covered", float, "share of it that the other layer has too, 0 to 1"),
         Field("iou", float, "intersection over union with the best counterpart, 0 to 1"),
@@ -139,7 +139,7 @@ def assess_footprints(
     buildings : LayerFeatures
         All buildings of the reference, then the footprints that are not in it.
     report : Report
-        Counts and medians, and a page with charts and a map. What there is nothing to compute from is NaN.
+        Counts and medians, and a page with charts and a map. Measures without any value to compute them from are NaN.
 
     Raises
     ------

@@ -24,10 +24,12 @@ from .scan_line_pieces import NearPoints, ends_of, pieces_of_lines, slices
 
 @dataclass(frozen=True)
 class DeckRules:
-    """What decks of bridges are."""
+    """Rules by which decks of bridges are recognized."""
 
     directions: int = rule(8, "", "geometry: one of the lines crosses each bridge within 12° of its shortest section")
-    least_directions: int = rule(2, "", "in which a deck is raised: crowns are in one, F 75 on a real bridge, not 91")
+    least_directions: int = rule(
+        2, "", "in which a deck is raised: crowns are raised in one, with which F of a real bridge is 75, not 91"
+    )
     most_below: float = rule(0.15, "share of points", "physics: beams pass through crowns, and not through decks")
     edge: float = rule(0.25, "of width, of length", "beams 30° off the vertical reach under edges; and ends of a deck")
     far: float = rule(
@@ -35,7 +37,7 @@ class DeckRules:
     )
     least_cell: float = rule(1.0, "m", "least side of cells, and how far from the edge a bank shows")
     slope: float = rule(15.0, "°", "of sections and roads, fitted on canals: at 30° F is 34 to 59 instead of 80 to 95")
-    noise_step: float = rule(4.0, "standard deviations", "statistics: differences in height that are noise")
+    noise_step: float = rule(4.0, "standard deviations", "statistics: largest difference in height that is noise")
 
 
 DECK = DeckRules()
@@ -51,7 +53,7 @@ class Decks:
     min_area: float
     cell: float  #: Side of cells and width of lines, m
     is_thinned: bool  #: Whether one point per third of a cell is looked at: in denser clouds the others show no more
-    near: NearPoints  #: Which points of a line are of one section
+    near: NearPoints  #: When points of a line belong to one section
 
     @property
     def reach(self) -> float:
@@ -147,7 +149,7 @@ class Decks:
         """Return which rows ``end`` (m,) have lower points beyond them, before or behind by ``sign``.
 
         Either some are within reach, or they come before the next point at the height of the end: parapets and the
-        sides of a deck are neither.
+        sides of a deck fulfill neither.
         """
         if sign < 0:
             count = end - np.searchsorted(along, along[end] - DECK.far * self.reach)
@@ -159,7 +161,7 @@ class Decks:
         is_low = below >= self.min_height
         within = np.abs(along[rows] - along[end][which]) <= self.reach
         ends = np.bincount(which[is_low & within], minlength=len(end)) > 0
-        # Points on the way down are of a bank, but for the few on the side of a deck.
+        # Points lower than the end by less than that show a bank, unless there are few, as on the side of a deck.
         beside = (below > ON_DECK.rough) & ~is_low & (np.abs(along[rows] - along[end][which]) <= DECK.least_cell)
         follows = np.flatnonzero(is_low | (np.abs(below) <= ON_DECK.rough))
         first = follows[run_starts(which[follows])]
@@ -239,7 +241,7 @@ class Decks:
 
 @dataclass(frozen=True)
 class _Around:
-    """Terrain (n, 3) from west to east, how many points hang together with each (n,), and how far to look (m).
+    """Terrain (n, 3) from west to east, the number of points connected with each (n,), and the search distance (m).
 
     A tree of the points around a deck is made in a fraction of the time of one of the whole terrain.
     """

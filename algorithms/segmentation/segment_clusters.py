@@ -47,7 +47,7 @@ def segment_clusters(
         Param(
             "Minimum points",
             "Points within the radius, the point itself among them, that make a point the core of a cluster; "
-            "larger leaves out thinner things.",
+            "larger leaves out thin objects.",
             low=1,
             high=1_000_000,
             automatic="a quarter of the points of a level surface within the radius, as at the corner of a roof.",

@@ -12,12 +12,11 @@ from ..packages import spatial
 from .cylinder_fits import SECTORS, Cylinder, fit_cylinder
 from .cylinder_search import Found
 
-# Largest deviation (standard deviations of the noise) of the points of a piece from the cylinder of all pieces, beyond
-# that from their own. It is a third of what a bend of one cylinder may explain, as the gap hides how the pieces go on.
-# Pipes of 2 m with noise of 2 mm that lie 6 mm beside each other exceed it.
+# Largest increase (standard deviations of the noise) of the deviation of a piece's points when its own cylinder is
+# replaced by that of both pieces. Pipes 2 m long with noise of 2 mm whose axes are 6 mm apart exceed it.
 _MOST_APART = 0.2
 
-# Largest ratio of the radii of two pieces, and largest angle (°) between their axes: wide bounds that spare fits.
+# Largest ratio of the radii of two pieces, and largest angle (°) between their axes: wide bounds that save fits.
 _RADII, _ANGLE = 1.15, 8.0
 
 # Largest distance (radii) of the facing end of a piece from the axis of the other: a wide bound, too.
@@ -29,7 +28,7 @@ _CAP_RADIUS = 0.7
 # Least share of the points of an end cap, of those that its area would have, that part two cylinders.
 _CAP_SHARE = 0.3
 
-# Least share of the points of an even spread that a sector of the circumference has where it is seen.
+# A sector of the circumference is seen if it has this share of the points that it would have if they were even.
 _STRAY = 0.3
 
 

@@ -16,7 +16,7 @@ from .search_settings import check_radii, point_noise
 from .shape_windows import WINDOW
 from .surface_normals import normal_points, normals_of
 
-# Segments are laid out side by side, so that no window holds points of two: this many window sides apart.
+# Segments are moved apart by this many window sides, so that no window holds points of two.
 _SIDES_APART = 3.0
 
 
@@ -35,8 +35,8 @@ SearchIn = Annotated[
     str,
     Param(
         "Search in",
-        "Points to search: the whole cloud, which forgets segments and shapes found before; the points that have no "
-        "shape yet; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep "
+        "Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without "
+        "a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep "
         "their segment.",
         choices=SEARCHES,
     ),
@@ -44,7 +44,7 @@ SearchIn = Annotated[
 
 
 class FoundShape(Protocol):
-    """A shape that was found: what all kinds of them have."""
+    """Attributes that found shapes of all kinds have."""
 
     @property
     def points(self) -> np.ndarray:
@@ -254,7 +254,7 @@ def search_shapes(
     points = searched_points(xyz, classification, segment_id, shape, tunables.search_in, WINDOW * max_radius)
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
-        # A tolerance that is set implies the noise, too.
+        # A tolerance set by the user implies a noise of a third of it.
         around = Surroundings(
             points.xyz, normals[points.rows], max(noise, tolerance / 3), tolerance, spacing, points.shift
         )

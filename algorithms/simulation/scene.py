@@ -65,7 +65,7 @@ class Scene:
     relief: Relief  #: Ground and water
     #: The buildings; their object ids are unique among all objects
     buildings: list[Building] = field(default_factory=list)
-    solids: list[Solid] = field(default_factory=list)  #: All solid things, those of the buildings too
+    solids: list[Solid] = field(default_factory=list)  #: All solids, those of the buildings too
     crowns: Crowns = field(default_factory=Crowns)  #: Trees, bushes, hedges
     wires: list[tuple] = field(default_factory=list)  #: Straight pieces: start and end (x, y, z each, m) and object id
     objects: int = 0

@@ -166,7 +166,7 @@ def simulate_town(
     each lets 70 % of the pulses on. The beam is 0.2 m wide on the ground, so that the edge of a roof gives two returns.
     Echoes less than 0.7 m apart are one.
 
-    Not simulated: eaves that jut out, windows, curved roofs, things that move, errors between strips, drift of the
+    Not simulated: eaves that jut out, windows, curved roofs, objects that move, errors between strips, drift of the
     position, grass, and walls that mirror.
 
     Examples

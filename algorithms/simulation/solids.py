@@ -62,7 +62,7 @@ class Solid:
     rect: Rect  #: The footprint
     tops: np.ndarray  #: (k, 3), k from 1 to 4: planes z = a x + b y + c
     bottom: float  #: Elevation of the underside where it is lowest (m)
-    #: classification, object_id: What the points on it are
+    #: classification, object_id: Class code and object number of the points on it
     classification: int
     object_id: int
     #: (3,): plane of the underside, (a, b, c) like a top's; level where it is not given

@@ -17,7 +17,7 @@ from .town_layout import park_car
 # Widths of houses, and heights of the eaves of a side (m); houses of one side differ by less than a storey.
 _WIDTHS, _EAVES, _DIFFERENCE = (8.0, 12.0), (7.0, 11.0), 0.8
 
-# Rows of things, from the fronts toward the street (m).
+# Rows of objects, from the fronts toward the street (m).
 _PEOPLE, _TREES, _POLES, _CARS = 1.2, 2.2, 2.4, 3.6
 
 # A person and a pole: width (m) and height (m).

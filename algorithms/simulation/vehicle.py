@@ -12,11 +12,11 @@ from .beams import Beams
 from .drone import LineScan, Surroundings, bearing, first_met, in_time_order, recorded
 from .scene import Scene
 
-# Scanners turn in upright planes that look this far ahead of and behind the perpendicular of the way (°), as on most
-# mapping vehicles: so each side of a recess is seen by one of them. By their number, the source id of their points.
+# Angles (°) of the upright planes in which scanners turn, ahead of and behind the perpendicular of the drive, as on
+# most mapping vehicles: so one scanner sees each side of a recess. By scanner number, the source id of its points.
 PLANES = {1: 45.0, 2: -45.0}
 
-# Pulses worked on at once, and the way (m) that the vehicle goes meanwhile at most.
+# Most pulses worked on at once, and longest distance (m) that the vehicle drives during these.
 _BLOCK, _BLOCK_WAY = 50_000, 1.0
 
 

@@ -133,7 +133,7 @@ def feature_names(features: LayerFeatures, id_field: str = "") -> list[str]:
 def _text(value: object) -> str:
     """Return an attribute as text, "" where it is missing; whole numbers come as floats where some are missing."""
     if isinstance(value, (float, np.floating)):
-        # Keys of 16 digits are exact, but not in 15 digits.
+        # Keys of 16 digits are exact as floats, but 15 significant digits would round them.
         return "" if math.isnan(value) else f"{value:.0f}" if value.is_integer() else f"{value:.15g}"
     return "" if value is None else str(value)
 

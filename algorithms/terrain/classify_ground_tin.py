@@ -27,7 +27,7 @@ class GroundRules:
         6.0, "deviations", "statistics: roughness of the finished surface within which points are ground"
     )
     sweep_noise: float = rule(4.0, "deviations", "beyond which low plants make the roughness larger than noise")
-    sweep_bend: float = rule(0.1, "cells", "of the finished surface, the most beyond that")
+    sweep_bend: float = rule(0.1, "cells", "greatest increase of the distance beyond that, for bends of the surface")
     angle: float = rule(20.0, "°", "fitted on eight ISPRS samples: iteration angle, but in nature")
     angle_in_nature: float = rule(30.0, "°", "physics: the same there, where breaks are steeper and objects fewer")
 
@@ -77,7 +77,7 @@ _SweepDistance = Annotated[
         low=0,
         high=100,
         automatic=f"{GROUND.sweep_noise:g} times the roughness of the finished surface, or the surface noise where "
-        f"that is more, and half as much again but at most {GROUND.sweep_bend:g} cells.",
+        f"that is more; increased by a half, but by {GROUND.sweep_bend:g} cells at most.",
         advanced=True,
     ),
 ]
@@ -105,7 +105,7 @@ _MaxBuildingSize = Annotated[
         low=1,
         high=1000,
         automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
-        "as the terrain says.",
+        "that of the kind of terrain.",
     ),
 ]
 

@@ -23,7 +23,9 @@ class FreeStandingRules:
     steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, and of smeared walls; soil is less steep")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
     open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")
-    most: float = rule(0.5, "share", "most of steps, of the edge of a part, of a region or of a machine, of a ring")
+    most: float = rule(
+        0.5, "share", "majority of steps, of the edge of a part, region or machine, or of the cells of a crest"
+    )
     least_cells: int = rule(4, "cells", "of a segment; smaller ones are undecided, as rough cells are")
 
 
@@ -34,9 +36,9 @@ FREE = FreeStandingRules()
 class _Lengths:
     """Lengths of the edges of segments (s,), in cells."""
 
-    whole: np.ndarray  #: (s,), int64: all of it but the end of the cloud
-    open: np.ndarray  #: (s,), int64: what nothing hides of it
-    down: np.ndarray  #: (s,), int64: steps down
+    whole: np.ndarray  #: (s,), int64: the whole edge without the end of the cloud
+    open: np.ndarray  #: (s,), int64: its part that nothing hides
+    down: np.ndarray  #: (s,), int64: its part with steps down
 
 
 @dataclass(frozen=True)
@@ -179,7 +181,7 @@ def _are_free_standing(segments: _Segments, least: float, usual: float, largest:
 
 
 def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.ndarray, least: float) -> np.ndarray:
-    """Return which segments (s,) have steps down on most of the edge that nothing hides, and enough of that.
+    """Return which segments (s,) have steps down on most of the edge that nothing hides, if enough of it is open.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ _KINDS = (
     "values",
 )
 
-# Those of them that grow with the points of a block; they are left out where all blocks are in memory at once.
+# Kinds whose size grows with the points of a block; they are not read where all blocks are in memory at once.
 _LARGE = ("dimensions", "inside", "beside", "rasters")
 
 
@@ -67,8 +67,8 @@ class BlockResult:
     #: By class of the items of text files: name in the block and record of each item that belongs to these features
     items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
     seconds: dict[str, np.ndarray] = field(default_factory=dict)  #: dict of str to (): how long each step took
-    #: dict of str to (): what automatic tunables took, and other values that steps found, by the names that they have
-    #: in the chain
+    #: dict of str to (): values of automatic tunables, and other values that steps found, by their names in the
+    #: chain
     values: dict[str, np.ndarray] = field(default_factory=dict)
     #: messages, absent: Warnings, and sentences of steps that found nothing, each once
     messages: list[str] = field(default_factory=list)
@@ -92,7 +92,7 @@ class BlockResult:
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:
         """Return what :meth:`write` wrote; without the points, arrays that grow with them are left out."""
-        # numpy leaves a file open that it can't read.
+        # The file is closed here: numpy leaves it open if it can't read it.
         with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
             layers: dict[str, dict[str, np.ndarray]] = {}

@@ -1,4 +1,4 @@
-"""What blocks found each for itself, as one: segments that go on in the next block, features that several found."""
+"""Join the results of blocks: segments that continue in the next block, and features that several blocks found."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from .tiled_steps import layers_of
 _FORWARD = ((1, 0), (-1, 1), (0, 1), (1, 1))
 _EDGES_KEPT = 8
 
-# The number of a feature in its layer, and what numbers the cluster that it is the outline of.
+# Fields with the number of a feature in its layer, and with that of the cluster that it outlines.
 _ID, _CLUSTER = "id", "cluster_id"
 
 _NONE = np.zeros(0, np.int64)
 
-# What gives the records inside and beside the edges of a block, by its position.
+# Returns the records inside and outside the edges of a block, by the position of the block.
 Edges = Callable[[int], tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
 
 
@@ -47,7 +47,7 @@ def join_numbers(
     blocks : list of Block
         Squares of one lattice.
     results : list of BlockResult
-        What was found in them; their edges are not asked for.
+        Results of the blocks; their edges are read by ``edges`` only.
     edges : callable
         As ``edges`` of :class:`.BlockResult`. Memory: those of a few blocks at a time.
     features : dict of str to list of ndarray, optional
@@ -139,7 +139,7 @@ def _links(blocks: list[Block], edges: Edges) -> list[tuple[int, int, str, np.nd
 
 
 def _same_records(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the numbers (k, 2) that records in both have, by file, place and number (n, 3) and (m, 3)."""
+    """Return the numbers (k, 2) that records in both have, by file, position in it and number (n, 3) and (m, 3)."""
     other = other[np.argsort(_record_keys(other[:, 0], other[:, 1]))]
     at, is_there = find_cells(_record_keys(other[:, 0], other[:, 1]), _record_keys(one[:, 0], one[:, 1]))
     return np.column_stack([one[is_there, 2], other[at[is_there], 2]])
@@ -196,8 +196,8 @@ def join_features(
     declared : Layer
         How the stage declares them.
     references : References, optional
-        Where points refer to the features. One that has a number in another layer is called the same here; the numbers
-        of others follow, and all are added.
+        Where points refer to the features. A feature that has a number from another layer keeps it; the others get
+        the numbers after these, which are added to ``known``.
     pieces : list of ndarray, optional
         Where pieces can be put together, which of the features of each block may have been cut off.
 
@@ -233,7 +233,7 @@ def join_features(
 def _put_together(
     features: LayerFeatures, whole: Callable[[LayerFeatures, int], LayerFeatures], leader: np.ndarray, counts: list[int]
 ) -> None:
-    """Make the whole of the pieces of features, in place, of those that stay for several."""
+    """Replace, in place, each feature that stays for several pieces by the whole put together of these."""
     points = np.bincount(leader, counts, len(leader)).astype(np.int64)
     order = np.argsort(leader, kind="stable")
     for group in np.split(order, np.flatnonzero(np.diff(leader[order])) + 1):

@@ -181,7 +181,7 @@ class Survey:
                     yield start + rows, records
 
     def _in_order(self, records: np.ndarray, source: np.ndarray, position: np.ndarray) -> Window:
-        """Sort records by their measurements, and leave every measurement once."""
+        """Sort records by their measurements, and keep each measurement once."""
         layout = self.header.layout
         keys = [records[axis] for axis in "XYZ"]
         keys += [layout.get(records, name) for name in _KEYS if name in layout.names]
@@ -310,7 +310,7 @@ def _box(header: Header, units: Units) -> np.ndarray:
     box = np.array([header.low[:2], header.high[:2]]) * units.horizontal
     if not np.isfinite(box).all():
         raise ValueError("The bounds in the header of a file are not finite; repair its header first.")
-    # The bounds are rounded in some files: a step of the scale more misses no point.
+    # Some files have rounded bounds: a margin of one step of the scale includes all points.
     step = np.abs(header.scale[:2]) * units.horizontal
     return box + np.array([-step, step])
 

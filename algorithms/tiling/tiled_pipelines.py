@@ -32,7 +32,7 @@ it is complete, the results of blocks are kept in a hidden folder among the tile
 end; the tiles that they touch are missing then, all others are written.
 
 The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must
-see the same folders under the same paths; they get the program from here, and need numpy, scipy, laspy and lazrs.
+see the same folders under the same paths; they receive the program from QGIS, and need numpy, scipy, laspy and lazrs.
 """
 
 

@@ -12,7 +12,7 @@ from ..packages import ndimage
 from ..segmentation.top_surface import highest_of_cells
 from ..stage import Monitor
 
-# Side of the cells (m) whose highest points show parapets: these are about as wide.
+# Side of the cells (m) whose highest points are used: about the width of parapets.
 _CELL = 0.3
 
 
@@ -44,7 +44,7 @@ def split_blocks(
         return cluster_id
     size = max(_CELL, 2 * spacing)
     top = own[highest_of_cells(xyz[own], size)[0]]
-    # Roofs are compared by their elevations: above sloping ground the heights of a level roof differ.
+    # Roofs are compared by their elevations: over sloping ground, heights above ground vary on a level roof.
     lowest = np.full(int(cluster_id.max()) + 1, np.inf)
     np.minimum.at(lowest, cluster_id[top], (xyz[:, 2] - height)[top])
     corner = xyz[own, :2].min(axis=0)
