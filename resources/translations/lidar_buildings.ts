@@ -828,7 +828,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Maximum building size (m)&lt;/b&gt;: The shorter side of the largest building; smaller keeps more of narrow hilltops. Automatic: 60 m, and any size for segments that are free-standing on nearly all sides; or as the terrain says. &lt;i&gt;(at least 1 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Maximum building size (m)&lt;/b&gt;: The shorter side of the largest building; smaller keeps more of narrow hilltops. Automatic: 60 m, and any size for segments that are free-standing on nearly all sides; or that of the kind of terrain. &lt;i&gt;(at least 1 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -992,7 +992,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum frequency&lt;/b&gt;: Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, and thin things such as wires with it. &lt;i&gt;(at least 1 and at most 10,000; default 5)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum frequency&lt;/b&gt;: Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, and thin objects such as wires with it. &lt;i&gt;(at least 1 and at most 10,000; default 5)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1120,7 +1120,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum points&lt;/b&gt;: Points within the radius, the point itself among them, that make a point the core of a cluster; larger leaves out thinner things. Automatic: a quarter of the points of a level surface within the radius, as at the corner of a roof. &lt;i&gt;(at least 1 and at most 1,000,000; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum points&lt;/b&gt;: Points within the radius, the point itself among them, that make a point the core of a cluster; larger leaves out thin objects. Automatic: a quarter of the points of a level surface within the radius, as at the corner of a roof. &lt;i&gt;(at least 1 and at most 1,000,000; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1156,7 +1156,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum share of roof surfaces&lt;/b&gt;: Share of the points at about the height of a building's roof, within the clearance above and below, that must lie on roof surfaces. In crowns with a smooth side it is less. 0 takes any; in clouds of matched images it is not examined. &lt;i&gt;(at least 0 and at most 1; default 0.6)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum share of roof surfaces&lt;/b&gt;: Share of the points at about the height of a building's roof, within the clearance above and below, that must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched images it is not examined. &lt;i&gt;(at least 0 and at most 1; default 0.6)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1236,7 +1236,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Nearest points&lt;/b&gt;: Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. More of them smooth noise away and blur small things. &lt;i&gt;(at least 3 and at most 1,000; default 50)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Nearest points&lt;/b&gt;: Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. More of them smooth noise away and blur small objects. &lt;i&gt;(at least 3 and at most 1,000; default 50)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1816,11 +1816,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Search in&lt;/b&gt;: Points to search: the whole cloud, which forgets segments and shapes found before; the points that have no shape yet; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep their segment. &lt;i&gt;(one of whole cloud, points without a shape, each segment; default each segment)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Search in&lt;/b&gt;: Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep their segment. &lt;i&gt;(one of whole cloud, points without a shape, each segment; default each segment)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Search in&lt;/b&gt;: Points to search: the whole cloud, which forgets segments and shapes found before; the points that have no shape yet; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep their segment. &lt;i&gt;(one of whole cloud, points without a shape, each segment; default whole cloud)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Search in&lt;/b&gt;: Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep their segment. &lt;i&gt;(one of whole cloud, points without a shape, each segment; default whole cloud)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2012,7 +2012,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Sweep distance (m)&lt;/b&gt;: Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only. Automatic: 4 times the roughness of the finished surface, or the surface noise where that is more, and half as much again but at most 0.1 cells. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Sweep distance (m)&lt;/b&gt;: Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only. Automatic: 4 times the roughness of the finished surface, or the surface noise where that is more; increased by a half, but by 0.1 cells at most. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2360,6 +2360,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;i&gt;building&lt;/i&gt;: attribute id of the building in its own layer, or its number in it</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;i&gt;building&lt;/i&gt;: building that it is part of, as in the layer of buildings</source>
         <translation type="unfinished"></translation>
     </message>
@@ -2432,7 +2436,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;counterpart&lt;/i&gt;: what it was compared with in the other layer, the best first, separated by commas</source>
+        <source>&lt;i&gt;counterpart&lt;/i&gt;: names of the footprints that belong to it, the best first, separated by commas</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2596,7 +2600,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;gap_area (m²)&lt;/i&gt;: its area without points; largest first, it shows holes too small for check</source>
+        <source>&lt;i&gt;gap_area (m²)&lt;/i&gt;: area of its footprint without points; sort by it to find holes too small for check</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2928,7 +2932,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;place&lt;/i&gt;: Place in the row, from 1 at the left, seen from outside</source>
+        <source>&lt;i&gt;place&lt;/i&gt;: Position in the row, from 1 at the left, seen from outside</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2948,7 +2952,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;points&lt;/i&gt;: Its points</source>
+        <source>&lt;i&gt;points&lt;/i&gt;: Number of its points</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3400,7 +3404,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A point x goes to R x + t, with the rotation R about the zero of the coordinates: the three angles are three rotations about fixed axes, one after the other, R = Rz Ry Rx. A matrix must be rigid, that is turn and move only. Its upper left part times its own transpose may differ from the identity by 0.0002, as with four decimals; the nearest rotation is taken. A warning is given if that makes more than a millimeter. With coordinates of millions of meters, give nine decimals or more.</source>
+        <source>A point x goes to R x + t, with the rotation R about the zero of the coordinates: the three angles are three rotations about fixed axes, one after the other, R = Rz Ry Rx. A matrix must be rigid, that is turn and move only. Its upper left part times its own transpose may differ from the identity by 0.0002, as with four decimals; the nearest rotation is taken. A warning is given if that moves points by more than a millimeter. With coordinates of millions of meters, give nine decimals or more.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3800,7 +3804,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 4 times the roughness of the finished surface, or the surface noise where that is more, and half as much again but at most 0.1 cells.</source>
+        <source>Automatic: 4 times the roughness of the finished surface, or the surface noise where that is more; increased by a half, but by 0.1 cells at most.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3816,7 +3820,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 60 m, and any size for segments that are free-standing on nearly all sides; or as the terrain says.</source>
+        <source>Automatic: 60 m, and any size for segments that are free-standing on nearly all sides; or that of the kind of terrain.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4557,10 +4561,6 @@
     </message>
     <message>
         <source>Correct the edges of buildings by what the other buildings of the scene look like.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Counted three ways. Per point; per cell, by the topmost point, which leaves walls out (some references call them building, some don't); per object, where a building is found when at least half of it is. A layer shows which buildings were found, missed and invented.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5396,7 +5396,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions. Along such a line both roofs slope up from it, parallel roofs step by 0.4 m, any by 1 m, or a wall rises 0.3 m above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low parts; 30 % are enough for a further one. Two roofs may be one house. Low parts and pieces under 25 m² belong to one. At a step the lower house must have three quarters of the height of the higher one. Houses keep the number of their cluster.</source>
+        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions. Along such a line both roofs slope up from it, parallel roofs step by 0.4 m, any by 1 m, or a wall rises 0.3 m above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low parts; 30 % are enough for a further one. Two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have three quarters of the height of the higher one. Houses keep the number of their cluster.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5456,7 +5456,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>How large a neighborhood should be depends on the noise, the density and the size of things. One number of points for the whole cloud gives smooth results; the number that is best for each point ('optimal') keeps small things apart and follows the noise more.</source>
+        <source>How large a neighborhood should be depends on the noise, the density and the size of objects. One number of points for the whole cloud gives smooth results; the number that is best for each point ('optimal') keeps small objects apart and follows the noise more.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5609,6 +5609,10 @@
     </message>
     <message>
         <source>Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow yards points just below the ground are left alone.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>It counts in three ways: per point; per cell, by the topmost point, which leaves walls out (some references call them building, some don't); per object, where a building is found when at least half of it is. A layer shows which buildings were found, missed and invented.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6416,7 +6420,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Not simulated: eaves that jut out, windows, curved roofs, things that move, errors between strips, drift of the position, grass, and walls that mirror.</source>
+        <source>Not simulated: eaves that jut out, windows, curved roofs, objects that move, errors between strips, drift of the position, grass, and walls that mirror.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7044,11 +7048,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. More of them smooth noise away and blur small things.</source>
+        <source>Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. More of them smooth noise away and blur small objects.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, and thin things such as wires with it.</source>
+        <source>Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, and thin objects such as wires with it.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7064,7 +7068,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points to search: the whole cloud, which forgets segments and shapes found before; the points that have no shape yet; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep their segment.</source>
+        <source>Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep their segment.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7092,7 +7096,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points within the radius, the point itself among them, that make a point the core of a cluster; larger leaves out thinner things.</source>
+        <source>Points within the radius, the point itself among them, that make a point the core of a cluster; larger leaves out thin objects.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7604,7 +7608,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Share of the points at about the height of a building's roof, within the clearance above and below, that must lie on roof surfaces. In crowns with a smooth side it is less. 0 takes any; in clouds of matched images it is not examined.</source>
+        <source>Share of the points at about the height of a building's roof, within the clearance above and below, that must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched images it is not examined.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8060,7 +8064,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must see the same folders under the same paths; they get the program from here, and need numpy, scipy, laspy and lazrs.</source>
+        <source>The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must see the same folders under the same paths; they receive the program from QGIS, and need numpy, scipy, laspy and lazrs.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8108,7 +8112,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The distances to neighbors find points that are alone. Then come isolated points, alone or many together, by their distance to the scene: loose things in the open air, and few points under the ground. Low noise (class 7) lies under its neighbors, high noise (class 18) over them.</source>
+        <source>The distances to neighbors find points that are alone. Then come isolated points, alone or many together, by their distance to the scene: loose objects in the open air, and few points under the ground. Low noise (class 7) lies under its neighbors, high noise (class 18) over them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
