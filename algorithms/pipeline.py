@@ -8,7 +8,7 @@ from typing import Any, Optional
 from .stage import InputLayer, Stage, Tunable
 from .stages import STAGES
 
-# What outputs are called that are no layer, raster or text file.
+# Names of the outputs for a cloud and for a report.
 CLOUD, REPORT = "output", "report"
 
 

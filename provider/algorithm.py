@@ -16,7 +16,7 @@ from .settings import apply_threads
 class CheckedAlgorithm(DeclaredAlgorithm):
     """An algorithm that refuses what it can before it runs, in the words that the run would use.
 
-    A class of it says in :meth:`check` what that is; QGIS's own class follows it among the bases.
+    Subclasses implement :meth:`check`; their second base is QGIS's own class.
     """
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:

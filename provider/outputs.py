@@ -172,7 +172,7 @@ def _check_file(path: Path) -> None:
         raise ValueError(f"{path} is a device, not a file; choose another name.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
         raise ValueError(f"{path} can't be written: it or its folder is read-only; choose another one.")
-    # What a disk allows shows only when something is written.
+    # Quotas and full disks show only when something is written.
     with tempfile.TemporaryFile(dir=folder) as file:
         file.write(bytes(_LEAST_SPACE))
 

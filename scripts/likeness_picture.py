@@ -31,7 +31,7 @@ class Panel:
     title: str
     across: str
     up: str
-    places: list[float]
+    positions: list[float]
     names: list[str]
     curves: dict[str, list[float | None]]
     is_logarithmic: bool
@@ -78,8 +78,8 @@ def panels(folder: Path) -> list[Panel]:
     names = [key for key in depths[0] if key.startswith("deeper")] + ["seen through", "empty"]
     curves = {row["cloud"]: [row[name] for name in names] for row in depths}
     short = [name.replace("deeper than ", "> ") for name in names]
-    places = [float(place) for place in range(len(names))]
-    made.append(Panel("Cells: depth, seen through, empty", "", "share (%)", places, short, curves, False))
+    positions = [float(number) for number in range(len(names))]
+    made.append(Panel("Cells: depth, seen through, empty", "", "share (%)", positions, short, curves, False))
     return made
 
 
@@ -129,8 +129,8 @@ def _draw_chart(painter: QPainter, chart: Panel, pens: dict[str, QPen]) -> None:
     low, high = (0.5 * min(values), 1.5 * max(values)) if chart.is_logarithmic else (0.0, 1.08 * max(values))
     first, last = scale(chart.positions[0]), scale(chart.positions[-1])
 
-    def at(place: float, value: float) -> QPointF:
-        along = (scale(place) - first) / (last - first)
+    def at(position: float, value: float) -> QPointF:
+        along = (scale(position) - first) / (last - first)
         height = (scale(value) - scale(low)) / (scale(high) - scale(low))
         return QPointF(area.left() + along * area.width(), area.bottom() - height * area.height())
 
@@ -143,9 +143,9 @@ def _draw_chart(painter: QPainter, chart: Panel, pens: dict[str, QPen]) -> None:
         painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
         painter.setPen(Qt.GlobalColor.black)
         painter.drawText(QRectF(0, y - 9, left - 6, 18), Qt.AlignmentFlag.AlignRight, f"{tick:g}")
-    for place, name in zip(chart.positions, chart.names):
+    for position, name in zip(chart.positions, chart.names):
         painter.drawText(
-            QRectF(at(place, high).x() - 40, area.bottom() + 5, 80, 18),
+            QRectF(at(position, high).x() - 40, area.bottom() + 5, 80, 18),
             Qt.AlignmentFlag.AlignHCenter,
             name,
         )
@@ -157,7 +157,7 @@ def _draw_chart(painter: QPainter, chart: Panel, pens: dict[str, QPen]) -> None:
     painter.drawLine(area.bottomLeft(), area.bottomRight())
     for name, curve in chart.curves.items():
         painter.setPen(pens[name])
-        known = [at(place, value) for place, value in zip(chart.positions, curve) if value is not None]
+        known = [at(position, value) for position, value in zip(chart.positions, curve) if value is not None]
         painter.drawPolyline(QPolygonF(known)) if len(known) > 1 else painter.drawEllipse(
             known[0], 3, 3
         ) if known else None

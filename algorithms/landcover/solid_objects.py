@@ -21,20 +21,20 @@ REACH = 2.5
 
 @dataclass(frozen=True)
 class _Rules:
-    """What solid objects are."""
+    """Rules by which solid objects are recognized."""
 
     #: gap_spacings, least_gap: Points of one object are closer in plan: 2 point spacings, as clusters of the building
     #: chain, at least 0.5 m
     gap_spacings: float = 2.0
     least_gap: float = 0.5
-    step: float = 1.0  #: And closer in height (m): the distance between the bonnet of a car and its roof is less
+    step: float = 1.0  #: They are closer in height (m): the distance between the bonnet of a car and its roof is less
     #: Highest smooth object (m): vans, containers and garden walls are lower, the smooth sides of crowns higher
     highest: float = 3.5
     #: Largest share of points whose pulse had several returns. Edges of cars give 0.1; crowns and bushes of the clouds
     #: with truth 0.3 to 0.9.
     most_passed: float = 0.2
     radius: float = 0.5  #: Surfaces are planes over at least this (m), leaves and twigs over less
-    most_neighbors: int = 100  #: Points that show a plane: more cost time only
+    most_neighbors: int = 100  #: Most points of a neighborhood: more only take time
     smooth_share: float = 0.5  #: Least share of points on smooth surfaces: most points
     #: Least ratio of the height of poles to their extent in plan: lamps with an arm have 4, trees 1 to 2
     slenderness: float = 4.0

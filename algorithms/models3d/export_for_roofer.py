@@ -80,8 +80,8 @@ def export_for_roofer(
 
     Notes
     -----
-    roofer 1.0 reads the classes 2 and 6 unless its configuration names others, and parts of buildings as buildings of
-    their own. Its attribute for names is called as in the 3DBAG.
+    roofer 1.0 reads the classes 2 and 6 unless its configuration names others, and models parts of a building as
+    separate buildings. Its attribute for names is called as in the 3DBAG.
 
     References
     ----------

@@ -43,8 +43,8 @@ def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling]
 
     Notes
     -----
-    Noise is what no chain of points 2.4 m apart (3.5 point spacings on sparse clouds) ties to the scene, has nothing
-    above it, and stops less than three tenths of the pulses. Wires, panes, the heads of lamps, and objects that the
+    Points are noise if no chain of points up to 2.4 m apart (3.5 point spacings on sparse clouds) ties them to the
+    scene, nothing is above them, and they stop less than three tenths of the pulses. Wires, panes, the heads of lamps, and objects that the
     border of the cloud cuts stay. What touches the scene is not found: dust on the ground, birds in a tree.
 
     References

@@ -91,11 +91,12 @@ def classify_noise_statistical(
     flock or a plume have near neighbors.
 
     With isolated points, both errors are avoided. A point must then be farther than 4.8 m (7 point spacings on sparse
-    clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of
-    points half as far apart ties to the scene, and points under the ground. 'Classify noise in the air' and the height
-    histogram's stage find these in the same way, and their notes say what stays. Only points with nothing around them
-    can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the
-    others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.
+    clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of
+    points half as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the
+    air' and the height histogram's stage find these in the same way; their notes name the objects that stay. Only
+    points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels
+    with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation
+    of all.
 
     References
     ----------

@@ -70,7 +70,7 @@ def classify_bridges(
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
         ASPRS classes with ground (2); vegetation, buildings and water are no decks, earlier bridge deck (17) is
-        forgotten where bridges are looked for.
+        discarded where bridges are looked for.
 
     Returns
     -------

@@ -140,7 +140,7 @@ def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
         reach = np.linalg.norm(voxels.positions[:, :2] - stem[:2], axis=1)
         near = np.flatnonzero((reach <= _SAME_STEM) & (voxels.positions[:, 2] <= stem[2] + _SAME_STEM))
         if len(near):
-            # Of those as low the one in the middle.
+            # Of several equally low voxels, the one nearest to the axis.
             roots.append(near[np.lexsort((reach[near], voxels.positions[near, 2]))[0]])
     return np.unique(np.array(roots, np.int64))
 
@@ -253,7 +253,7 @@ def smooth(line: np.ndarray) -> np.ndarray:
 
 
 def _is_straight(line: np.ndarray) -> bool:
-    """Return whether a line (k, 3) is no path through leaves."""
+    """Return whether a line (k, 3) is straight enough for a branch, unlike paths through leaves."""
     line = smooth(line)
     length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
     return bool(np.linalg.norm(line[-1] - line[0]) >= _LEAST_STRAIGHT * length)

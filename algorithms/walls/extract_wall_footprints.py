@@ -78,7 +78,7 @@ _CORNER_FIELDS = (
         str,
         "'corner': of the footprint. 'on an edge': the footprint runs straight on. 'off the outline': both walls have "
         "edges elsewhere. 'wall not used': one of them has no edge. 'outline of the roof': too few walls were seen. "
-        "'too small': the footprint would be",
+        "'too small': the footprint would be too small",
     ),
     Field("walls_seen", int, "how many of the two walls that meet in it have wall points, 0 to 2"),
     Field("angle", float, "angle between the two walls, 0 to 90", "°"),
