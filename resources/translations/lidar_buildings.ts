@@ -2904,7 +2904,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;outcome&lt;/i&gt;: &amp;#x27;corner&amp;#x27;: of the footprint. &amp;#x27;on an edge&amp;#x27;: the footprint runs straight on. &amp;#x27;off the outline&amp;#x27;: both walls have edges elsewhere. &amp;#x27;wall not used&amp;#x27;: one of them has no edge. &amp;#x27;outline of the roof&amp;#x27;: too few walls were seen. &amp;#x27;too small&amp;#x27;: the footprint would be</source>
+        <source>&lt;i&gt;outcome&lt;/i&gt;: &amp;#x27;corner&amp;#x27;: of the footprint. &amp;#x27;on an edge&amp;#x27;: the footprint runs straight on. &amp;#x27;off the outline&amp;#x27;: both walls have edges elsewhere. &amp;#x27;wall not used&amp;#x27;: one of them has no edge. &amp;#x27;outline of the roof&amp;#x27;: too few walls were seen. &amp;#x27;too small&amp;#x27;: the footprint would be too small</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6396,10 +6396,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Noise is what no chain of points 2.4 m apart (3.5 point spacings on sparse clouds) ties to the scene, has nothing above it, and stops less than three tenths of the pulses. Wires, panes, the heads of lamps, and objects that the border of the cloud cuts stay. What touches the scene is not found: dust on the ground, birds in a tree.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Noise of the old map</source>
         <translation type="unfinished"></translation>
     </message>
@@ -6901,6 +6897,10 @@
     </message>
     <message>
         <source>Points are near if they are among the nearest within the radius, or joined by an edge of the triangulation in plan that is no longer (for clouds with one surface above each position).</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Points are noise if no chain of points up to 2.4 m apart (3.5 point spacings on sparse clouds) ties them to the scene, nothing is above them, and they stop less than three tenths of the pulses. Wires, panes, the heads of lamps, and objects that the border of the cloud cuts stay. What touches the scene is not found: dust on the ground, birds in a tree.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8740,7 +8740,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Where the cloud came with ground or buildings, points that steps in between called so become unclassified (1). Kept buildings are numbered anew, those whose points are close to one another in plan as one. Without remembered classes nothing changes.</source>
+        <source>Where the cloud came with ground or buildings, points that steps in between classified so become unclassified (1). Kept buildings are numbered anew, those whose points are close to one another in plan as one. Without remembered classes nothing changes.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8848,7 +8848,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>With isolated points, both errors are avoided. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points half as far apart ties to the scene, and points under the ground. 'Classify noise in the air' and the height histogram's stage find these in the same way, and their notes say what stays. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
+        <source>With isolated points, both errors are avoided. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of points half as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the air' and the height histogram's stage find these in the same way; their notes name the objects that stay. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8920,7 +8920,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>roofer 1.0 reads the classes 2 and 6 unless its configuration names others, and parts of buildings as buildings of their own. Its attribute for names is called as in the 3DBAG.</source>
+        <source>roofer 1.0 reads the classes 2 and 6 unless its configuration names others, and models parts of a building as separate buildings. Its attribute for names is called as in the 3DBAG.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
