@@ -22,9 +22,9 @@ def as_processing_errors(
 ) -> Iterator[None]:
     """Turn the core's errors into Processing's, one sentence each.
 
-    Who cancels a run, in ``feedback``, gets a message and no error; but on the command line, where the run would end
-    with exit code 0 without one; ``cancelled`` is the sentence. Any other error is a fault of the program and
-    keeps its traceback.
+    A run that was cancelled by its ``feedback`` ends with the message ``cancelled`` and no error. On the command line
+    it is an error, as the exit code would be 0 otherwise. Any other error is a fault of the program and keeps its
+    traceback.
     """
     try:
         yield
