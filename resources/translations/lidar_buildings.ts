@@ -5248,7 +5248,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Ground points are 0 m high. Points outside the hull of the ground points are measured from the nearest ground point; the log says how many. The paper subtracts a terrain raster; here heights are those over a triangulation, so that nothing is lost to cells on slopes. Its nodes are the means of the ground points in cells of 0.5 m, by which the noise of single points does not reach heights. The filter of heights above 0.3 m is a step of its own, 'Filter points'. Bridge decks are measured from the ground below them, and objects on them, such as cars and parapets, from the decks.</source>
+        <source>Ground points are 0 m high. Points outside the hull of the ground points are measured from the nearest ground point; the log says how many. The paper subtracts a terrain raster; here heights are those over a triangulation, so that nothing is lost to cells on slopes. Its nodes are the means of the ground points in cells of 0.5 m, so that the noise of single points does not affect heights. The filter of heights above 0.3 m is a step of its own, 'Filter points'. Bridge decks are measured from the ground below them, and objects on them, such as cars and parapets, from the decks.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
