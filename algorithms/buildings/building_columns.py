@@ -1,4 +1,4 @@
-"""Points in the columns of buildings: walls and structures belong to a roof, bushes beside it do not."""
+"""Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns beside it do not."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ColumnRules:
     wall_reach: float = rule(1.0, "m", "physics: eaves reach out by up to this, and roof surfaces end before them")
     sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
     bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
-    around: int = rule(7, "cells", "side of the square in which cells are counted, some 4 m")
+    around: int = rule(7, "cells", "side of the square in which cells and pulses are counted, some 4 m")
     bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
 
 
@@ -37,6 +37,7 @@ class ColumnPoints:
     elevation: np.ndarray
     height: np.ndarray
     raised: np.ndarray  #: (n,), bool: higher than the foot of a wall, and no noise
+    goes_on: np.ndarray  #: (n,), bool: whether the pulse went on to another return, as it does in crowns; walls stop it
 
 
 def column_size(density: float) -> float:
@@ -65,8 +66,9 @@ class Columns:
         stands_above = inside & (above > clearance)
         is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
         is_bush = points.height < np.minimum(COLUMNS.bush_share * (points.height - above), COLUMNS.bush_height)
+        is_plant = is_bush | self.is_beside_crown(points)[points.cell]
         # Points between a roof and the next higher one are the wall of the higher one.
-        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~is_bush)
+        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~is_plant)
         owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
         return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
 
@@ -77,3 +79,14 @@ class Columns:
         around = ndimage.uniform_filter(standing, COLUMNS.around, mode="constant")
         roof = ndimage.uniform_filter((self.building > 0).astype(float), COLUMNS.around, mode="constant")
         return around < COLUMNS.sparse_share * roof
+
+    def is_beside_crown(self, points: ColumnPoints) -> np.ndarray:
+        """Return the cells of crowns apart from buildings, and the cells next to them."""
+        apart = points.raised & (self.building[points.cell] == 0) & (self.beside[points.cell] == 0)
+        shape = self.building.shape
+        number = np.ravel_multi_index(points.cell, shape)[apart]
+        passed, size = (np.bincount(number, of, np.prod(shape)).reshape(shape) for of in (points.goes_on[apart], None))
+        # Balconies and walls are narrower. Most points of a crown are passed by the beam, few of a wall.
+        is_wide = ndimage.binary_opening(size > 0, _EIGHT)
+        most = ndimage.uniform_filter(2.0 * passed - size, COLUMNS.around, mode="constant")
+        return ndimage.binary_dilation(is_wide & (np.rint(COLUMNS.around**2 * most) > 0), _EIGHT)

@@ -47,6 +47,8 @@ def complete_buildings(
     confidence=None,
     reason=None,
     segment_id=None,
+    return_number=None,
+    number_of_returns=None,
     *,
     gap: Annotated[
         Optional[float],
@@ -99,7 +101,8 @@ def complete_buildings(
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
     the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
     closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has
-    half of their height, and the smeared walls below belong to them.
+    half of their height, and the smeared walls below belong to them. Where the scanner numbered its returns, crowns
+    at a wall are separated from it by the pulses that pass through them.
 
     Parameters
     ----------
@@ -115,6 +118,8 @@ def complete_buildings(
         Why the roofs are buildings, see :class:`~..cloud.reasons.Reason`.
     segment_id : ndarray of shape (n,), int32, optional
         Roof surfaces; 0 if unassigned. Without it the share of roof surfaces is not examined.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Without them crowns are not looked for.
 
     Returns
     -------
@@ -173,7 +178,9 @@ def complete_buildings(
 
     # 2. The points in their columns.
     columns = Columns(coverage.building, coverage.top, coverage.cell_size)
-    points = ColumnPoints(coverage.cell, xyz[:, 2], height_above_ground, coverage.raised)
+    has_returns = return_number is not None and number_of_returns is not None
+    goes_on = return_number < number_of_returns if has_returns else np.zeros(len(xyz), bool)
+    points = ColumnPoints(coverage.cell, xyz[:, 2], height_above_ground, coverage.raised, goes_on)
     owner = columns.owners(points, roof_clearance, structure_height)
     cluster_id = _in_order(owner, np.ravel_multi_index(coverage.cell, coverage.building.shape))
     monitor.progress(1.0)

@@ -402,6 +402,11 @@ WHOLE = (
         "buildings.building_columns:COLUMNS",
         _set("buildings.building_columns:COLUMNS", sparse_share=9.0),
     ),
+    _out(
+        "complete: crowns at walls",
+        "buildings.building_columns:Columns.is_beside_crown",
+        lambda self, points: np.zeros(self.building.shape, bool),
+    ),
     _out("images: surfaces amid rough points", "buildings.complete_buildings:amid_rough", _nowhere_of_points),
     _out("images: vehicles", "buildings.complete_buildings:without_vehicles", lambda extent, *found: found),
     _out("images: smeared walls", "buildings.roof_extent:RoofExtent.faces", lambda self, building: building),
@@ -601,7 +606,7 @@ Rules of little worth on these clouds stay for what the clouds do not show:
 - *Wide in plan*: lines of points far apart; on zigzag lines F of Delft was 47 % and became 88 %.
 - *Bushes*: hedges at walls become houses on 14 of 18 clouds, by up to 0.39. *Structures on roofs*: turrets and lift
   houses. *Last returns only*: first returns of crowns can't be the ground.
-- *Smeared walls*: the walls of a town in matched images.
+- *Crowns at walls*: trees that touch a flat roof. *Smeared walls*: the walls of a town in matched images.
 {moved}
 ## The constants
 

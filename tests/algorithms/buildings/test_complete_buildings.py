@@ -150,6 +150,25 @@ def test_a_tree_beside_the_house_is_left_out(scene):
     assert not (scene.complete()[0][crown] == 6).any()
 
 
+@pytest.mark.parametrize(("first", "crown_is_wall"), [(1, False), (3, True), (None, True)])
+def test_a_crown_that_touches_the_wall_is_distinguished_from_it_by_the_pulses_that_pass(scene, first, crown_is_wall):
+    """Those on the other wall's balcony pass as well, but that is too narrow for a crown."""
+    roof = scene.roof(10, 10, 20, 20, 5.0)
+    west, east = scene.xyz[roof, 0].min(), scene.xyz[roof, 0].max()
+    balcony = scene.box([east + 0.2, 12, 2.5], [east + 0.8, 18, 4.8], 200)
+    crown = scene.box([west - 4, 12, 2.5], [west - 0.2, 18, 4.8], 500)
+    wall, at_the_wall = balcony[scene.xyz[balcony, 0] < east + 0.25], crown[scene.xyz[crown, 0] > west - 0.25]
+    returns = np.ones((2, len(scene.xyz)), np.uint8)
+    returns[1, balcony] = 3
+    returns[:, crown] = [[first or 1], [3]]
+    arrays = {"return_number": returns[0], "number_of_returns": returns[1]} if first else {}
+    found, _ = scene.complete(**arrays)
+    assert (found[wall] == 6).all()
+    assert (found[at_the_wall] == 6).all() == crown_is_wall
+    assert (found[at_the_wall] == 6).mean() < 0.2 or crown_is_wall
+    assert (found[crown[scene.xyz[crown, 0] < west - 1.1]] == 1).all()
+
+
 def test_a_narrow_alley_in_which_the_ground_shows_is_not_closed(scene):
     """Two row houses a meter apart: points above the alley are no building."""
     scene.roof(5, 10, 14.5, 20, 6.0)
