@@ -52,9 +52,10 @@ def test_matched_images_are_distinguished_from_laser_scanners():
 
 def test_houses_are_mapped_whole():
     count, completeness, correctness = mapped_cells(TOWN)
-    # Sheds under 2.5 m and eaves beyond the walls are not mapped; halves of bent roofs were missing at 58.
-    assert count == 7
-    assert completeness > 63
+    # Seven houses in one piece each, and four sheds of 9 to 23 m², on which 92 to 99 % of the points are of buildings.
+    # Sheds under 2 m and eaves beyond the walls are not mapped; halves of bent roofs were missing at 58.
+    assert count == 11
+    assert completeness > 67
     assert correctness > 98
 
 
