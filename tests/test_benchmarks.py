@@ -92,7 +92,7 @@ def test_each_commit_is_kept_once_and_compared_with_the_one_before(tmp_path):
         content = {"table": "times", "commit": commit, "changed": changed, "date": date, "rows": times(**seconds)}
         path = tmp_path / "times.json"
         path.write_text(json.dumps(content), encoding="utf-8")
-        return history.sentences(history.keep_copy(path))
+        return history.sentences(history.keep_copy(path), tmp_path / "nothing published.json")
 
     assert run("a" * 40, "2026-01-01", ground=9.0) == ["No earlier results are kept to compare with."]
     run("a" * 40, "2026-01-02", ground=4.0)
@@ -102,6 +102,20 @@ def test_each_commit_is_kept_once_and_compared_with_the_one_before(tmp_path):
     assert run("b" * 40, "2026-01-04", changed=True, ground=3.06)[1].split()[-2:] == ["1.53", "+2%"]
     kept = {path.name for path in (tmp_path / "history").iterdir()}
     assert kept == {f"times-{name}.json" for name in ("a" * 40, "b" * 40, "b" * 40 + "-changed")}
+
+
+def test_the_first_times_of_a_checkout_are_compared_with_the_published_ones(tmp_path):
+    def written(name, commit, date, **seconds):
+        content = {"table": "times", "commit": commit * 40, "changed": False, "date": date, "rows": times(**seconds)}
+        path = tmp_path / name
+        path.write_text(json.dumps(content), encoding="utf-8")
+        return path
+
+    published = written("published.json", "a", "2026-01-01", ground=4.0)
+    first = history.keep_copy(written("times.json", "b", "2026-01-02", ground=3.0))
+    assert history.sentences(first, published)[1].split()[-3:-1] == ["1.50", "-25%"]
+    second = history.keep_copy(written("times.json", "c", "2026-01-03", ground=6.0))
+    assert history.sentences(second, published)[1].split()[-3:-1] == ["3.00", "+100%"]
 
 
 def test_the_simulation_of_a_survey_agrees_with_what_is_known_without_it():

@@ -1,7 +1,7 @@
 """Times of earlier commits: kept as a JSON file each, and compared in units of the floor of the same run.
 
 Processor time in units of "read + neighbors" hardly depends on the machine and on what else it does. Rows are compared
-by name and size.
+by name and size. The first run in a checkout is compared with the published one, which is under version control.
 """
 
 from __future__ import annotations
@@ -29,11 +29,16 @@ def keep_copy(results: Path) -> Path:
     return path
 
 
-def before(path: Path) -> Optional[dict[str, Any]]:
-    """Return the results kept last before those of a file of the history, None where it is the first."""
+def before(path: Path, published: Path) -> Optional[dict[str, Any]]:
+    """Return the results kept last before those of a file of the history.
+
+    They are the ``published`` ones where it is the first, and None where that file does not exist.
+    """
     own = _content(path)
     table = own["table"]
     others = [_content(other) for other in path.parent.glob(f"{table}-*.json") if other != path]
+    if not others and published.exists():
+        others = [_content(published)]
     return max((one for one in others if one["date"] <= own["date"]), key=lambda one: one["date"], default=None)
 
 
@@ -46,9 +51,9 @@ def changes(earlier: list[dict[str, Any]], later: list[dict[str, Any]]) -> list[
     return [(*key, then[key], ratio) for key, ratio in now.items() if key in then and key[1] != FLOOR]
 
 
-def sentences(path: Path) -> list[str]:
-    """Return the lines in which a file of the history differs from the one before."""
-    last, own = before(path), _content(path)
+def sentences(path: Path, published: Path) -> list[str]:
+    """Return the lines in which a file of the history differs from the one before; see :func:`before`."""
+    last, own = before(path, published), _content(path)
     if last is None:
         return ["No earlier results are kept to compare with."]
     lines = [f"Processor time in units of {FLOOR}, beside that of {(last['commit'] or 'no commit')[:12]}:"]
