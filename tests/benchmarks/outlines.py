@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import os
 import tempfile
-from importlib import import_module
 from pathlib import Path
 from typing import Callable
 
@@ -14,13 +13,18 @@ import numpy as np
 from lidar_buildings.algorithms.cloud.cloud import Cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
+from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, match_polygons, one_to_one, regularity
+from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
 from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
+from lidar_buildings.tests.benchmarks import regulariser
 from lidar_buildings.tests.benchmarks.results import Table
 from lidar_buildings.tests.real.clouds import DELFT, detected, path_of, run_on, truth
 
@@ -36,6 +40,9 @@ TRACED = 0.05
 # Sides (m) of the blocks that are compared with the whole, and the cloud.
 SIDES, IN_TILES = (100.0, 140.0), "buildings/ahn3-delft-4"
 
+# Pulses per m² and seeds of simulated towns of 200 m, as full of buildings as they can be.
+DENSITIES, TOWNS = (8.0, 16.0), (1, 2, 3, 4)
+
 # Least area (m²) of the houses of the map that are sought one by one.
 HOUSE = 20.0
 
@@ -43,24 +50,14 @@ Drawing = Callable[[Cloud], list]
 
 
 def outlines() -> list[Table]:
-    """Print how far outlines move and how regular they are, how near to the map, and how alike in blocks."""
+    """Print how far outlines move, how regular they are, how near to maps and towns, and how alike in blocks."""
     drawings = {"in blocks": functools.partial(drawn, merge_touching=True), "house by house": drawn}
-    missing = _why_not_regularised()
+    missing = regulariser.why_not()
     if missing:
-        print(f"\nThe rows of Building-Regulariser are left out, as it can't be imported: {missing}.")
-        print("Its versions ask for numpy 2; pip finds none beside numpy < 1.27.")
+        print(f"\nThe rows of Building-Regulariser are left out, as it can't be installed: {missing}")
     else:
         drawings["Building-Regulariser"] = regularised
-    return [_stability(drawings), _of_map(drawings), _of_blocks()]
-
-
-def _why_not_regularised() -> str:
-    """Return why Building-Regulariser can't be imported; nothing if it can."""
-    try:
-        import_module("buildingregulariser")
-    except ImportError as error:
-        return str(error)
-    return ""
+    return [_stability(drawings), _of_map(drawings), _of_towns(), _of_blocks()]
 
 
 def drawn(cloud: Cloud, **tunables: bool) -> list:
@@ -71,15 +68,9 @@ def drawn(cloud: Cloud, **tunables: bool) -> list:
 
 def regularised(cloud: Cloud) -> list:
     """Return what Building-Regulariser makes of the traced rings."""
-    import geopandas
-    from buildingregulariser import regularize_geodataframe
-    from shapely.geometry import Polygon
-
     traced = drawn(cloud, merge_touching=True, regularize=False, tolerance=TRACED)
-    frame = geopandas.GeoDataFrame(geometry=[Polygon(one[0], one[1:]) for one in traced], crs="EPSG:28992")
-    made = regularize_geodataframe(frame, num_cores=1).geometry
-    parts = [part for one in made for part in getattr(one, "geoms", [one])]
-    return [[np.array(ring.coords) for ring in (part.exterior, *part.interiors)] for part in parts if part.area > 0]
+    made = regulariser.regularise([[ring.tolist() for ring in rings] for rings in traced])
+    return [[np.array(ring) for ring in rings] for rings in made]
 
 
 def _in_map(cloud: Cloud, geometries: list) -> list:
@@ -160,6 +151,31 @@ def _of_map(drawings: dict[str, Drawing]) -> Table:
 
 def _rings(geometry) -> list:
     return [np.array([(point.x(), point.y()) for point in ring]) for ring in geometry.asPolygon()]
+
+
+def _of_towns() -> Table:
+    """Print how many single houses of simulated towns are drawn in several parts, and how many of rows one by one."""
+    columns = "single houses", "in several polygons", "houses of rows", "one to one"
+    table = Table("outlines_of_towns", "pulses per m²", *columns)
+    for density in DENSITIES:
+        counts = np.zeros(4, int)
+        for seed in TOWNS:
+            cloud = run_stage(STAGES["simulate_town"], size=200.0, density=density, buildings=34.0, seed=seed).cloud
+            cloud.set("classification", np.zeros(len(cloud), np.uint8))
+            made = run_on(cloud).layers["footprints"].geometries
+            built = build_town(TownPlan(size=200.0, buildings=34.0, seed=seed), Monitor()).buildings
+            single, of_rows = ([[one.outline] for one in built if (one.kind == "row") is row] for row in (False, True))
+            counts += len(single), _divided(made, single), len(of_rows), one_to_one(made, of_rows, Monitor())
+        table.add(f"{density:g}", *map(int, counts))
+    return table
+
+
+def _divided(made: list, houses: list) -> int:
+    """Return how many houses hold two polygons or more that have the greater part of their area in the house."""
+    polygons = as_polygons(made)
+    one, other, shared = overlaps(polygons, as_polygons(houses), Monitor())
+    inside = shared > 0.5 * polygons.area[one]
+    return int((np.bincount(other[inside], minlength=len(houses)) > 1).sum())
 
 
 def _of_blocks() -> Table:
