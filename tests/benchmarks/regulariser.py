@@ -12,7 +12,7 @@ import sys
 import venv
 from pathlib import Path
 
-FOLDER = Path(__file__).with_name(".cache") / "regulariser"
+FOLDER = Path(__file__).resolve().parents[2] / ".pythons" / "regulariser"
 PACKAGE = "buildingregulariser==0.2.5"
 
 Polygons = list[list[list[list[float]]]]
