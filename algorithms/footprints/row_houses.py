@@ -80,7 +80,8 @@ def split_row(
 ) -> Houses:
     """Return the houses of a row, or the building as one.
 
-    A party wall goes from one side of the building to the other and has another one beside it, a house away.
+    A party wall goes from one side of the building, or of a house parted before, to the other, and has another one
+    beside it, a house away.
 
     Parameters
     ----------
@@ -102,7 +103,20 @@ def split_row(
     if spacing > ROWS.max_spacing or is_inside.sum() * lattice.step**2 < 3 * ROWS.least_area or not known.any():
         return whole
     found = [_lines(lattice, is_inside, plan[known], height[known], np.radians(angle), spacing) for angle in angles]
-    return _parted(lattice, is_inside, found) or whole
+    parted = _parted(lattice, is_inside, found)
+    if parted is None or parted.house.max() == 1:
+        return parted or whole
+    # Each house again: a wall that ends at another party wall is one from side to side only of what these leave.
+    walls, house = [parted.walls], np.zeros_like(parted.house)
+    room = int((ROWS.wide + ROWS.along) / lattice.step) + 1
+    for number, box in enumerate(ndimage.find_objects(parted.house), start=1):
+        window = tuple(slice(max(0, along.start - room), along.stop + room) for along in box)
+        part, is_own = lattice.part(window), parted.house[window] == number
+        near = part.holds(plan)
+        own = split_row(part, is_own, plan[near], height[near], angles, spacing)
+        house[window] += np.where(is_own, own.house + house.max(), 0)
+        walls.append(own.walls)
+    return Houses(np.concatenate(walls), house)
 
 
 def _lines(
@@ -223,8 +237,8 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarr
     roof = ndimage.uniform_filter1d(roof * seen, size, axis=0, mode="constant") / np.maximum(weight, 1e-9)
     # One point or more.
     is_known = weight * size >= 0.99
-    left, left_rise, left_rough, left_mean = _side(roof, is_known, step, -1)
-    right, right_rise, right_rough, right_mean = _side(roof, is_known, step, 1)
+    left, left_rise, left_rough, left_mean, left_misfit = _side(roof, is_known, step, -1)
+    right, right_rise, right_rough, right_mean, right_misfit = _side(roof, is_known, step, 1)
     jump = np.abs(right - left)
     is_valley = (left_rise > ROWS.rise) & (right_rise > ROWS.rise)
     is_ridge = (left_rise < -ROWS.rise) & (right_rise < -ROWS.rise)
@@ -237,15 +251,15 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarr
     is_parapet = (above > ROWS.parapet) & is_smooth
     strength = np.where(is_step, np.minimum(jump, 2 * ROWS.large_step), np.where(is_parapet, above, 0.0))
     strength = np.where(is_valley, np.minimum(left_rise, right_rise), strength)
-    rough = [np.nan_to_num(_side(roof, is_known, step, sign, 0.0)[2]) for sign in (-1, 1)]
-    return strength, np.nan_to_num(np.maximum(left_mean, right_mean)), rough[0] + rough[1]
+    misfit = np.nan_to_num(left_misfit) + np.nan_to_num(right_misfit)
+    return strength, np.nan_to_num(np.maximum(left_mean, right_mean)), misfit
 
 
 def _above(roof: np.ndarray, left: tuple, right: tuple, step: float) -> np.ndarray:
     """Return how high (m) a roof is at each position, or beside it, above both lines: height here and rise outward."""
     above = np.full(roof.shape, -np.inf)
     for at in (-1, 0, 1):
-        beside = ndimage.shift(roof, (0, -at), order=0, mode="nearest")
+        beside = roof.take(np.clip(np.arange(roof.shape[1]) + at, 0, roof.shape[1] - 1), axis=1)
         lines = left[0] - at * step * left[1], right[0] + at * step * right[1]
         above = np.maximum(above, beside - np.maximum(*lines))
     return above
@@ -259,32 +273,44 @@ def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: flo
     return ~(farther * np.sign(jump) < np.abs(jump) / 2)
 
 
-def _side(
-    roof: np.ndarray, is_known: np.ndarray, step: float, sign: int, near: float = ROWS.near
-) -> tuple[np.ndarray, ...]:
-    """Return the line fitted to the roof on one side of each position: height here, rise outward, deviation, mean."""
-    offsets = np.arange(max(1, int(np.ceil(near / step))), int(ROWS.far / step) + 1)
-    far = offsets * step
+def _side(roof: np.ndarray, is_known: np.ndarray, step: float, sign: int) -> tuple[np.ndarray, ...]:
+    """Return the line fitted to the roof on one side of each position: height here, rise outward, deviation, mean.
 
+    The last array is the deviation where the fit begins at the position itself.
+    """
+    first, last = max(1, int(np.ceil(ROWS.near / step))), int(ROWS.far / step)
     # The kernel reaches from the position itself to one side only.
-    length = int(offsets[-1]) + 1
-    origin = (length - 1) // 2 if sign < 0 else -(length // 2)
+    origin = last // 2 if sign < 0 else -((last + 1) // 2)
+    values = [np.where(is_known, one, 0.0) for one in (1.0, roof, roof**2)]
 
-    def total(values: np.ndarray, factor: np.ndarray) -> np.ndarray:
-        kernel = np.zeros(length)
-        kernel[offsets] = factor
-        kernel = kernel if sign > 0 else kernel[::-1]
-        return ndimage.correlate1d(values * is_known, kernel, axis=1, mode="constant", origin=origin)
+    def total(power: int, exponent: int) -> np.ndarray:
+        kernel = np.zeros(last + 1)
+        kernel[first:] = (np.arange(first, last + 1) * step) ** exponent
+        return ndimage.correlate1d(values[power], kernel[::sign], axis=1, mode="constant", origin=origin)
 
-    one = np.ones(len(far))
-    n, x, xx = (total(np.ones(roof.shape), factor) for factor in (one, far, far**2))
-    z, xz, zz = total(roof, one), total(roof, far), total(roof**2, one)
+    powers = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (2, 0))
+    sums = [total(*each) for each in powers]
+    here, rise, rough = _fitted(sums, last + 1 - first)
+    mean = np.where(np.isfinite(rise), sums[3] / np.maximum(sums[0], 1.0), np.nan)
+    for offset in range(1, first):
+        own, other = slice(None, -offset), slice(offset, None)
+        own, other = (own, other) if sign > 0 else (other, own)
+        for one, (power, exponent) in zip(sums, powers):
+            one[:, own] += values[power][:, other] * (offset * step) ** exponent
+    return here, rise, rough, mean, _fitted(sums, last)[2]
+
+
+def _fitted(sums: list, count: int) -> tuple[np.ndarray, ...]:
+    """Return the lines of sums of 1, x, x², z, xz, z² over known samples: height at 0, rise, deviation.
+
+    NaN where less than seven tenths of ``count`` samples are known.
+    """
+    n, x, xx, z, xz, zz = sums
     det = n * xx - x**2
-    good = (n >= 0.7 * len(far)) & (det > 1e-6)
+    good = (n >= 0.7 * count) & (det > 1e-6)
     rise = np.where(good, n * xz - x * z, np.nan) / np.where(good, det, 1.0)
     here = (z - rise * x) / np.maximum(n, 1.0)
-    rough = np.sqrt(np.maximum(zz - here * z - rise * xz, 0.0) / np.maximum(n, 1.0))
-    return here, rise, rough, np.where(good, z / np.maximum(n, 1.0), np.nan)
+    return here, rise, np.sqrt(np.maximum(zz - here * z - rise * xz, 0.0) / np.maximum(n, 1.0))
 
 
 def _runs(is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -78,6 +78,12 @@ class Lattice:
         node = self.nodes(plan)
         return ((node >= 0) & (node < np.subtract(self.shape[::-1], 1))).all(axis=1)
 
+    def part(self, window: tuple[slice, slice]) -> Lattice:
+        """Return the nodes in some rows and columns, those beyond the last left out."""
+        (row, last_row, _), (column, last_column, _) = (own.indices(n) for own, n in zip(window, self.shape))
+        first = self.first[0] + column, self.first[1] + row
+        return Lattice(self.step, first, (last_row - row, last_column - column))
+
     def window(self, inner: Lattice) -> tuple[slice, slice]:
         """Return the rows and columns of another lattice of the same step that lies in this one."""
         (column, row), (rows, columns) = np.subtract(inner.first, self.first).tolist(), inner.shape

@@ -37,15 +37,15 @@ def dormers(a, v, number):
     return np.where((np.abs(a - WIDTH / 2) < 1.2) & (v > 1) & (v < 4), 9.0, one_roof(a, v, number))
 
 
-def row(rng, roof, density, houses=5, angle=0.5):
+def row(rng, roof, density, houses=5, angle=0.5, depth=DEPTH):
     """Return the points of a row of houses and the ground around it, their classes, and how to turn back to the row."""
-    n = round(houses * WIDTH * DEPTH * density)
-    u, v = rng.uniform(0, houses * WIDTH, n), rng.uniform(0, DEPTH, n)
+    n = round(houses * WIDTH * depth * density)
+    u, v = rng.uniform(0, houses * WIDTH, n), rng.uniform(0, depth, n)
     number = (u // WIDTH).astype(int)
     z = roof(u - number * WIDTH, v, number)
-    m = round((houses * WIDTH + 16) * (DEPTH + 16) * density)
-    ground = rng.uniform([-8, -8], [houses * WIDTH + 8, DEPTH + 8], (m, 2))
-    is_under = (ground >= 0).all(axis=1) & (ground <= [houses * WIDTH, DEPTH]).all(axis=1)
+    m = round((houses * WIDTH + 16) * (depth + 16) * density)
+    ground = rng.uniform([-8, -8], [houses * WIDTH + 8, depth + 8], (m, 2))
+    is_under = (ground >= 0).all(axis=1) & (ground <= [houses * WIDTH, depth]).all(axis=1)
     plan = np.concatenate([np.column_stack([u, v]), ground[~is_under]])
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     z = np.concatenate([z, np.zeros((~is_under).sum())]) + rng.normal(0, 0.03, len(plan))
@@ -110,6 +110,22 @@ def test_hipped_houses_beside_clear_ones_are_of_their_row(rng):
 
     assert len(outlined(rng, mixed, 20, houses=6)[0]) == 6
     assert len(outlined(rng, hipped, 20, houses=6)[0]) == 1
+
+
+def across(a, v, number):
+    """Flat houses that step; two in the middle make way for three whose walls end at those of their neighbors."""
+    return np.where(np.isin(number, [2, 3]), 8.4 + 0.8 * (v // WIDTH % 2 == 0), flat_steps(a, v, number))
+
+
+@pytest.mark.parametrize("density", [8, 20])
+def test_walls_that_end_at_other_party_walls_are_found(rng, density):
+    found, places = outlined(rng, across, density, houses=6, depth=3 * WIDTH)
+    assert len(found) == 7
+    inner = [place[:, 1] for place in places if 2 * WIDTH - 1 < place[:, 0].mean() < 4 * WIDTH + 1]
+    middles = sorted((v.min() + v.max()) / 2 for v in inner)
+    assert middles == pytest.approx([0.5 * WIDTH, 1.5 * WIDTH, 2.5 * WIDTH], abs=0.4)
+    for rings in found.geometries:
+        assert_valid(rings)
 
 
 def test_a_roof_as_steep_as_a_spire_is_no_row(rng):
