@@ -110,7 +110,8 @@ def split_row(
     walls, house = [parted.walls], np.zeros_like(parted.house)
     room = int((ROWS.wide + ROWS.along) / lattice.step) + 1
     for number, box in enumerate(ndimage.find_objects(parted.house), start=1):
-        window = tuple(slice(max(0, along.start - room), along.stop + room) for along in box)
+        rows, columns = (slice(max(0, along.start - room), along.stop + room) for along in box)
+        window = rows, columns
         part, is_own = lattice.part(window), parted.house[window] == number
         near = part.holds(plan)
         own = split_row(part, is_own, plan[near], height[near], angles, spacing)
