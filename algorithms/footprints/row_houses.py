@@ -35,7 +35,9 @@ class RowRules:
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
     large_step: float = rule(1.0, "m", "physics: a step between any two roofs, that of half a storey")
     wide: float = rule(2.5, "m", "physics: where half of a step has to be left; a dormer ends before")
-    least_share: float = rule(0.75, "share", "of the higher house's height that the lower one has; wings are lower")
+    least_share: float = rule(
+        0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
+    )
     seen: float = rule(0.5, "share", "of a wall that shows a row: what is seen of it beside roofs")
     glimpsed: float = rule(0.3, "share", "the same of a further one: hips hide valleys at their ends")
     evident: float = rule(0.2, "m, or tangent", "mean strength of a wall; noise of matched images reaches 0.17")

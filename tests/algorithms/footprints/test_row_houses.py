@@ -279,8 +279,8 @@ def step_of(height, left=0.0, right=0.0, low=8.0):
         ),
         # Half of the step is still there 2.5 m from it.
         (lambda x: step_of(0.9)(x) - 0.9 * (x > 2.8), lambda x: step_of(0.9)(x) - 0.9 * (x > 2.3)),
-        # The lower house has three quarters of the other's height.
-        (step_of(1.6, low=5.0), step_of(1.6, low=4.5)),
+        # The lower house has six tenths of the other's height.
+        (step_of(1.6, low=2.6), step_of(1.6, low=2.2)),
     ],
 )
 def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
