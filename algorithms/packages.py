@@ -22,7 +22,10 @@ class _Lazy(ModuleType):
         # Python itself asks for dunder names (doctest, inspect, copy), which must not import the module.
         if name.startswith("__"):
             raise AttributeError(name)
-        return getattr(importlib.import_module(self.__name__), name)
+        value = getattr(importlib.import_module(self.__name__), name)
+        # Python looks here first the next time, without a search for the module.
+        setattr(self, name, value)
+        return value
 
 
 def missing() -> list[str]:

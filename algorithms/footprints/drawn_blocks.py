@@ -15,6 +15,7 @@ from ..geometry.ring_directions import along_two_directions
 from ..geometry.ring_drawing import Edge, Prices, aligned, draw_ring
 from ..geometry.subdivision import Subdivision
 from ..packages import ndimage
+from ..threads import ROWS_AT_ONCE
 from .outline_pieces import Piece
 from .row_houses import Houses
 from .soft_shares import Lattice, Shares
@@ -234,16 +235,20 @@ def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: Drawin
 
 def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndarray:
     """Return which borders of cells (n, 2) to (n, 2) lie on an edge that was drawn."""
-    middle = (start + end) / 2
-    is_drawn = np.zeros(len(middle), bool)
-    for edge in edges:
-        step = edge.end - edge.start
-        length = float(np.hypot(*step))
-        unit = step / length
-        offset = middle - edge.start
-        along, across = offset @ unit, offset @ np.array([-unit[1], unit[0]])
-        own = np.abs((end - start) @ np.array([-unit[1], unit[0]])) <= 2 * _ON_EDGE
-        is_drawn |= (np.abs(across) <= _ON_EDGE) & (along >= 0) & (along <= length) & own
+    is_drawn = np.zeros(len(start), bool)
+    if not edges:
+        return is_drawn
+    first, last = (np.array([getattr(edge, name) for edge in edges]) for name in ("start", "end"))
+    length = np.hypot(*(last - first).T)
+    middle, (step_x, step_y) = (start + end) / 2, (end - start).T
+    # As many edges at once as fill the processor's caches with all borders.
+    size = max(1, ROWS_AT_ONCE // max(len(start), 1))
+    for own in (slice(at, at + size) for at in range(0, len(edges), size)):
+        x, y = ((last - first)[own] / length[own, None]).T[..., None]
+        east, north = (middle - first[own, None]).transpose(2, 0, 1)
+        along = x * east + y * north
+        is_on = (np.abs(x * north - y * east) <= _ON_EDGE) & (along >= 0) & (along <= length[own, None])
+        is_drawn |= (is_on & (np.abs(x * step_y - y * step_x) <= 2 * _ON_EDGE)).any(axis=0)
     return is_drawn
 
 

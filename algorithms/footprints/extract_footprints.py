@@ -12,7 +12,7 @@ from ..cloud.reasons import ADDED
 from ..geometry.grid import connected_cells, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
 from ..geometry.polygon_overlap import meeting_boxes
-from ..geometry.ring_directions import direction_weights, main_directions
+from ..geometry.ring_directions import N_STEPS, RingPieces, main_directions, weights_of_pieces
 from ..params import MinBuildingArea
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
@@ -331,17 +331,24 @@ def _shared_directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]
     """Return the main directions of the buildings of each part: the walls around count, the nearer the more."""
     rings = [own for one in evidence for own in one.rings.values()]
     boxes = np.array([plan_box(np.concatenate(own)) for own in rings]).reshape(-1, 2, 2)
-    weights = [sum(map(direction_weights, own)) for own in rings]
-    around = [np.zeros_like(own) for own in weights]
-    for one, other in zip(*meeting_boxes(boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]]), boxes)):
-        for ring in rings[other] if one != other else ():
-            off = np.maximum(boxes[one, 0] - ring, ring - boxes[one, 1]).clip(0.0)
-            # Walls farther away do not count, also where they are of the same neighbor: a window may lack them.
-            around[one] += direction_weights(ring, np.maximum(1 - np.hypot(*off.T) / _NEIGHBORS, 0.0))
+    pieces = [list(map(RingPieces, own)) for own in rings]
+    weights = [sum(weights_of_pieces(own, [None] * len(own))) for own in pieces]
+    one, other = meeting_boxes(boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]]), boxes)
+    around = []
+    for number, rows in enumerate(split_groups(one, len(rings))):
+        neighbors = [(each, row) for each in other[rows].tolist() if each != number for row in range(len(rings[each]))]
+        # Walls farther away do not count, also where they are of the same neighbor: a window may lack them.
+        counts = [np.maximum(1 - _off_box(rings[each][row], boxes[number]) / _NEIGHBORS, 0.0) for each, row in neighbors]
+        around.append(sum(weights_of_pieces([pieces[each][row] for each, row in neighbors], counts), np.zeros(N_STEPS)))
     together = [own + _INFLUENCE * own.sum() * other / (other.sum() or 1.0) for own, other in zip(weights, around)]
     counts = [sum(map(len, own)) for own in rings]
     found = iter([main_directions(*each) for each in zip(together, weights, counts)])
     return [{number: next(found) for number in one.rings} for one in evidence]
+
+
+def _off_box(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Return how far (m) positions (n, 2) are off a box (2, 2), 0 inside."""
+    return np.hypot(*np.maximum(box[0] - positions, positions - box[1]).clip(0.0).T)
 
 
 def _houses(

@@ -233,12 +233,15 @@ def _eave_heights(
     if not len(plan):
         return np.full(len(border), np.nan)
     workers = searchers(len(border))
-    at_border = height[spatial.cKDTree(plan).query(border, workers=workers)[1]]
-    inner = spatial.cKDTree(along).query(plan, workers=searchers(len(plan)))[0] >= _INNER * spacing
+    at_border = height[spatial.cKDTree(plan, balanced_tree=False).query(border, workers=workers)[1]]
+    # Beyond this distance nothing is searched, and it is infinite.
+    least, searching = _INNER * spacing, searchers(len(plan))
+    inner = spatial.cKDTree(along).query(plan, distance_upper_bound=least, workers=searching)[0] >= least
     plan, height = plan[inner], height[inner]
     if not len(plan):
         return at_border
-    distance, beside = spatial.cKDTree(plan).query(border, min(_PLANE, len(plan)), workers=workers)
+    tree = spatial.cKDTree(plan, balanced_tree=False)
+    distance, beside = tree.query(border, min(_PLANE, len(plan)), workers=workers)
     distance, beside = distance.reshape(len(border), -1), beside.reshape(len(border), -1)
     weight = (distance <= APART * spacing).astype(float)
     factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)

@@ -146,7 +146,7 @@ def find_non_building_points(
     other = other[find_cells(near, grid.number(xyz[other]))[1]]
     if not len(other):
         return other
-    tree = spatial.cKDTree(xyz[roof, :2])
+    tree = spatial.cKDTree(xyz[roof, :2], balanced_tree=False)
     # A pulse that was split by the edge counts on both sides, so that the roof ends in the middle of such pulses.
     distance, nearest = tree.query(xyz[other, :2], distance_upper_bound=reach, workers=n_threads())
     beside = np.isfinite(distance)

@@ -21,7 +21,10 @@ _LEAST_WIDTH, _WIDTH_OF_ONE = 1.0, 28.6
 _STRAIGHT = 0.25
 
 # Step of the directions (°).
-_STEP, _N_STEPS = 0.5, 180
+_STEP = 0.5
+
+# Steps of the directions from 0 to 90°.
+N_STEPS = 180
 
 # No direction dominates where the lower quartile of the weights is more than this share of their mean: 0.76 and more
 # in simulated towers, 0.72 and less in 30 real buildings, all with this many samples or more.
@@ -33,6 +36,40 @@ _ALONG = 3.0
 
 # Angle (°) from the first direction at which a second one begins, and least share of the first's weight it has.
 _APART, _LEAST_SHARE = 12.0, 0.25
+
+
+class RingPieces:
+    """The pieces of a ring, of which directions are taken: straight ones weigh more.
+
+    Parameters
+    ----------
+    samples : ndarray of shape (n, 2)
+        Positions at equal steps along a ring, the first not repeated.
+    """
+
+    def __init__(self, samples: np.ndarray) -> None:
+        step = float(np.hypot(*(samples[1] - samples[0])))
+        #: By the length of pieces: step of the directions (n,) below that of each, share (n,) of the one above, weight.
+        self._of_length: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+        for length in _LENGTHS:
+            if 2 * length <= len(samples):
+                angle, across = _pieces(samples, length)
+                position = (angle % 90.0) / _STEP
+                low = np.floor(position).astype(np.int64)
+                weight = length ** (_POWER - 1) * np.exp(-((across / (_STRAIGHT * step)) ** 2) / 2)
+                self._of_length[length] = low, position - low, weight
+
+    def has(self, length: int) -> bool:
+        """Return whether the ring is long enough for pieces of a length (samples)."""
+        return length in self._of_length
+
+    def counted(self, length: int, counts: Optional[np.ndarray]) -> np.ndarray:
+        """Return the sums (180,) of the weights of pieces by direction, each shared between the two steps around it."""
+        low, share, weight = self._of_length[length]
+        if counts is not None:
+            weight = weight * np.roll(counts, -(length // 2))
+        numbers = np.concatenate([low % N_STEPS, (low + 1) % N_STEPS])
+        return np.bincount(numbers, np.concatenate([weight * (1 - share), weight * share]), N_STEPS)
 
 
 def direction_weights(samples: np.ndarray, counts: Optional[np.ndarray] = None) -> np.ndarray:
@@ -50,15 +87,18 @@ def direction_weights(samples: np.ndarray, counts: Optional[np.ndarray] = None) 
     All pieces of a few lengths count, by how straight they are: no piece is chosen, so that the weights change by
     little with the samples.
     """
-    weights = np.zeros(_N_STEPS)
-    step = float(np.hypot(*(samples[1] - samples[0])))
+    return weights_of_pieces([RingPieces(samples)], [counts])[0]
+
+
+def weights_of_pieces(rings: list[RingPieces], counts: list[Optional[np.ndarray]]) -> np.ndarray:
+    """Return what :func:`direction_weights` does for some rings (r, 180), each with its ``counts``."""
+    weights = np.zeros((len(rings), N_STEPS))
     for length in _LENGTHS:
-        if 2 * length <= len(samples):
-            angle, across = _pieces(samples, length)
-            weight = length ** (_POWER - 1) * np.exp(-((across / (_STRAIGHT * step)) ** 2) / 2)
-            weight *= 1.0 if counts is None else np.roll(counts, -(length // 2))
+        rows = [row for row, ring in enumerate(rings) if ring.has(length)]
+        if rows:
+            counted = np.array([rings[row].counted(length, counts[row]) for row in rows])
             width = np.hypot(_LEAST_WIDTH, _WIDTH_OF_ONE / length)
-            weights += ndimage.gaussian_filter1d(_counted(angle, weight), width / _STEP, mode="wrap")
+            weights[rows] += ndimage.gaussian_filter1d(counted, width / _STEP, mode="wrap")
     return weights
 
 
@@ -75,7 +115,7 @@ def main_directions(weights: np.ndarray, own: np.ndarray, n_samples: int) -> np.
     if n_samples >= _ROUND_SAMPLES and np.percentile(own, 25) > _EVEN * own.mean():
         return np.zeros(0)
     angles = [_peak(weights, int(np.argmax(weights)))]
-    trial = _STEP * np.arange(_N_STEPS)
+    trial = _STEP * np.arange(N_STEPS)
     is_top = (weights >= np.roll(weights, 1)) & (weights > np.roll(weights, -1))
     other = np.where(is_top & (_off(trial, angles[0]) >= _APART), weights, 0.0)
     if other.max() >= _LEAST_SHARE * weights.max() > 0:
@@ -94,15 +134,6 @@ def _pieces(samples: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
     angle = np.degrees(np.arctan2(2 * xy, xx - yy)) / 2
     across = (xx + yy) / 2 - np.hypot((xx - yy) / 2, xy)
     return angle, np.sqrt(np.maximum(across, 0.0))
-
-
-def _counted(angle: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Return the sums of weights by angle (°) modulo 90, each shared between the two steps around it."""
-    position = (angle % 90.0) / _STEP
-    low = np.floor(position).astype(np.int64)
-    share = position - low
-    numbers = np.concatenate([low % _N_STEPS, (low + 1) % _N_STEPS])
-    return np.bincount(numbers, np.concatenate([weight * (1 - share), weight * share]), _N_STEPS)
 
 
 def _peak(weights: np.ndarray, at: int) -> float:
@@ -128,6 +159,6 @@ def along_two_directions(length: np.ndarray, angle: np.ndarray) -> float:
     angle : ndarray of shape (n,)
         Their directions, °.
     """
-    trial = _STEP * np.arange(_N_STEPS)
+    trial = _STEP * np.arange(N_STEPS)
     off = np.abs((angle - trial[:, None] + 45.0) % 90.0 - 45.0)
     return float(((off <= _ALONG) * length).sum(axis=1).max())

@@ -150,32 +150,6 @@ def _turn_prices(turned: np.ndarray, prices: Prices) -> np.ndarray:
     return np.where((size < _SAME) | (size > 180 - _SAME), prices.step, cost)
 
 
-class _Starts:
-    """Samples that runs may begin at: those left of the batches before, and those of the current one, ascending."""
-
-    def __init__(self) -> None:
-        self.samples = np.zeros(1, np.int64)
-        self._n_before = 0
-        self._stays = np.ones(1, bool)
-        self._left_out = np.zeros(0, np.int64)
-
-    def extend(self, batch: np.ndarray) -> None:
-        """Add samples, and forget those that were left out."""
-        self._left_out = np.cumsum(self._stays)[self._left_out] - 1
-        before = self.samples[self._stays]
-        self.samples, self._n_before = np.concatenate([before, batch]), len(before)
-        self._stays = np.ones(len(self.samples), bool)
-
-    def rows(self, at: int) -> np.ndarray:
-        """Return the rows (a,) of the samples before that at position ``at`` of the current batch."""
-        return self._stays[: self._n_before + at].nonzero()[0]
-
-    def leave_out(self, rows: np.ndarray) -> None:
-        """Leave out rows after one more round, since runs have a least length."""
-        self._stays[self._left_out] = False
-        self._left_out = rows[self._stays[rows]]
-
-
 class _Chain:
     """Samples of a ring from the first one on, once around, and sums over the pieces between them."""
 
@@ -223,65 +197,64 @@ class _Chain:
 
         ``start`` and ``end`` (k,) are what it costs to begin and to end by each way.
         """
-        cost, begun = np.full((2, length + 1, len(start)), np.inf)
+        cost = np.full((length + 1, len(start)), np.inf)
         came, turned = np.zeros((2, length + 1, len(start)), np.int64)
-        begun[0] = start
-        every, starts, turn_to = np.arange(len(start)), _Starts(), np.ascontiguousarray(self.ways.turn.T)
-        for low in range(_SHORTEST, length + 1, _SHORTEST):
-            at = (low - _SHORTEST) % _AT_ONCE
-            if at == 0:
-                batch = np.arange(low, min(low + _AT_ONCE, length + 1))
-                starts.extend(batch)
-                allowed, least = self._run_costs(starts.samples, batch)
-            n_ends = min(_SHORTEST, len(batch) - at)
-            rows, ends = starts.rows(at), slice(low, low + n_ends)
-            firsts, of = starts.samples[rows], np.arange(n_ends)[:, None]
-            before = begun[firsts]
-            total = allowed[at : at + n_ends].take(rows, axis=1)
-            total += before
-            best = total.argmin(axis=1)
-            cost[ends] = reached = total[of, best, every]
-            came[ends] = firsts[best]
-            turns = reached[:, None, :] + turn_to
-            turned[ends] = way = turns.argmin(axis=2)
-            begun[ends] = begins = turns[of, every, way]
-            # A run from the last of these on costs no more: runs that are farther off begin there.
-            last = n_ends - 1
-            is_behind = self._is_no_less(before, [costs[at + last].take(rows, axis=0) for costs in least], begins[last])
-            starts.leave_out(rows[is_behind & (low + last - firsts >= _SHORTEST)])
+        every, turn_to = np.arange(len(start)), np.ascontiguousarray(self.ways.turn.T)
+        # Samples that runs may begin at, ascending, and what it costs to begin there by each way (k, a).
+        firsts, begun = np.zeros(1, np.int64), start[:, None]
+        for first in range(_SHORTEST, length + 1, _AT_ONCE):
+            batch = np.arange(first, min(first + _AT_ONCE, length + 1))
+            n_before, firsts = len(firsts), np.concatenate([firsts, batch])
+            begun = np.concatenate([begun, np.empty((len(start), len(batch)))], axis=1)
+            allowed, least = self._run_costs(firsts, batch)
+            for at in range(0, len(batch), _SHORTEST):
+                own, ends, n_starts = slice(at, at + _SHORTEST), batch[at : at + _SHORTEST], n_before + at
+                total = allowed[own, :, :n_starts] + begun[:, :n_starts]
+                best = total.argmin(axis=2)
+                of = np.arange(len(ends))[:, None]
+                cost[ends] = reached = total[of, every, best]
+                came[ends] = firsts[best]
+                turns = reached[:, None, :] + turn_to
+                turned[ends] = way = turns.argmin(axis=2)
+                begun[:, n_starts : n_starts + len(ends)] = turns[of, every, way].T
+            if batch[-1] == length:
+                break
+            stays = self._stays(len(firsts) - 1 - _SHORTEST, begun, [costs[-1 - _SHORTEST] for costs in least])
+            firsts, begun = firsts[stays], begun[:, stays]
         whole = cost[length] + end
         return float(whole.min()), self._traced(whole, came, turned)
 
-    def _is_no_less(self, before: np.ndarray, least: list[np.ndarray], begins: np.ndarray) -> np.ndarray:
-        """Return which starts (a,) reach an end at no less cost by any way than a run that begins there has (k,).
+    def _stays(self, end: int, begun: np.ndarray, least: list[np.ndarray]) -> np.ndarray:
+        """Return which starts of runs (a,) are kept: those that reach an end at less cost than a run that begins there.
 
-        ``before`` (a, k) is what it costs to begin at these starts, ``least`` what their runs cost by each main way
-        (a, m) and by the others (a,).
+        Others need not be tried for later ends. ``end`` is its row among the starts, ``begun`` (k, a) what it costs to
+        begin at these, ``least`` what runs to the end cost by each main way (m, a) and by the others (a,).
         """
-        (fixed, free), n_fixed = least, self.ways.n_fixed
-        is_fixed = (before[:, :n_fixed] + fixed >= begins[:n_fixed]).all(axis=1)
-        return is_fixed & (before[:, n_fixed:] + free[:, None] >= begins[n_fixed:]).all(axis=1)
+        (fixed, free), n_fixed, begins = least, self.ways.n_fixed, begun[:, end, None]
+        stays = (begun[:n_fixed] + fixed < begins[:n_fixed]).any(axis=0)
+        stays |= (begun[n_fixed:] + free < begins[n_fixed:]).any(axis=0)
+        # Runs have a least length.
+        stays[max(end - _SHORTEST + 1, 0) :] = True
+        return stays
 
     def _run_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        """Return what runs from samples (a,) to samples (b,) cost by each way (b, a, k), infinite where they can't be.
+        """Return what runs from samples (a,) to samples (b,) cost by each way (b, k, a), infinite where they can't be.
 
         Of all other ways, only the one nearest to the line that fits best can be. What the runs cost, whether they can
-        be or not, follows for each main way (b, a, m) and for the others (b, a).
+        be or not, follows for each main way (b, m, a) and for the others (b, a).
         """
         fixed, is_run = self._fixed_costs(firsts, ends)
         free, way, is_free_run = self._free_costs(firsts, ends)
-        allowed = np.full((*free.shape, len(self.ways.price)), np.inf)
-        np.copyto(allowed[..., : self.ways.n_fixed], fixed, where=is_run)
+        allowed = np.full((len(ends), len(self.ways.price), len(firsts)), np.inf)
+        np.copyto(allowed[:, : self.ways.n_fixed], fixed, where=is_run)
         row, column = np.nonzero(is_free_run)
-        allowed[row, column, way[row, column]] = free[row, column]
+        allowed[row, way[row, column], column] = free[row, column]
         return allowed, (fixed, free)
 
     def _fixed_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what runs from samples (a,) to samples (b,) by each main way cost (b, a, k), and which can be."""
-        count = (ends[:, None] - firsts)[..., None]
-        sums = self.sums[ends, None] - self.sums[firsts]
-        squares = self.squares[ends, None] - self.squares[firsts]
-        along = self.along[ends, None] - self.along[firsts]
+        """Return what runs from samples (a,) to samples (b,) by each main way cost (b, m, a), and which can be."""
+        count = (ends[:, None] - firsts)[:, None]
+        sums, squares, along = (of[ends, :, None] - of[firsts].T for of in (self.sums, self.squares, self.along))
         is_run = (along >= _ADVANCE * self.step * count) & (count >= _SHORTEST)
         return self.step * (squares - sums**2 / np.maximum(count, 1)), is_run
 
