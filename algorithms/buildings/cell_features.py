@@ -34,11 +34,10 @@ class CellPoints:
     intensity: Optional[np.ndarray]
 
 
-def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray, around: Any) -> np.ndarray:
-    """Return the features (k, f), float64, of the ``chosen`` cells (k,), rows of all cells.
+class CellFeatures:
+    """The features of the ``chosen`` cells (k,), rows of all cells, found where they are asked for.
 
-    ``around`` is the matrix of these and the cells that touch them, see :meth:`.SpaceCells.around`. Two neighborhoods
-    give the shape: the cell, and the cell with those around it.
+    Two neighborhoods give the shape: the cell, and the cell with those around it.
 
     Parameters
     ----------
@@ -48,27 +47,39 @@ def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray, aro
         All cells.
     chosen : ndarray of shape (k,), int64
         Rows of the cells that features are wanted of.
-    around : sparse matrix
-        Which cells touch each chosen one.
+    around : sparse matrix of shape (k, m)
+        Which cells touch each chosen one, see :meth:`.SpaceCells.around`.
     """
-    # First, as it takes the most memory for the points.
-    columns = _columns(points, cells, chosen)
-    own, block = cells.moments[chosen], around @ cells.moments
-    count = own[:, 0]
-    features = [_shapes(block), _shapes(own), np.log(block[:, :1]), np.log(own[:, :1])]
-    features.append((own[:, 3] / count - block[:, 3] / block[:, 0])[:, None])
-    features.append((cells.sums(points.height)[chosen] / count)[:, None])
-    if points.returns is not None:
-        number, of = points.returns
-        goes_on = cells.sums(number < of)
-        own_returns = [goes_on[chosen], cells.sums(number)[chosen], cells.sums(of)[chosen]]
-        features.append(np.column_stack([*(values / count for values in own_returns), around @ goes_on / block[:, 0]]))
-    if points.intensity is not None:
-        strength, square = (cells.sums(points.intensity.astype(float) ** power) for power in (1, 2))
-        mean, squares = around @ strength / block[:, 0], around @ square / block[:, 0]
-        spread = np.sqrt(np.maximum(squares - mean**2, 0))
-        features.append(np.column_stack([strength[chosen] / count, mean, spread]))
-    return np.column_stack([*features, columns])
+
+    def __init__(self, points: CellPoints, cells: SpaceCells, chosen: np.ndarray, around: Any) -> None:
+        self._chosen, self._around = chosen, around
+        # First, as it takes the most memory for the points.
+        self._columns = _columns(points, cells, chosen)
+        self._moments, self._height = cells.moments, cells.sums(points.height)
+        self._returns: list[np.ndarray] = []
+        self._strengths: list[np.ndarray] = []
+        if points.returns is not None:
+            number, of = points.returns
+            self._returns = [cells.sums(values) for values in (number < of, number, of)]
+        if points.intensity is not None:
+            self._strengths = [cells.sums(points.intensity.astype(float) ** power) for power in (1, 2)]
+
+    def of(self, rows: np.ndarray) -> np.ndarray:
+        """Return the features (r, f), float64, of some ``rows`` (r,) of the chosen cells."""
+        around, chosen = self._around[rows], self._chosen[rows]
+        own, block = self._moments[chosen], around @ self._moments
+        count = own[:, 0]
+        features = [_shapes(block), _shapes(own), np.log(block[:, :1]), np.log(own[:, :1])]
+        features.append((own[:, 3] / count - block[:, 3] / block[:, 0])[:, None])
+        features.append((self._height[chosen] / count)[:, None])
+        if self._returns:
+            of_cells = [values[chosen] / count for values in self._returns]
+            features.append(np.column_stack([*of_cells, around @ self._returns[0] / block[:, 0]]))
+        if self._strengths:
+            mean, squares = (around @ values / block[:, 0] for values in self._strengths)
+            spread = np.sqrt(np.maximum(squares - mean**2, 0))
+            features.append(np.column_stack([self._strengths[0][chosen] / count, mean, spread]))
+        return np.column_stack([*features, self._columns[rows]])
 
 
 def _shapes(moments: np.ndarray) -> np.ndarray:

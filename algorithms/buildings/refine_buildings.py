@@ -17,7 +17,7 @@ from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..sampling.kinds import IMAGES, LASER
 from ..stage import Monitor, Param, stage
 from .building_columns import column_size
-from .cell_features import CellPoints, cell_features
+from .cell_features import CellFeatures, CellPoints
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
 from .space_cells import SpaceCells
 
@@ -176,6 +176,8 @@ def refine_buildings(
     likely = labeled.smooth(predict(learned, labeled.features, labeled.half))
     probability = np.full(len(xyz), np.nan)
     probability[used] = shared_by_surfaces(scene.of_points(labeled, likely), _of(segment_id, used))
+    # The distances to edges need the memory that these take.
+    del labeled, likely
     monitor.progress(0.9)
 
     # 3. Points near edges that strongly contradict their class.
@@ -233,7 +235,7 @@ class _Scene:
             intensity if intensity is not None and intensity.any() else None,
         )
         around = cells.around(chosen)
-        features = cell_features(points, cells, chosen, around)
+        features = CellFeatures(points, cells, chosen, around)
         monitor.progress(1.0)
         return LabeledCells(cells, chosen, around, raised[chosen], label, features)
 

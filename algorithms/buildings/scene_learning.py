@@ -13,6 +13,7 @@ from ..rules import rule
 from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
+from .cell_features import CellFeatures
 from .logistic_regression import LogisticRegression
 from .space_cells import SpaceCells
 
@@ -37,7 +38,7 @@ class LabeledCells:
     around: Any  #: sparse matrix of shape (k, m): 1 for each of these and the cells that touch it
     raised: np.ndarray  #: (k,): raised points of each
     label: np.ndarray  #: (k,): share of these that are building
-    features: np.ndarray  #: (k, f): features, see :func:`.cell_features.cell_features`
+    features: CellFeatures  #: features (k, f) of these
 
     @property
     def half(self) -> np.ndarray:
@@ -58,7 +59,7 @@ class LabeledCells:
         # A cell more or less, as at the edge of a cloud, changes no other row of the sample.
         number = scattered(self.cells.voxels[self.chosen])
         rows = _least(number)
-        columns = number[rows], self.half[rows], mark[self.chosen[rows]], self.label[rows], self.features[rows]
+        columns = number[rows], self.half[rows], mark[self.chosen[rows]], self.label[rows], self.features.of(rows)
         return np.column_stack(columns)
 
     def smooth(self, likely: np.ndarray) -> np.ndarray:
@@ -85,15 +86,17 @@ def learn_halves(sample: np.ndarray) -> tuple[float, ...]:
     return tuple(np.concatenate([part for one in fitted for part in (one.mean, one.scale, one.weights)]).tolist())
 
 
-def predict(learned: tuple[float, ...], features: np.ndarray, half: np.ndarray) -> np.ndarray:
+def predict(learned: tuple[float, ...], features: CellFeatures, half: np.ndarray) -> np.ndarray:
     """Return the probability (k,) of building of cells, by the regression of the half (k,) that they are not in."""
-    likely, count = np.zeros(len(features)), features.shape[1]
+    likely = np.zeros(len(half))
     for number, values in enumerate(np.reshape(learned, (2, -1))):
+        # Of each feature its mean and its scale, and two weights; and a constant.
+        count = len(values) // 4
         mean, scale, weights = np.split(values, (count, 2 * count))
         regression = LogisticRegression(mean, scale, weights)
 
         def work(rows: np.ndarray, regression: LogisticRegression = regression) -> None:
-            likely[rows] = regression.predict(features[rows])
+            likely[rows] = regression.predict(features.of(rows))
 
         # A row has ``count`` features, not three coordinates: chunks hold the same number of values.
         in_chunks(work, np.flatnonzero(half != number), max(1, ROWS_AT_ONCE * 3 // count), Monitor())

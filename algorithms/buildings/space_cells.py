@@ -51,7 +51,7 @@ class SpaceCells:
             pairs.append((row[own[is_own]], beside[is_own].astype(np.int32)))
         del one, other
         rows, columns = (np.concatenate(of_pairs, dtype=np.int32) for of_pairs in zip(*pairs))
-        return sparse.csr_matrix((np.ones(len(rows)), (rows, columns)), (len(chosen), len(self.count)))
+        return sparse.csr_matrix((np.ones(len(rows), np.int8), (rows, columns)), (len(chosen), len(self.count)))
 
     @cached_property
     def centers(self) -> np.ndarray:
@@ -61,9 +61,12 @@ class SpaceCells:
     @cached_property
     def moments(self) -> np.ndarray:
         """Number of points, sums of x, y, z and of their six products (m, 10), m and m², about the points' middle."""
-        off = np.ascontiguousarray((self.xyz - self._origin).T)
-        sums = [*(self.sums(values) for values in off), *(self.sums(off[a] * off[b]) for a, b in PAIRS)]
+        sums = [*(self.sums(self._off(a)) for a in range(3)), *(self.sums(self._off(a) * self._off(b)) for a, b in PAIRS)]
         return np.column_stack([self.count.astype(float), *sums])
+
+    def _off(self, axis: int) -> np.ndarray:
+        """Return how far (n,) the points are from their middle along an axis, m."""
+        return self.xyz[:, axis] - self._origin[axis]
 
     @cached_property
     def _origin(self) -> np.ndarray:

@@ -217,10 +217,10 @@ class _Chain:
                 turns = reached[:, None, :] + turn_to
                 turned[ends] = way = turns.argmin(axis=2)
                 begun[:, n_starts : n_starts + len(ends)] = turns[of, every, way].T
-            if batch[-1] == length:
-                break
-            stays = self._stays(len(firsts) - 1 - _SHORTEST, begun, [costs[-1 - _SHORTEST] for costs in least])
-            firsts, begun = firsts[stays], begun[:, stays]
+            # Runs have a least length: to the ends after this batch they lead from all but the last of its samples.
+            if len(batch) > _SHORTEST:
+                stays = self._stays(len(firsts) - 1 - _SHORTEST, begun, [costs[-1 - _SHORTEST] for costs in least])
+                firsts, begun = firsts[stays], begun[:, stays]
         whole = cost[length] + end
         return float(whole.min()), self._traced(whole, came, turned)
 
@@ -233,7 +233,6 @@ class _Chain:
         (fixed, free), n_fixed, begins = least, self.ways.n_fixed, begun[:, end, None]
         stays = (begun[:n_fixed] + fixed < begins[:n_fixed]).any(axis=0)
         stays |= (begun[n_fixed:] + free < begins[n_fixed:]).any(axis=0)
-        # Runs have a least length.
         stays[max(end - _SHORTEST + 1, 0) :] = True
         return stays
 

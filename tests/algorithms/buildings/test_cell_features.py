@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.buildings.cell_features import CellPoints, cell_features
+from lidar_buildings.algorithms.buildings.cell_features import CellFeatures, CellPoints
 from lidar_buildings.algorithms.buildings.space_cells import SpaceCells
 
 # Columns of the features: the block, then the cell itself, then what follows.
@@ -15,7 +15,7 @@ def features_of(xyz, size, is_ground=None, returns=None, intensity=None):
     cells = SpaceCells(xyz, size)
     points = CellPoints(xyz, xyz[:, 2], is_ground, returns, intensity)
     every = np.arange(len(cells.count))
-    return cell_features(points, cells, every, cells.around(every)), cells
+    return CellFeatures(points, cells, every, cells.around(every)).of(every), cells
 
 
 def lattice(*axes):
@@ -60,7 +60,7 @@ def test_features_do_not_depend_on_the_order_of_points(rng):
         cells = SpaceCells(xyz[order], 0.7)
         every = np.arange(len(cells.count))
         points = CellPoints(xyz[order], height[order], np.zeros(len(xyz), bool), None, None)
-        found.append(cell_features(points, cells, every, cells.around(every)))
+        found.append(CellFeatures(points, cells, every, cells.around(every)).of(every))
     np.testing.assert_allclose(found[0][:, -5:], found[1][:, -5:], atol=1e-9)
 
 
