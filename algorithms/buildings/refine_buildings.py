@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, Optional
 
 import numpy as np
@@ -166,7 +167,7 @@ def refine_buildings(
     number, of, strength = (_of(values, used) for values in (return_number, number_of_returns, intensity))
     size = _RULES.cell_spacings / float(np.sqrt(density))
     labeled = scene.labeled(size, number, of, strength, monitor.part(0.1, 0.7))
-    learned = sampling.learned(_LEARNED, lambda: labeled.sample(scene.cluster_id), learn_halves)
+    learned = sampling.learned(_LEARNED, partial(labeled.sample, scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
         monitor.inform("Buildings are not refined: the scene has fewer than two buildings to learn from.")

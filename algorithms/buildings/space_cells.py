@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -61,7 +62,8 @@ class SpaceCells:
     @cached_property
     def moments(self) -> np.ndarray:
         """Number of points, sums of x, y, z and of their six products (m, 10), m and m², about the points' middle."""
-        sums = [*(self.sums(self._off(a)) for a in range(3)), *(self.sums(self._off(a) * self._off(b)) for a, b in PAIRS)]
+        products = (self._off(a) * self._off(b) for a, b in PAIRS)
+        sums = [self.sums(values) for values in chain(map(self._off, range(3)), products)]
         return np.column_stack([self.count.astype(float), *sums])
 
     def _off(self, axis: int) -> np.ndarray:

@@ -338,7 +338,8 @@ def _shared_directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]
     for number, rows in enumerate(split_groups(one, len(rings))):
         neighbors = [(each, row) for each in other[rows].tolist() if each != number for row in range(len(rings[each]))]
         # Walls farther away do not count, also where they are of the same neighbor: a window may lack them.
-        counts = [np.maximum(1 - _off_box(rings[each][row], boxes[number]) / _NEIGHBORS, 0.0) for each, row in neighbors]
+        off = (_off_box(rings[each][row], boxes[number]) for each, row in neighbors)
+        counts = [np.maximum(1 - distance / _NEIGHBORS, 0.0) for distance in off]
         around.append(sum(weights_of_pieces([pieces[each][row] for each, row in neighbors], counts), np.zeros(N_STEPS)))
     together = [own + _INFLUENCE * own.sum() * other / (other.sum() or 1.0) for own, other in zip(weights, around)]
     counts = [sum(map(len, own)) for own in rings]
