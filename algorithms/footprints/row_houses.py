@@ -28,10 +28,9 @@ class RowRules:
     far: float = rule(1.6, "m", "physics: to where the roof is measured, before the ridge of the narrowest house")
     rise: float = rule(0.25, "tangent", "physics: least slope of a roof that rises from a valley")
     parallel: float = rule(0.35, "tangent", "physics: slopes of parallel roofs differ by less")
-    least_step: float = rule(
-        0.4, "m", "fitted on simulated rows: between parallel roofs; over the noise of airborne clouds"
+    least_height: float = rule(
+        0.2, "m", "physics: of a step between parallel roofs and of a wall over both; four times the noise of a scan"
     )
-    parapet: float = rule(0.3, "m", "fitted on simulated rows: least height of a wall over both roofs")
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
     large_step: float = rule(1.0, "m", "physics: a step between any two roofs, that of half a storey")
     wide: float = rule(2.5, "m", "physics: where half of a step has to be left; a dormer ends before")
@@ -235,36 +234,121 @@ def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarr
 
 def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
     """Return the strength (m) of party walls along the first axis at samples, the height beside them, and misfits."""
-    size = 2 * round(ROWS.along / 2 / step) + 1
-    weight = ndimage.uniform_filter1d(seen.astype(float), size, axis=0, mode="constant")
-    roof = ndimage.uniform_filter1d(roof * seen, size, axis=0, mode="constant") / np.maximum(weight, 1e-9)
-    # One point or more.
-    is_known = weight * size >= 0.99
-    left, left_rise, left_rough, left_mean, left_misfit = _side(roof, is_known, step, -1)
-    right, right_rise, right_rough, right_mean, right_misfit = _side(roof, is_known, step, 1)
-    jump = np.abs(right - left)
-    is_valley = (left_rise > ROWS.rise) & (right_rise > ROWS.rise)
-    is_ridge = (left_rise < -ROWS.rise) & (right_rise < -ROWS.rise)
-    is_parallel = (jump > ROWS.least_step) & (np.abs(left_rise + right_rise) < ROWS.parallel)
+    sums = _Sums.along(roof, seen, step)
+    left, right = _side(sums, step, -1), _side(sums, step, 1)
+    jump = np.abs(right.here - left.here)
+    is_valley = (left.rise > ROWS.rise) & (right.rise > ROWS.rise)
+    is_ridge = (left.rise < -ROWS.rise) & (right.rise < -ROWS.rise)
+    is_parallel = (jump > ROWS.least_height) & (np.abs(left.rise + right.rise) < ROWS.parallel)
     is_large = (jump > ROWS.large_step) & ~is_ridge
-    is_smooth = np.maximum(left_rough, right_rough) < ROWS.rough
-    is_house = np.minimum(left_mean, right_mean) >= ROWS.least_share * np.maximum(left_mean, right_mean)
-    above = _above(roof, (left, left_rise), (right, right_rise), step)
-    is_step = (is_parallel | is_large) & is_smooth & is_house & _goes_on(roof, is_known, right - left, step)
-    is_parapet = (above > ROWS.parapet) & is_smooth
+    is_smooth = np.maximum(left.rough, right.rough) < ROWS.rough
+    is_house = np.minimum(left.mean, right.mean) >= ROWS.least_share * np.maximum(left.mean, right.mean)
+    above = _above(sums, left, right, step)
+    goes_on = _goes_on(sums.mean(), sums.n >= 1, right.here - left.here, step)
+    is_step = (is_parallel | is_large) & is_smooth & is_house & goes_on
+    is_parapet = (above > ROWS.least_height) & is_smooth
     strength = np.where(is_step, np.minimum(jump, 2 * ROWS.large_step), np.where(is_parapet, above, 0.0))
-    strength = np.where(is_valley, np.minimum(left_rise, right_rise), strength)
-    misfit = np.nan_to_num(left_misfit) + np.nan_to_num(right_misfit)
-    return strength, np.nan_to_num(np.maximum(left_mean, right_mean)), misfit
+    strength = np.where(is_valley, np.minimum(left.rise, right.rise), strength)
+    misfit = np.nan_to_num(left.misfit) + np.nan_to_num(right.misfit)
+    return strength, np.nan_to_num(np.maximum(left.mean, right.mean)), misfit
 
 
-def _above(roof: np.ndarray, left: tuple, right: tuple, step: float) -> np.ndarray:
-    """Return how high (m) a roof is at each position, or beside it, above both lines: height here and rise outward."""
-    above = np.full(roof.shape, -np.inf)
+@dataclass(frozen=True)
+class _Sums:
+    """Sums over the points within half a meter along a line: of 1, y, y², z, yz and z², y from the sample itself."""
+
+    n: np.ndarray
+    y: np.ndarray
+    yy: np.ndarray
+    z: np.ndarray
+    yz: np.ndarray
+    zz: np.ndarray
+
+    @classmethod
+    def along(cls, roof: np.ndarray, seen: np.ndarray, step: float) -> _Sums:
+        """Return the sums at each sample of the mean heights (m) and numbers of points of cells."""
+        half = round(ROWS.along / 2 / step)
+        y = np.arange(-half, half + 1) * step
+        count = seen.astype(float)
+
+        def total(values: np.ndarray, exponent: int) -> np.ndarray:
+            return ndimage.correlate1d(values, y**exponent, axis=0, mode="constant")
+
+        # Points lie anywhere in their cells: a twelfth of the square of a side each.
+        n, z = total(count, 0), count * roof
+        yy = total(count, 2) + n * step**2 / 12
+        return cls(n, total(count, 1), yy, total(z, 0), total(z, 1), total(z * roof, 0))
+
+    def mean(self) -> np.ndarray:
+        """Return the mean heights, m."""
+        return self.z / np.maximum(self.n, 1e-9)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The plane fitted to the roof on one side of each sample."""
+
+    here: np.ndarray  #: Its height at the sample, m
+    rise: np.ndarray  #: How it rises outward
+    slope: np.ndarray  #: How it rises along the line
+    rough: np.ndarray  #: Root mean square deviation of the points, m
+    mean: np.ndarray  #: Their mean height, m
+    misfit: np.ndarray  #: The deviation where the fit begins at the sample itself, m
+
+
+def _side(sums: _Sums, step: float, sign: int) -> _Side:
+    """Return the planes fitted to the roof on one side; NaN where less than seven tenths of their columns are seen."""
+    first, last = max(1, int(np.ceil(ROWS.near / step))), int(ROWS.far / step)
+    # The kernel reaches from the sample itself to one side only.
+    origin = last // 2 if sign < 0 else -((last + 1) // 2)
+    terms = (
+        *((sums.n, 0), (sums.n, 1), (sums.n, 2), (sums.y, 0), (sums.y, 1)),
+        *((sums.yy, 0), (sums.z, 0), (sums.z, 1), (sums.yz, 0), (sums.zz, 0), (np.where(sums.n >= 1, 1.0, 0.0), 0)),
+    )
+
+    def total(values: np.ndarray, exponent: int) -> np.ndarray:
+        kernel = np.zeros(last + 1)
+        kernel[first:] = (np.arange(first, last + 1) * step) ** exponent
+        return ndimage.correlate1d(values, kernel[::sign], axis=1, mode="constant", origin=origin)
+
+    across = [total(*term) for term in terms]
+    here, rise, slope, rough = _fitted(across, last + 1 - first)
+    mean = np.where(np.isfinite(rise), across[6] / np.maximum(across[0], 1.0), np.nan)
+    for offset in range(1, first):
+        own, other = slice(None, -offset), slice(offset, None)
+        own, other = (own, other) if sign > 0 else (other, own)
+        for one, (values, exponent) in zip(across, terms):
+            one[:, own] += values[:, other] * (offset * step) ** exponent
+    return _Side(here, rise, slope, rough, mean, _fitted(across, last)[3])
+
+
+def _fitted(across: list, count: int) -> tuple[np.ndarray, ...]:
+    """Return planes by least squares: height at the sample, rise across, slope along, deviation.
+
+    ``across`` are sums of 1, x, x², y, xy, y², z, xz, yz, z² and the number of columns seen, of ``count``.
+    """
+    n, x, xx, y, xy, yy, z, xz, yz, zz, columns = across
+    n = np.maximum(n, 1.0)
+    xx, xy, yy = xx - x * x / n, xy - x * y / n, yy - y * y / n
+    xz, yz, zz = xz - x * z / n, yz - y * z / n, zz - z * z / n
+    det = xx * yy - xy * xy
+    good = (columns >= 0.7 * count) & (det > 1e-6)
+    det = np.where(good, det, 1.0)
+    rise = np.where(good, xz * yy - yz * xy, np.nan) / det
+    slope = np.where(good, yz * xx - xz * xy, np.nan) / det
+    here = (z - rise * x - slope * y) / n
+    return here, rise, slope, np.sqrt(np.maximum(zz - rise * xz - slope * yz, 0.0) / n)
+
+
+def _above(sums: _Sums, left: _Side, right: _Side, step: float) -> np.ndarray:
+    """Return how high (m) the roof is at each sample, or one beside it, above the planes of both sides."""
+    level = sums.mean() - (left.slope + right.slope) / 2 * sums.y / np.maximum(sums.n, 1e-9)
+    columns, above = np.arange(level.shape[1]), np.full(level.shape, -np.inf)
     for at in (-1, 0, 1):
-        beside = roof.take(np.clip(np.arange(roof.shape[1]) + at, 0, roof.shape[1] - 1), axis=1)
-        lines = left[0] - at * step * left[1], right[0] + at * step * right[1]
-        above = np.maximum(above, beside - np.maximum(*lines))
+        beside = level.take(np.clip(columns + at, 0, len(columns) - 1), axis=1)
+        above = np.maximum(
+            above, beside - np.maximum(left.here - at * step * left.rise, right.here + at * step * right.rise)
+        )
     return above
 
 
@@ -274,46 +358,6 @@ def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: flo
     known = np.pad(np.where(is_known, roof, np.nan), ((0, 0), (away, away)), constant_values=np.nan)
     farther = known[:, 2 * away :] - known[:, : -2 * away]
     return ~(farther * np.sign(jump) < np.abs(jump) / 2)
-
-
-def _side(roof: np.ndarray, is_known: np.ndarray, step: float, sign: int) -> tuple[np.ndarray, ...]:
-    """Return the line fitted to the roof on one side of each position: height here, rise outward, deviation, mean.
-
-    The last array is the deviation where the fit begins at the position itself.
-    """
-    first, last = max(1, int(np.ceil(ROWS.near / step))), int(ROWS.far / step)
-    # The kernel reaches from the position itself to one side only.
-    origin = last // 2 if sign < 0 else -((last + 1) // 2)
-    values = [np.where(is_known, one, 0.0) for one in (1.0, roof, roof**2)]
-
-    def total(power: int, exponent: int) -> np.ndarray:
-        kernel = np.zeros(last + 1)
-        kernel[first:] = (np.arange(first, last + 1) * step) ** exponent
-        return ndimage.correlate1d(values[power], kernel[::sign], axis=1, mode="constant", origin=origin)
-
-    powers = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (2, 0))
-    sums = [total(*each) for each in powers]
-    here, rise, rough = _fitted(sums, last + 1 - first)
-    mean = np.where(np.isfinite(rise), sums[3] / np.maximum(sums[0], 1.0), np.nan)
-    for offset in range(1, first):
-        own, other = slice(None, -offset), slice(offset, None)
-        own, other = (own, other) if sign > 0 else (other, own)
-        for one, (power, exponent) in zip(sums, powers):
-            one[:, own] += values[power][:, other] * (offset * step) ** exponent
-    return here, rise, rough, mean, _fitted(sums, last)[2]
-
-
-def _fitted(sums: list, count: int) -> tuple[np.ndarray, ...]:
-    """Return the lines of sums of 1, x, x², z, xz, z² over known samples: height at 0, rise, deviation.
-
-    NaN where less than seven tenths of ``count`` samples are known.
-    """
-    n, x, xx, z, xz, zz = sums
-    det = n * xx - x**2
-    good = (n >= 0.7 * count) & (det > 1e-6)
-    rise = np.where(good, n * xz - x * z, np.nan) / np.where(good, det, 1.0)
-    here = (z - rise * x) / np.maximum(n, 1.0)
-    return here, rise, np.sqrt(np.maximum(zz - here * z - rise * xz, 0.0) / np.maximum(n, 1.0))
 
 
 def _runs(is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

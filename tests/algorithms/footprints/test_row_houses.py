@@ -264,14 +264,14 @@ def step_of(height, left=0.0, right=0.0, low=8.0):
     [
         # A valley from a slope of 0.25 on.
         (step_of(0.0, 0.3, 0.3), step_of(0.0, 0.2, 0.2)),
-        # A step of 0.4 m between roofs whose slopes differ by less than 0.35, and one of 1 m between all but
+        # A step of 0.2 m between roofs whose slopes differ by less than 0.35, and one of 1 m between all but
         # the sides of a ridge.
-        (step_of(0.45), step_of(0.35)),
+        (step_of(0.25), step_of(0.15)),
         (step_of(0.7, -0.1, 0.4), step_of(0.7, -0.1, 0.5)),
         (step_of(1.1, 0.0, 0.6), step_of(0.9, 0.0, 0.6)),
         (step_of(2.0, -0.2, -0.3), step_of(2.0, -0.3, -0.3)),
-        # A wall 0.3 m above both roofs.
-        (lambda x: 8 + 0.4 * (np.abs(x) < 0.2), lambda x: 8 + 0.2 * (np.abs(x) < 0.2)),
+        # A wall 0.2 m above both roofs.
+        (lambda x: 8 + 0.25 * (np.abs(x) < 0.2), lambda x: 8 + 0.15 * (np.abs(x) < 0.2)),
         # Roofs deviate by less than 0.25 m from a line.
         (
             lambda x: step_of(0.9)(x) + 0.18 * np.cos(4 * np.pi * x),
