@@ -5396,7 +5396,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions. Along such a line both roofs slope up from it, parallel roofs step by 0.4 m, any by 1 m, or a wall rises 0.3 m above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. Two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have six tenths of the height of the higher one. Houses keep the number of their cluster.</source>
+        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions. Along such a line both roofs slope up from it, parallel roofs step by 0.2 m, any by 1 m, or a wall rises 0.2 m above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. Two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have six tenths of the height of the higher one. Houses keep the number of their cluster.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
