@@ -33,7 +33,7 @@ REACH = _NEAR * _TRUNCATE
 APART = 8.0
 
 # Least spacing (m) assumed when outlines are drawn, and least step of the grid of heights in which rows of houses are
-# separated: gutters and small bays are no walls, and a fire wall is thicker.
+# separated. Gutters and small bays are no walls, and a fire wall is thicker.
 LEAST_SPACING = 0.25
 
 # Least density of roofs, as a share of the usual density of one point per square spacing, below which a position is far

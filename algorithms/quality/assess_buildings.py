@@ -106,8 +106,8 @@ def assess_buildings(
 ):
     """Compare the buildings of a classification with those of a reference: completeness, correctness, F-score, quality.
 
-    It counts in three ways: per point; per cell, by the topmost point, which leaves walls out (some references call
-    them building, some don't); per object, where a building is found when at least half of it is. A layer shows which
+    It counts per point, per cell and per object. Cells are counted by the topmost point, which leaves walls out: some
+    references call them building, some don't. An object is found when at least half of it is. A layer shows which
     buildings were found, missed and invented.
 
     Parameters
