@@ -5612,7 +5612,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>It counts in three ways: per point; per cell, by the topmost point, which leaves walls out (some references call them building, some don't); per object, where a building is found when at least half of it is. A layer shows which buildings were found, missed and invented.</source>
+        <source>It counts per point, per cell and per object. Cells are counted by the topmost point, which leaves walls out: some references call them building, some don't. An object is found when at least half of it is. A layer shows which buildings were found, missed and invented.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
