@@ -104,12 +104,14 @@ def draw_block(
     if walls:
         label, building = _by_house(cells, label, building, houses, shares, lattice)
         label = _without_scraps(cells, label, how)
-    found, positions = [], lattice.positions
+    found = []
     for polygon in cell_polygons(cells, np.minimum(label, 1) if how.is_merged else label):
         nodes = np.concatenate([cells.members[cell] for cell in polygon.cells])
         is_straight = _is_straight(polygon.rings, [*edges, *walls])
         largest = np.bincount(label[polygon.cells], cells.areas()[polygon.cells]).argmax()
-        found.append(Outlined(int(building[largest]), polygon.rings, positions[nodes], is_straight))
+        row, column = np.divmod(nodes, lattice.shape[1])
+        positions = lattice.in_plan(np.column_stack([column, row]))
+        found.append(Outlined(int(building[largest]), polygon.rings, positions, is_straight))
     return found
 
 

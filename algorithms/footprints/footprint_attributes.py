@@ -177,11 +177,11 @@ class _Owners:
         nodes = np.concatenate([outlined.nodes for outlined in outlines])
         self.spacing = spacing
         self.lattice = Lattice.around(np.concatenate([nodes, plan]), spacing)
-        self.face = np.full(self.lattice.shape, -1, np.int64)
+        self.face = np.full(self.lattice.shape, -1, np.int32)
         for number, outlined in enumerate(outlines):
             self.face[self._nodes(outlined.nodes)] = number
-        distance, nearest = ndimage.distance_transform_edt(self.face < 0, return_indices=True)
-        self.nearest = np.where(distance * self.lattice.step <= APART * spacing, self.face[tuple(nearest)], -1)
+        # Row and column of the nearest node of an outline: distances of all nodes would take several times the memory.
+        self.nearest = ndimage.distance_transform_edt(self.face < 0, return_distances=False, return_indices=True)
 
     def _nodes(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         column, row = np.rint(self.lattice.nodes(positions)).astype(np.int64).T
@@ -190,7 +190,10 @@ class _Owners:
 
     def at(self, plan: np.ndarray) -> np.ndarray:
         """Return the outline (n,) that positions (n, 2) belong to, -1 of those far from all."""
-        return self.nearest[self._nodes(plan)]
+        own = self._nodes(plan)
+        row, column = (nearest[own] for nearest in self.nearest)
+        is_near = self.lattice.step * np.hypot(row - own[0], column - own[1]) <= APART * self.spacing
+        return np.where(is_near, self.face[row, column], -1)
 
     def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return positions (b, 2) along an outline, and which (b,) are not on a border with another; all if none is."""

@@ -69,9 +69,12 @@ class Lattice:
     @property
     def positions(self) -> np.ndarray:
         """Easting and northing (rows * columns, 2), m, of all nodes, row by row."""
-        rows, columns = self.shape
-        row, column = np.divmod(np.arange(rows * columns), columns)
-        return self.in_plan(np.column_stack([column, row]))
+        found = np.empty((*self.shape, 2))
+        # Axis by axis: lists of columns and rows would take several times the memory.
+        for axis, count in enumerate(self.shape[::-1]):
+            along = (np.arange(count) + self.first[axis]) * self.step
+            found[..., axis] = along if axis == 0 else along[:, None]
+        return found.reshape(-1, 2)
 
     def holds(self, plan: np.ndarray) -> np.ndarray:
         """Return which positions (n, 2), m, lie within the lattice."""

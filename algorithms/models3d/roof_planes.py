@@ -73,8 +73,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     if len(xyz) < max(min_points, 4):
         return RoofPlanes(np.zeros((0, 3)), np.full(len(xyz), -1))
     rows = np.arange(len(xyz))
-    columns = np.ascontiguousarray(xyz.T)
-    neighbors, _, covariance = Nearest(_NEIGHBORS).moments(columns, spatial.cKDTree(xyz), rows)
+    neighbors, _, covariance = Nearest(_NEIGHBORS).moments(spatial.cKDTree(xyz), rows)
     eigenvalues = symmetric_eigenvalues(covariance)
     normal = np.nan_to_num(smallest_eigenvectors(covariance, eigenvalues))
     growth = _Growth(xyz, neighbors, normal, tolerance, float(np.cos(np.deg2rad(max_slope))))

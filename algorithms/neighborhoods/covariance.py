@@ -65,32 +65,30 @@ class Nearest:
         """Return the shapes of the neighborhoods of the points ``rows``."""
         return nearest_shapes(columns, tree, rows, min(self.count, columns.shape[1]), extents)
 
-    def moments(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return neighbors (m, k), their centers (m, 3) and covariances (m, 6) of the points ``rows``."""
-        neighbors, offsets = nearest_offsets(columns, tree, rows, self.count)
+    def moments(self, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return neighbors (m, k), their centers (m, 3) and covariances (m, 6) of the points ``rows`` of a tree."""
+        neighbors, offsets = nearest_offsets(tree, rows, self.count)
         means, products = _moments(offsets)
-        return neighbors, columns[:, rows].T + np.column_stack(means), np.column_stack(products)
+        return neighbors, tree.data[rows] + np.column_stack(means), np.column_stack(products)
 
 
-def nearest_offsets(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int) -> tuple[np.ndarray, list]:
+def nearest_offsets(tree: Any, rows: np.ndarray, count: int) -> tuple[np.ndarray, list]:
     """Return the neighbors (m, k) of the points ``rows``, nearest first, and how far they are off in x, y, z.
 
     Parameters
     ----------
-    columns : ndarray of shape (3, n)
-        Coordinates of the points, m.
     tree : cKDTree
-        Tree of the points.
+        Tree of the points (n, 3), m.
     rows : ndarray of shape (m,), int64
         Points that are asked for.
     count : int
         Number of neighbors k.
     """
-    own = columns[:, rows]
-    count = min(count, columns.shape[1])
-    neighbors = tree.query(own.T, k=count)[1].reshape(len(rows), count)
+    own, count, coordinates = tree.data[rows], min(count, tree.n), tree.data.ravel()
+    neighbors = tree.query(own, k=count)[1].reshape(len(rows), count)
+    first = 3 * neighbors
     # Offsets to the point itself are exact however large the coordinates are.
-    return neighbors, [np.take(column, neighbors) - start[:, None] for column, start in zip(columns, own)]
+    return neighbors, [np.take(coordinates[axis:], first) - own[:, axis, None] for axis in range(3)]
 
 
 def _moments(offsets: list) -> tuple[list, list]:

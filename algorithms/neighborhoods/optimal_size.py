@@ -61,7 +61,7 @@ class Optimal:
 
         Also return the rows (m,), bool, whose tie at the largest scale may go on beyond these.
         """
-        _, offsets = nearest_offsets(columns, tree, rows, count)
+        _, offsets = nearest_offsets(tree, rows, count)
         size = max(1, _CACHED // offsets[0].shape[1])
         parts = [
             self._best([offset[start : start + size] for offset in offsets], extents)

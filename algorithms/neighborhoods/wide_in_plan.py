@@ -46,17 +46,17 @@ class Wide:
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the neighborhoods of the points ``rows``; extents are not known."""
-        covariances, counts = self._smallest(nearest_offsets(columns, tree, rows, self._most)[1])
+        covariances, counts = self._smallest(nearest_offsets(tree, rows, self._most)[1])
         return Shapes(covariances, counts)
 
-    def moments(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def moments(self, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return 16 neighbors (m, 16), centers (m, 3) and covariances (m, 6) of the points ``rows``."""
-        neighbors, offsets = nearest_offsets(columns, tree, rows, self._most)
+        neighbors, offsets = nearest_offsets(tree, rows, self._most)
         covariances, counts = self._smallest(offsets)
         ranks = np.rint(np.linspace(0, 1, _NAMED) * (counts[:, None] - 1)).astype(np.intp)
         last = counts[:, None] - 1
         means = [np.take_along_axis(np.cumsum(offset, axis=1), last, axis=1)[:, 0] / counts for offset in offsets]
-        return np.take_along_axis(neighbors, ranks, axis=1), columns[:, rows].T + np.column_stack(means), covariances
+        return np.take_along_axis(neighbors, ranks, axis=1), tree.data[rows] + np.column_stack(means), covariances
 
     @property
     def _most(self) -> int:

@@ -195,7 +195,7 @@ class SurfaceSample:
         variances, nearest = np.empty((len(self.rows), 3)), Nearest(count)
 
         def work(some: np.ndarray) -> None:
-            variances[some] = symmetric_eigenvalues(nearest.moments(self.columns, self.tree, self.rows[some])[2])
+            variances[some] = symmetric_eigenvalues(nearest.moments(self.tree, self.rows[some])[2])
 
         in_chunks(work, np.arange(len(self.rows)), nearest.rows_per_chunk(len(self)), Monitor())
         return variances

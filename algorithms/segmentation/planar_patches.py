@@ -34,10 +34,10 @@ PATCHES = PatchRules()
 class _PointPlanes:
     """The planes of points and their neighbors."""
 
-    #: (n, 4), float64: unit normal upward, and how far along it the plane lies from the first of the points (m): the
-    #: distance of (x, y, z, -1) from the plane is one sum of products
+    #: (n, 4), float32, exact to a millimeter within 10 km: unit normal upward, and how far along it the plane lies from
+    #: the first of the points (m): the distance of (x, y, z, -1) from the plane is one sum of products
     planes: np.ndarray
-    deviation: np.ndarray  #: (n,), float64: standard deviation across the plane, m
+    deviation: np.ndarray  #: (n,), float32: standard deviation across the plane, m
     neighbors: np.ndarray  #: (n, k), int32: points that showed the plane
 
 
@@ -48,6 +48,7 @@ def segment_patches(
     off_plane: float,
     max_slope: float,
     monitor: Monitor,
+    corner: Union[np.ndarray, float] = 0.0,
 ) -> np.ndarray:
     """Group those of some points that lie on smooth surfaces.
 
@@ -68,6 +69,8 @@ def segment_patches(
         Steepest patch, degrees; 90 is any.
     monitor : Monitor
         Receives progress.
+    corner : ndarray of shape (2,) or 0
+        Easting and northing (m) from which points are measured.
 
     Returns
     -------
@@ -77,16 +80,19 @@ def segment_patches(
     if len(used) < LEAST_NEIGHBORS:
         return np.full(len(used), -1, np.int32)
     # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
-    order = spatial.cKDTree(xyz.take(used, axis=0), balanced_tree=False).indices.astype(np.int32)
+    xyz = xyz.take(used, axis=0)
+    # Here, as the whole cloud measured from there would take as much memory again.
+    xyz[:, :2] -= corner
+    order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(used)))
-    xyz = xyz.take(used[order], axis=0)
+    xyz = xyz.take(order, axis=0)
     planes = _local_planes(xyz, neighborhood, monitor.part(0, 0.6))
     points = np.full((len(xyz), 4), -1.0)
     np.subtract(xyz, xyz[0], out=points[:, :3])
     del xyz
     plane = _smoothest_plane(points, planes, ON_PLANE * off_plane, monitor.part(0.6, 0.8))
     # The other neighbors are freed before links are found, which take memory of their own.
-    planes.neighbors = _linked_neighbors(planes.neighbors)
+    _keep_linked(planes.neighbors)
     on_surface = (planes.deviation[plane] <= ON_PLANE * off_plane) & (plane >= 0)
     on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
     links = _links(points, planes, plane, on_surface, PATCHES.same_surface * off_plane, monitor.part(0.8, 1))
@@ -101,13 +107,14 @@ def segment_patches(
 
 def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _PointPlanes:
     tree = spatial.cKDTree(xyz, balanced_tree=False)
-    columns = np.ascontiguousarray(xyz.T)
     made = _PointPlanes(
-        np.empty((len(xyz), 4)), np.empty(len(xyz)), np.empty((len(xyz), neighborhood.n_named), np.int32)
+        np.empty((len(xyz), 4), np.float32),
+        np.empty(len(xyz), np.float32),
+        np.empty((len(xyz), neighborhood.n_named), np.int32),
     )
 
     def work(rows: np.ndarray) -> None:
-        neighbors, centers, covariances = neighborhood.moments(columns, tree, rows)
+        neighbors, centers, covariances = neighborhood.moments(tree, rows)
         eigenvalues = symmetric_eigenvalues(covariances)
         normals = smallest_eigenvectors(covariances, eigenvalues)
         made.neighbors[rows] = neighbors
@@ -147,11 +154,19 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
     return found
 
 
-def _linked_neighbors(neighbors: np.ndarray) -> np.ndarray:
-    """Return those of the neighbors (n, k), nearest first, that links are looked for among: as many as show a plane."""
+def _keep_linked(neighbors: np.ndarray) -> None:
+    """Keep those of the neighbors (n, k), nearest first, that links are looked for among: as many as show a plane.
+
+    Memory of the others is freed, without a copy.
+    """
     # Spread over the ranks, so that links cross from one scan line to the next.
     ranks = np.unique(np.linspace(1, neighbors.shape[1] - 1, LEAST_NEIGHBORS - 1).astype(int))
-    return neighbors[:, ranks]
+    flat = neighbors.reshape(-1)
+    for first in range(0, len(neighbors), ROWS_AT_ONCE):
+        kept = neighbors[first : first + ROWS_AT_ONCE, ranks].ravel()
+        flat[first * len(ranks) : first * len(ranks) + len(kept)] = kept
+    del flat
+    neighbors.resize((len(neighbors), len(ranks)), refcheck=False)
 
 
 def _links(

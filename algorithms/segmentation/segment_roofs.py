@@ -141,7 +141,6 @@ def segment_roofs(
     (True, 1)
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
-    xyz = sampling.from_corner(xyz)
     density = sampling.effective_density if density is None else density
     noise = sampling.noise if noise is None else noise
     kind = sampling.kind(source)
@@ -150,13 +149,15 @@ def segment_roofs(
 
     # 1. Smooth surfaces.
     is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
-    is_used &= kind.choose(_anywhere, _on_top)(xyz, height_above_ground, is_used, density)
+    is_used &= kind.choose(_anywhere, _on_top)(xyz, height_above_ground, is_used, density, sampling)
     used = np.flatnonzero(is_used)
-    patch = np.full(len(xyz), -1, np.int32)
     find_patches = kind.choose(_patches_of_scan, _patches_of_images)
-    patch[used] = find_patches(xyz, used, sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
+    found = find_patches(xyz, used, sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
+    patch = np.full(len(xyz), -1, np.int32)
+    patch[used] = found
 
     # 2. Those that are high and large enough, and do not go on into the ground.
+    xyz = sampling.from_corner(xyz)
     patches = _Patches(xyz, patch, height_above_ground, density, kind.foot)
     monitor.progress(0.8)
     segment_id = _renumbered(patches.number, patches.roofs(min_height, min_area))
@@ -173,13 +174,18 @@ def segment_roofs(
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
 
 
-def _anywhere(xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float) -> np.ndarray:
+def _anywhere(
+    xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float, sampling: CloudSampling
+) -> np.ndarray:
     """Return that any point (n,) of a laser scan may be of a roof."""
     return np.ones(len(xyz), bool)
 
 
-def _on_top(xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float) -> np.ndarray:
+def _on_top(
+    xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float, sampling: CloudSampling
+) -> np.ndarray:
     """Return which points (n,) of matched images may be of a roof: those of the surface seen from above."""
+    xyz = sampling.from_corner(xyz)
     return TopSurface(xyz, height, is_used, density).on_top(xyz)
 
 
@@ -205,7 +211,7 @@ def _patches_of_scan(
 ) -> np.ndarray:
     """Return the patch (u,) from 0, -1 for no one, of the ``used`` rows of the points (n, 3) of a laser scan."""
     around = sampling.neighborhood(planes.density, planes.off_plane)
-    return segment_patches(xyz, used, around, planes.off_plane, planes.max_slope, monitor)
+    return segment_patches(xyz, used, around, planes.off_plane, planes.max_slope, monitor, sampling.corner)
 
 
 def _patches_of_images(
@@ -215,13 +221,14 @@ def _patches_of_images(
     if not len(used):
         return np.zeros(0, np.int32)
     rules = IMAGE_SURFACE
-    highest, under = highest_of_cells(xyz.take(used, axis=0), rules.cell)
+    highest, under = highest_of_cells(sampling.from_corner(xyz.take(used, axis=0)), rules.cell)
     # Of cells that hold points at random, with the density's number on the average, these have one.
     kept = -np.expm1(-planes.density * rules.cell**2) / rules.cell**2
     count = max(LEAST_NEIGHBORS, round(np.pi * SURFACES.least_reach**2 * kept))
     # Matched points share the error of their window, which is as large as their own.
     deviation = float(np.sqrt(2)) * planes.off_plane
-    return segment_patches(xyz, used[highest], Nearest(count), deviation, planes.max_slope, monitor)[under]
+    steepest, corner = planes.max_slope, sampling.corner
+    return segment_patches(xyz, used[highest], Nearest(count), deviation, steepest, monitor, corner)[under]
 
 
 def _clusters(

@@ -32,7 +32,7 @@ def found(neighborhood, xyz):
         covariances[some] = shapes.covariances
 
     reduce_neighborhoods(xyz, neighborhood, keep, tree)
-    return (*neighborhood.moments(np.ascontiguousarray(xyz.T), tree, rows), counts, covariances)
+    return (*neighborhood.moments(tree, rows), counts, covariances)
 
 
 def by_hand(xyz, count):
@@ -90,7 +90,7 @@ def test_normals_of_a_roof_on_scan_lines(rng):
     xyz = lines(rng, 1.5, 0.25, slope=1.0, noise=0.02)
     slopes = []
     for neighborhood in (Nearest(8), Wide(8)):
-        covariances = neighborhood.moments(np.ascontiguousarray(xyz.T), cKDTree(xyz), np.arange(len(xyz)))[2]
+        covariances = neighborhood.moments(cKDTree(xyz), np.arange(len(xyz)))[2]
         full = covariances[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
         normals = np.linalg.eigh(full)[1][:, :, 0]
         slopes.append(np.degrees(np.arccos(np.abs(normals[:, 2]))))
