@@ -95,8 +95,10 @@ def draw_ring(samples: np.ndarray, directions: np.ndarray, prices: Prices) -> li
     if not len(directions):
         return _drawn(samples, _Ways.of(directions, replace(prices, corner=prices.round * prices.corner), 0.0))[1]
     cost, edges = _drawn(samples, _Ways.of(directions, prices, prices.other))
-    # No ring has less than three corners.
-    if cost > (prices.curved + 3) * prices.corner:
+    # A ring with curved walls saves the difference of the prices for each edge along neither main direction. To cost
+    # less it needs more of them than this, and each has a corner.
+    n_edges = prices.curved / (prices.other - prices.other_curved)
+    if cost > (prices.curved + n_edges * (1 + prices.other_curved)) * prices.corner:
         curved_cost, curved = _drawn(samples, _Ways.of(directions, prices, prices.other_curved))
         if curved_cost + prices.curved * prices.corner < cost:
             return curved
