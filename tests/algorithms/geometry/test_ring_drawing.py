@@ -1,5 +1,7 @@
 """Rings drawn from samples along known shapes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -64,3 +66,17 @@ def test_how_many_ends_are_worked_on_at_once_changes_nothing(directions, monkeyp
         rings.append(np.array([[*edge.start, *edge.end] for edge in edges]))
     for ring in rings[1:]:
         np.testing.assert_array_equal(ring, rings[0])
+
+
+def test_long_curved_walls_have_no_main_directions():
+    """A hall of 20 m between half circles of 50 m: the curved walls cost less than a price for each of their edges."""
+    angle = np.linspace(-np.pi / 2, np.pi / 2, 400)
+    arc = 50 * np.column_stack([np.cos(angle), np.sin(angle)]) + [10, 0]
+    prices, along = Prices(10 * SPACING**3), np.zeros(1)
+    free = [
+        sum(not edge.is_main for edge in draw_ring(sampled(np.concatenate([arc, -arc])), along, one))
+        for one in (prices, replace(prices, curved=np.inf))
+    ]
+    # Curved walls cost less with more edges than this: each saves the difference of the prices.
+    least = prices.curved / (prices.other - prices.other_curved)
+    assert free[0] > least >= free[1]
