@@ -104,6 +104,12 @@ _TOWNS = {
 _UNEVEN = (("ahn3-delft", "Delft"), ("ahn-amsterdam-1", "Amsterdam"), ("ign-stbarth", "villas on a hillside"))
 _AT_4, _AT_12 = (("points per m²", 4),), (("points per m²", 12),)
 
+_DRAWINGS = {
+    "in blocks": "touching buildings merged",
+    "house by house": "house by house, as by default",
+    "Building-Regulariser": "Building-Regulariser on the traced outlines",
+}
+
 # Stages and composites in the file of times, and on the page.
 _TIMES = {
     "read + neighbors": "reading, and one search for 16 neighbors",
@@ -233,6 +239,33 @@ TABLES = {
         ),
         "accuracy.py footprints",
     ),
+    "outlines": Shown(
+        ("outlines of four clouds",),
+        (
+            Column("points moved by 2 mm: IoU", "moved, own classes: IoU", 3),
+            Column("distance, m", "moved, own classes: m", 2),
+            Column("90 % of the points: IoU", "90 %, own classes: IoU", 3),
+            Column("distance, m", "90 %, own classes: m", 2),
+            Column("edges along two directions, %", "along", 0, factor=100),
+            Column("corners under 70°, %", "sharp, %"),
+            Column("corners per 100 m", "corners per 100 m"),
+        ),
+        tuple(Row((label,), "outlines", (("drawing", name),)) for name, label in _DRAWINGS.items()),
+        "accuracy.py outlines",
+    ),
+    "outlines_of_map": Shown(
+        ("outlines of Delft",),
+        (
+            Column("corners of single houses, median, m", "their corners, m", 2),
+            Column("of whole blocks, median, m", "their corners, m (blocks)", 2),
+            Column("of 118 houses found one to one", "one to one", 0),
+        ),
+        tuple(
+            Row((label,), "outlines_of_map", (("drawing", name), ("classes", "found")))
+            for name, label in _DRAWINGS.items()
+        ),
+        "accuracy.py outlines",
+    ),
     "harder": Shown(
         ("cloud", "made harder"),
         (*_RATES, _F, Column("wrongly building, m²", "wrong, m²", 0)),
@@ -345,6 +378,42 @@ TABLES = {
             for kind in ("window", "door")
         ),
         "facades.py fronts",
+    ),
+    "facade_streets": Shown(
+        ("simulated street of 40 m",),
+        (
+            Column("facades", "facades", 0),
+            Column("found", "found", 0),
+            Column("invented", "invented", 0),
+            Column("corners off, median, cm", "median off, cm"),
+            Column("mean, cm", "corners seen: mean off, cm"),
+            Column("windows and doors seen", "windows seen", 0),
+            Column("found, %", "found, %", 0),
+            Column("invented, %", "invented, %", 0),
+            Column("edges off, median, cm", "edges off, median, cm"),
+        ),
+        tuple(
+            Row((label,), "facade_streets", (("street", name),))
+            for name, label in (
+                ("1", "first"),
+                ("2", "second"),
+                ("1, with clutter", "first, behind cars, trees and people"),
+                ("2, with clutter", "second, behind these"),
+            )
+        ),
+        "facades.py streets",
+    ),
+    "facade_blocks": Shown(
+        ("simulated city block, from the air and from the street",),
+        (
+            Column("shift of the scan off, cm", "shift off, cm"),
+            Column("corners off, median, cm", "corners off, median, cm"),
+            Column("greatest, cm", "greatest, cm", 0),
+            Column("windows and doors seen", "openings seen", 0),
+            Column("in the right wall, %", "in the right wall, %"),
+        ),
+        tuple(Row((number,), "facade_blocks", (("block", number),)) for number in ("1", "2", "3", "4")),
+        "facades.py blocks",
     ),
     "facade_doors": Shown(
         ("simulated street of 40 m",),

@@ -1,7 +1,8 @@
 """Loose points in the air over the scene: birds, flocks, plumes of dust.
 
 Solid objects are supported from below. The points of a plume or a flock are few among all points of a column of air,
-since most pulses pass it. Those of a roof or a crown are most of them, whether or not its walls or its trunk were seen.
+since most pulses pass it. Points of a roof or a crown are most of their column, also where neither walls nor trunk were
+seen.
 """
 
 from __future__ import annotations
