@@ -179,17 +179,17 @@ def _offsets(walls: PlanSegments, beside: _Beside) -> tuple[np.ndarray, np.ndarr
 
     Distance across the wall (m), shared length (m), and distances along it of the left and right ends, each (walls, m).
     """
-    way, normal, alike = walls.way[:, None], walls.normal[:, None], beside.is_edge
+    way, normal, is_edge = walls.way[:, None], walls.normal[:, None], beside.is_edge
     middle = (walls.start + walls.end)[:, None] / 2
     first, last = (ends - middle for ends in (beside.start, beside.end))
     along = [np.einsum("ijk,ijk->ij", ends, np.broadcast_to(way, ends.shape)) for ends in (first, last)]
     off = [np.einsum("ijk,ijk->ij", ends, np.broadcast_to(normal, ends.shape)) for ends in (first, last)]
     half = walls.length[:, None] / 2
-    shared = np.where(alike, np.minimum(along[1], half) - np.maximum(along[0], -half), 0.0)
+    shared = np.where(is_edge, np.minimum(along[1], half) - np.maximum(along[0], -half), 0.0)
     # Where the wall's middle is beside the outline, or at the nearer end of the outline.
     position = np.clip(-along[0] / np.maximum(along[1] - along[0], 1e-9), 0, 1)
-    across = np.where(alike, off[0] + position * (off[1] - off[0]), np.nan)
-    left, right = np.where(alike, along[0] + half, np.nan), np.where(alike, along[1] - half, np.nan)
+    across = np.where(is_edge, off[0] + position * (off[1] - off[0]), np.nan)
+    left, right = np.where(is_edge, along[0] + half, np.nan), np.where(is_edge, along[1] - half, np.nan)
     return across, shared, left, right
 
 

@@ -135,7 +135,7 @@ def simulate_tree(
 
 def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -> list[_Limb]:
     """Return the stem, its branches, and theirs."""
-    # Twice as many pieces for the stem, and breast height at the radius that is asked for.
+    # The radius that is asked for is that at breast height.
     taper = 1 - (1 - _TIP) * _BREAST / height
     stem = _limb(np.zeros(3), np.array([0.0, 0.0, 1.0]), height, dbh / 2 / taper, 0, rng)
     limbs = [stem]

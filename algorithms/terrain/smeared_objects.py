@@ -30,7 +30,7 @@ _EIGHT = np.ones((3, 3), bool)
 
 
 def nowhere(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
-    """Return that no point (n,) is on a smeared object: laser scans have sharp edges."""
+    """Return False for each point (n,): in laser scans, whose edges are sharp, no object is smeared."""
     return np.zeros(len(xyz), bool)
 
 
