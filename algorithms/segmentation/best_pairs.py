@@ -11,7 +11,7 @@ from ..stage import Monitor
 from ..threads import in_chunks
 from .least_squares_planes import Planes, off_planes
 
-# Pairs of a chunk: numbers derived from their planes, 700 bytes each, stays in the caches and small.
+# Pairs of a chunk: with 700 bytes each for numbers derived from their planes, it stays in the caches.
 _CHUNK = 20_000
 
 # What it costs to merge the planes of pairs (k,), inf where they must not; costs only depend on the two planes.

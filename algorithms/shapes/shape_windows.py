@@ -52,7 +52,7 @@ def level_of(xyz: np.ndarray, is_free: np.ndarray, low: float, high: float, min_
         for shift in (0.0, 0.5):
             # A second set of windows, half a side apart, has in its middle what the first cuts in two.
             boxes = Boxes(np.concatenate([xyz[rows], [xyz[rows].min(axis=0) - shift * side]]), side)
-            # Boxes keep the order of their points; without the one that moved them.
+            # Boxes keep the order of their points. The point added, which only moves them, is left out.
             is_point = boxes.order < len(rows)
             order, size = boxes.order[is_point], np.add.reduceat(is_point, boxes.start, dtype=np.int64)
             large, stop = np.flatnonzero(size >= min_points), np.cumsum(size)

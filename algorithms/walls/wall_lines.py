@@ -158,7 +158,7 @@ def find_lines(
     Parameters
     ----------
     xy : ndarray of shape (n, 2)
-        Wall points near the origin (m), in an order that says nothing.
+        Wall points near the origin (m), in any order.
     scale : Scale
         Tolerance and bins.
     min_length : float
@@ -247,7 +247,7 @@ def _longest_stretches(
     runs_along = np.abs(np.einsum("ij,ij->i", directions[line], ways[point])) >= _ALONG
     line, point = line[runs_along], point[runs_along]
     along = np.einsum("ij,ij->i", directions[line], xy[point])
-    # By rounding the first point lies before the least way.
+    # Rounding can put the first point before the least position.
     bins = np.maximum(np.floor((along - least) / scale.bin).astype(np.int64), 0)
     count = int(bins.max(initial=0)) + 1
     line, column = np.divmod(np.flatnonzero(np.bincount(line * count + bins)), count)
@@ -262,7 +262,7 @@ def _longest_stretches(
 def _near_lines(
     xy: np.ndarray, starts: np.ndarray, directions: np.ndarray, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return the pairs of line and point (k,) within a tolerance (m), and the least way of any point along any line."""
+    """Return the pairs of line and point (k,) within a tolerance (m), and the least position of any along its line."""
     normals = np.column_stack([-directions[:, 1], directions[:, 0]])
     offset, columns, least = np.einsum("ij,ij->i", normals, starts), np.ascontiguousarray(xy.T), np.inf
     pairs = []
