@@ -84,8 +84,8 @@ def classify_bridges(
 
     Notes
     -----
-    The second step of 'Classify ground segments' for the ground of any filter, without segments: all points but those
-    of classes that are no decks may be of one.
+    This is the second step of 'Classify ground segments', for the ground of any filter and without segments. All points
+    can be of a deck, except those of classes that are no decks.
 
     References
     ----------
