@@ -44,7 +44,10 @@ def outline_cells(grid: Grid, cells: np.ndarray, group: np.ndarray) -> list:
 
 
 def _sides(grid: Grid, cells: np.ndarray, group: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the south-west-numbered start, the direction and the group of the sides that have no cell beyond them."""
+    """Return start, direction and group of the sides that have no cell beyond them.
+
+    A start is the number of the cell whose south-west corner it is.
+    """
     beyond = {_EAST: -grid.columns, _NORTH: 1, _WEST: grid.columns, _SOUTH: -1}
     begins = {_EAST: 0, _NORTH: 1, _WEST: grid.columns + 1, _SOUTH: grid.columns}
     start, direction, owner = [], [], []

@@ -38,7 +38,7 @@ class Wide:
         return _NAMED
 
     def check(self, xyz: np.ndarray, tree: Any) -> None:
-        """Take every cloud."""
+        """Refuse nothing: the neighborhoods exist in every cloud."""
 
     def rows_per_chunk(self, n_points: int) -> int:
         """Return how many points are worked on at once: running sums of nine moments take as much as the neighbors."""
@@ -63,7 +63,7 @@ class Wide:
         return max(self.count, MOST_ACROSS_LINES)
 
     def _smallest(self, offsets: list) -> tuple[np.ndarray, np.ndarray]:
-        """Return covariances (m, 6) and counts (m,) of the smallest of the offsets (m, k), nearest first, that do."""
+        """Return covariances (m, 6) and counts (m,) of the smallest wide neighborhoods of offsets (m, k), nearest first."""
         scales = [min(self.count, offsets[0].shape[1])]
         while scales[-1] < offsets[0].shape[1]:
             scales.append(min(int(np.ceil(_GROWTH * scales[-1])), offsets[0].shape[1]))

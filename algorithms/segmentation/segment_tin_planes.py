@@ -92,8 +92,8 @@ def segment_tin_planes(
     Notes
     -----
     Dissimilarity is the distance, as root mean square over the area of the triangles, of the worse of the two surfaces
-    from their common plane. The queue of pairs is worked off in rounds, in each of which all mutually best pairs merge.
-    Of points at one position in plan one counts, and the others get no id.
+    from their common plane. The queue of pairs is worked off in rounds, in each of which all mutually best pairs
+    merge. Of points at one position in plan one counts, and the others get no id.
 
     References
     ----------
