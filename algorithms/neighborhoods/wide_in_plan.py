@@ -63,7 +63,7 @@ class Wide:
         return max(self.count, MOST_ACROSS_LINES)
 
     def _smallest(self, offsets: list) -> tuple[np.ndarray, np.ndarray]:
-        """Return covariances (m, 6) and counts (m,) of the smallest wide neighborhoods; offsets (m, k) nearest first."""
+        """Return covariances (m, 6) and counts (m,) of the smallest wide ones, of offsets (m, k) nearest first."""
         scales = [min(self.count, offsets[0].shape[1])]
         while scales[-1] < offsets[0].shape[1]:
             scales.append(min(int(np.ceil(_GROWTH * scales[-1])), offsets[0].shape[1]))
