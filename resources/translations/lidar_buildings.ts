@@ -4680,7 +4680,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Dissimilarity is the distance, as root mean square over the area of the triangles, of the worse of the two surfaces from their common plane. The queue is worked off in rounds of mutually best pairs, see &lt;code&gt;best_pairs&lt;/code&gt;. Of points at one position in plan one counts, and the others get no id.</source>
+        <source>Dissimilarity is the distance, as root mean square over the area of the triangles, of the worse of the two surfaces from their common plane. The queue of pairs is worked off in rounds, in each of which all mutually best pairs merge. Of points at one position in plan one counts, and the others get no id.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5536,7 +5536,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend, with little inside, and end next to the visible arc, where the surface of a kerb goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that a flange or the shadow of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its own.</source>
+        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend, with little inside, and end next to the visible arc, where the surface of a kerb goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that are parted by a flange or by the shadow of another object are put together, if one cylinder lies as close to the points of each as its own one.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8264,10 +8264,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The second step of 'Classify ground segments' for the ground of any filter, without segments: all points but those of classes that are no decks may be of one.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>The shift makes facades lie on the outlines of buildings, their ends at corners of these, and the street on the ground. It is reported with its residual. The airborne cloud stays where it is.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8341,6 +8337,10 @@
     </message>
     <message>
         <source>This is self-training in one round, on all labels: half-wrong ones cancel out, and walls are learned although few points of walls are certain. Points are described in cubes of four point spacings, alone and with the 26 around: shape (eigenvalues), elevation, height, returns, intensity, and the column in plan of one cube and of three. Halves are squares of 10 m in turn, so that no point is judged by labels of its own surroundings alone. What is wrong everywhere in a scene is learned, too.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>This is the second step of 'Classify ground segments', for the ground of any filter and without segments. All points can be of a deck, except those of classes that are no decks.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
