@@ -277,11 +277,11 @@ _PIPELINES = (
         summary="Model the bare earth without objects and bridges: classified points and rasters, by segments.",
         description=(
             "Noise first; then pieces of artificial scan lines in several directions are merged to segments. "
-            "Segments that are higher than their surroundings are objects, the others bare earth, of which "
-            "bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The "
-            "rasters are made of the rest. Large halls are removed whole. In towns and forests, where walls and "
-            "leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' "
-            "makes fewer errors."
+            "Segments that are higher than their surroundings are objects, large halls among them; the others are "
+            "bare earth. Parts of the bare earth that are raised on both sides and joined to the terrain at both "
+            "ends are bridges and fly-overs, and become bridge deck (17). The terrain model is made of the rest. In "
+            "towns and forests, where walls and leaves join roofs and crowns to the terrain, use 'Classify ground "
+            "points (TIN)' and then 'Classify bridges' instead: they make fewer errors."
         ),
         references=_VOSSELMAN,
         steps=(

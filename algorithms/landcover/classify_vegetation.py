@@ -50,7 +50,7 @@ def classify_vegetation(
     number_of_returns=None,
     *,
     look_for: Annotated[
-        bool, Param("Look for vegetation", "Without it no class changes: for models that have this step.")
+        bool, Param("Look for vegetation", "If not, no class changes. For models that contain this step.")
     ] = True,
     heights: Annotated[
         str,
@@ -128,9 +128,9 @@ def classify_vegetation(
     -----
     Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is
     a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a
-    fifth of its pulses had several returns. Half of its points must lie within the roughness of roofs and walls to the
-    plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars
-    are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.
+    fifth of its pulses had several returns, and half of its points lie closer to the plane of their neighborhood than
+    the roughness of roofs and walls. It is a pole if it is four times as high as its extent in plan. In thin clouds few
+    cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.
 
     References
     ----------

@@ -44,7 +44,7 @@ _Tolerance = Annotated[
         low=0,
         high=100,
         open_low=True,
-        automatic="4.5 standard deviations: the surface noise and 0.05 point spacings.",
+        automatic="4.5 times the root of the sum of the squares of the surface noise and 0.05 point spacings.",
     ),
 ]
 

@@ -64,7 +64,7 @@ _Tolerance = Annotated[
         low=0,
         high=100,
         open_low=True,
-        automatic="3 standard deviations: the surface noise and 0.05 point spacings.",
+        automatic="3 times the root of the sum of the squares of the surface noise and 0.05 point spacings.",
     ),
 ]
 
@@ -109,8 +109,8 @@ def segment_surfaces(
         Param(
             "Planarity",
             "Local: points are accepted near the plane of the surface around the nearest of its points, so that "
-            "smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). Or "
-            "anywhere.",
+            "smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). "
+            "None: at any distance from a plane.",
             choices=("local", "global", "none"),
         ),
     ] = "local",
@@ -172,13 +172,14 @@ def segment_surfaces(
 
     Notes
     -----
-    The paper grows one surface after the other; here all grow together in rounds, and those whose seeds hold one
-    another are one. A point that several surfaces could take joins that of its nearest point; where this does not hold
-    it, the next one is tried, also if it is of the same surface. Points that join get the plane of the surface around
-    them (least squares), as the paper asks for. The smallest square sums are measured by the root mean square distance
-    of a seed, which may be 1.55 standard deviations, free of the degrees of freedom. The local Hough transform votes
-    for 128 directions of planes through each point. In *global* mode planes start from the smoothest seed of each
-    neighborhood and are joined in mutually best pairs where they meet.
+    The paper grows one surface after the other. Here all grow together in rounds, and neighboring seeds that fit the
+    planes of one another are one surface. A point that several surfaces could take joins that of its nearest neighbor. Where it
+    does not fit the plane there, the next neighbor is tried, even if that belongs to the same surface. A point that
+    joins gets the least squares plane of the surface around it, as the paper asks for. The paper accepts seeds by the
+    sum of squared distances. Here the limit is a root mean square distance of 1.55 standard deviations, corrected for
+    the degrees of freedom. The local Hough transform votes for 128 directions of planes through each point. In *global*
+    mode planes start from the smoothest seed of each neighborhood and are joined in mutually best pairs where they
+    meet.
 
     The neighbors and the plane of each point are kept; links between seeds are not, only the sets that they join. The
     memory beyond the cloud is 100 bytes for each point, 120 in *global* mode, with 12 neighbors; each further neighbor

@@ -46,7 +46,7 @@ def segment_tin_planes(
             low=0,
             high=100,
             open_low=True,
-            automatic="2 standard deviations: the surface noise and 0.05 point spacings.",
+            automatic="2 times the root of the sum of the squares of the surface noise and 0.05 point spacings.",
         ),
     ] = None,
     max_edge: Annotated[

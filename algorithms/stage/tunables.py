@@ -57,7 +57,7 @@ class Param:
 
     def written(self, number: float) -> str:
         """Return a number with the unit, as text: 4 m², 20°, 10,000 m."""
-        digits = f"{number:,d}" if isinstance(number, int) else f"{number:g}"
+        digits = f"{number:,d}" if isinstance(number, int) else f"{number:,g}"
         return digits + self.unit if self.unit == "°" else f"{digits} {self.unit}".rstrip()
 
 

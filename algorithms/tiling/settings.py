@@ -41,14 +41,14 @@ SETTINGS = by_name(
         Setting(
             "CRS",
             "Coordinate reference system",
-            "Of clouds that name none, and of their results. Clouds that name one keep it.",
+            "That of clouds whose files name none, and of their results. Clouds that name one keep it.",
         ),
         Setting(
             "BLOCK_SIDE",
             "Side of a block (m, empty = automatic)",
             "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
-            "the largest multiple of 50 m, from 100 to 1600 m, that has at most 5.3 million points with those around "
-            "it; in dense clouds a multiple of 10 m, from 1.25 times the distance around it.",
+            "the largest multiple of 50 m, from 100 to 1600 m, at which a block and the margin read around it hold at "
+            "most 5.3 million points. In dense clouds a multiple of 10 m, at least 1.25 times the margin.",
         ),
         Setting(
             "PROCESSES",

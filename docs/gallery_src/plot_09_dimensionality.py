@@ -2,7 +2,7 @@
 Linear, planar, volumetric
 ==========================
 
-Each point belongs to the largest of linearity, planarity and scattering.
+Each point gets the class of its largest feature: linearity, planarity or scattering.
 """
 
 from scenes import group_colors, plan, step, town
