@@ -32,7 +32,7 @@ def classify_water(
     return_number=None,
     *,
     look_for: Annotated[
-        bool, Param("Look for water", "Without it no class changes: for models that have this step.")
+        bool, Param("Look for water", "If not, no class changes. For models that contain this step.")
     ] = True,
     min_area: Annotated[
         float,

@@ -44,7 +44,7 @@ def classify_wires(
     height_above_ground,
     *,
     look_for: Annotated[
-        bool, Param("Look for wires", "Without it no class changes: for models that have this step.")
+        bool, Param("Look for wires", "If not, no class changes. For models that contain this step.")
     ] = True,
     min_height: Annotated[
         float, Param("Minimum height", "Height above the ground of the lowest wires.", unit="m", low=1, high=100)

@@ -44,9 +44,9 @@ def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling]
     Notes
     -----
     Points are noise if no chain of points up to 2.4 m apart (3.5 point spacings on sparse clouds) ties them to the
-    scene, nothing is above them, and they stop less than three tenths of the pulses. Wires, panes, the heads of lamps,
-    and objects that the border of the cloud cuts stay. What touches the scene is not found: dust on the ground, birds
-    in a tree.
+    scene and nothing is above them. They must also stop less than three tenths of the pulses. Wires, panes, the heads
+    of lamps, and objects that the border of the cloud cuts stay. What touches the scene is not found: dust on the
+    ground, birds in a tree.
 
     References
     ----------

@@ -66,9 +66,9 @@ def classify_noise_statistical(
 ):
     """Find points far from their nearest neighbors, and groups of points apart from all others.
 
-    The distances to neighbors find points that are alone. Then come isolated points, alone or many together, by their
-    distance to the scene: loose objects in the open air, and few points under the ground. Low noise (class 7) lies
-    under its neighbors, high noise (class 18) over them.
+    Single points are found by the distances to their neighbors. Isolated points, single or in groups, are found by
+    their distance to the scene: loose objects in the open air, and a few points under the ground. Low noise (class 7)
+    lies under its neighbors, high noise (class 18) over them.
 
     Parameters
     ----------
@@ -87,10 +87,10 @@ def classify_noise_statistical(
     A point is noise when the mean distance to its k nearest neighbors exceeds mean + m * standard deviation of all
     these means. Distances have a long tail wherever there are trees and walls: with m = 2 or 3, often seen elsewhere,
     every hundredth point or more of a good airborne cloud is lost. With the default these are less than two in a
-    thousand on most. Points very far away raise the standard deviation and hide less distant ones, and points of a
-    flock or a plume have near neighbors.
+    thousand on most. Two kinds of noise are missed: points very far away raise the standard deviation and hide less
+    distant ones, and points of a flock or a plume have near neighbors.
 
-    With isolated points, both errors are avoided. A point must then be farther than 4.8 m (7 point spacings on sparse
+    With *Isolated points*, both are found. A point must then be farther than 4.8 m (7 point spacings on sparse
     clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of
     points half as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the
     air' and the height histogram's stage find these in the same way; their notes name the objects that stay. Only

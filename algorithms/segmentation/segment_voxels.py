@@ -162,9 +162,9 @@ def segment_voxels(
     Notes
     -----
     Only voxels that are occupied are held in memory, never the box around the cloud. The space around the cloud
-    is empty without an end, so that objects are not cut off at its border. Voxels start at the least coordinates of the
-    points used. The skeleton is thinned by simple points, see :mod:`.voxel_skeleton`; it keeps
-    tunnels and cavities, so that closing is due where voxels inside an object are empty by chance.
+    counts as empty, so that objects are not cut off at its border. Voxels start at the least coordinates of the
+    points used. The skeleton is thinned by simple points, see :mod:`.voxel_skeleton`, and keeps tunnels and cavities.
+    Where voxels inside an object are empty by chance, apply a closing first.
 
     References
     ----------

@@ -81,7 +81,7 @@ def simulate_plant(
         float,
         Param(
             "Point density",
-            "Most points on a surface: it has them up to 6 m from the scanner. The floor has a twentieth.",
+            "Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth.",
             unit="points/m²",
             low=100,
             high=100_000,

@@ -23,9 +23,9 @@ survey, without seams and duplicates.
 The work is done in blocks of a lattice that starts at the origin of the coordinates, each with the points around it as
 far as the steps reach. So the result does not depend on how the points are spread over files. Density, spacing and
 noise of the cloud are measured once for all blocks. So are the roughness of the ground and the mean entropies that
-clusters are compared with, where steps use them. A block that cuts off a building or a facade is worked on again with more around it; long
-pipes and large planes are put together from the pieces that blocks found. Rasters have the same cells in all blocks,
-and no seams. Steps that read layers alone are run once, on those of the whole survey.
+clusters are compared with, where steps use them. A block that cuts off a building or a facade is worked on again with
+more around it; long pipes and large planes are put together from the pieces that blocks found. Rasters have the same
+cells in all blocks, and no seams. Steps that read layers alone are run once, on those of the whole survey.
 
 A run that was stopped goes on where it was when it is started again with the same input, parameters and version. Until
 it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the
@@ -121,11 +121,11 @@ CUT_INTO_TILES = SurveyTool(
     tags="tile,tiles,split,grid,folder,survey,large,retile,lastile",
     summary="Cut point clouds of any size into square tiles.",
     description=(
-        "The tiles are those of a lattice that starts at the origin of the coordinates; each is named by its lower left "
-        "corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a lower edge "
-        "belong to the tile, those at an upper edge to the next one. Files are read in portions, so that memory does "
-        "not grow with them; on the disk the points lie once uncompressed beside the tiles while they are made. A "
-        "virtual point cloud over all tiles is written with them."
+        "The tiles are those of a lattice that starts at the origin of the coordinates; each is named by its lower "
+        "left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a "
+        "lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that "
+        "memory does not grow with them; on the disk the points lie once uncompressed beside the tiles while they are "
+        "made. A virtual point cloud over all tiles is written with them."
     ),
 )
 

@@ -66,7 +66,7 @@ def classify_walls(
         ),
     ] = 2.5,
     max_tilt: Annotated[
-        float, Param("Maximum tilt", "Angle of a wall's normal to the horizontal.", unit="°", low=0, high=90)
+        float, Param("Maximum tilt", "Largest angle of a wall to the vertical.", unit="°", low=0, high=90)
     ] = 30.0,
     neighborhood: Annotated[
         str,
