@@ -256,7 +256,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Coordinate reference system&lt;/b&gt; (CRS): Of clouds that name none, and of their results. Clouds that name one keep it.</source>
+        <source>&lt;b&gt;Coordinate reference system&lt;/b&gt; (CRS): That of clouds whose files name none, and of their results. Clouds that name one keep it.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -776,15 +776,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Look for vegetation&lt;/b&gt;: Without it no class changes: for models that have this step. &lt;i&gt;(default yes)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Look for vegetation&lt;/b&gt;: If not, no class changes. For models that contain this step. &lt;i&gt;(default yes)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Look for water&lt;/b&gt;: Without it no class changes: for models that have this step. &lt;i&gt;(default yes)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Look for water&lt;/b&gt;: If not, no class changes. For models that contain this step. &lt;i&gt;(default yes)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Look for wires&lt;/b&gt;: Without it no class changes: for models that have this step. &lt;i&gt;(default yes)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Look for wires&lt;/b&gt;: If not, no class changes. For models that contain this step. &lt;i&gt;(default yes)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -876,7 +876,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Maximum object area (m²)&lt;/b&gt;: Area of the largest object: larger segments are bare earth, also where they are raised along their border, as islands and quarters between canals are. &lt;i&gt;(at least 1 m² and at most 10,000,000 m²; default 50000 m²)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Maximum object area (m²)&lt;/b&gt;: Area of the largest object: larger segments are bare earth, also where they are raised along their border, as islands and quarters between canals are. &lt;i&gt;(at least 1 m² and at most 10,000,000 m²; default 50,000 m²)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -924,11 +924,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Maximum tilt (°)&lt;/b&gt;: Angle of a wall's normal to the horizontal. &lt;i&gt;(at least 0° and at most 90°; default 30°)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Maximum tilt (°)&lt;/b&gt;: Largest angle of a facade to the vertical. &lt;i&gt;(at least 0° and at most 45°; default 10°)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Maximum tilt (°)&lt;/b&gt;: Largest angle of a facade to the vertical. &lt;i&gt;(at least 0° and at most 45°; default 10°)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Maximum tilt (°)&lt;/b&gt;: Largest angle of a wall to the vertical. &lt;i&gt;(at least 0° and at most 90°; default 30°)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1556,7 +1556,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Planarity&lt;/b&gt;: Local: points are accepted near the plane of the surface around the nearest of its points, so that smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). Or anywhere. &lt;i&gt;(one of local, global, none; default local)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Planarity&lt;/b&gt;: Local: points are accepted near the plane of the surface around the nearest of its points, so that smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). None: at any distance from a plane. &lt;i&gt;(one of local, global, none; default local)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1584,7 +1584,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Point density (points/m²)&lt;/b&gt;: Most points on a surface: it has them up to 6 m from the scanner. The floor has a twentieth. &lt;i&gt;(at least 100 points/m² and at most 100,000 points/m²; default 4000 points/m²)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Point density (points/m²)&lt;/b&gt;: Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth. &lt;i&gt;(at least 100 points/m² and at most 100,000 points/m²; default 4,000 points/m²)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1596,7 +1596,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Point density (points/m²)&lt;/b&gt;: Points on wood. &lt;i&gt;(at least 100 points/m² and at most 100,000 points/m²; default 5000 points/m²)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Point density (points/m²)&lt;/b&gt;: Points on wood. &lt;i&gt;(at least 100 points/m² and at most 100,000 points/m²; default 5,000 points/m²)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1876,7 +1876,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Side of a block (m, empty = automatic)&lt;/b&gt; (BLOCK_SIDE): Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: the largest multiple of 50 m, from 100 to 1600 m, that has at most 5.3 million points with those around it; in dense clouds a multiple of 10 m, from 1.25 times the distance around it.</source>
+        <source>&lt;b&gt;Side of a block (m, empty = automatic)&lt;/b&gt; (BLOCK_SIDE): Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: the largest multiple of 50 m, from 100 to 1600 m, at which a block and the margin read around it hold at most 5.3 million points. In dense clouds a multiple of 10 m, at least 1.25 times the margin.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2088,11 +2088,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance from the straight line through a piece, and of its ends from the plane of a region. Automatic: 4.5 standard deviations: the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance from the straight line through a piece, and of its ends from the plane of a region. Automatic: 4.5 times the root of the sum of the squares of the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved surfaces. Automatic: 3 standard deviations: the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved surfaces. Automatic: 3 times the root of the sum of the squares of the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2124,7 +2124,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Two surfaces merge if the points of either lie no farther from the common plane (root mean square). Automatic: 2 standard deviations: the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Two surfaces merge if the points of either lie no farther from the common plane (root mean square). Automatic: 2 times the root of the sum of the squares of the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3388,7 +3388,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A point is noise when the mean distance to its k nearest neighbors exceeds mean + m * standard deviation of all these means. Distances have a long tail wherever there are trees and walls: with m = 2 or 3, often seen elsewhere, every hundredth point or more of a good airborne cloud is lost. With the default these are less than two in a thousand on most. Points very far away raise the standard deviation and hide less distant ones, and points of a flock or a plume have near neighbors.</source>
+        <source>A point is noise when the mean distance to its k nearest neighbors exceeds mean + m * standard deviation of all these means. Distances have a long tail wherever there are trees and walls: with m = 2 or 3, often seen elsewhere, every hundredth point or more of a good airborne cloud is lost. With the default these are less than two in a thousand on most. Two kinds of noise are missed: points very far away raise the standard deviation and hide less distant ones, and points of a flock or a plume have near neighbors.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3564,10 +3564,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Angle of a wall's normal to the horizontal.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Angle of the decks to the shortest way across.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3728,15 +3724,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 2 standard deviations: the surface noise and 0.05 point spacings.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Automatic: 2 times the point spacing on surfaces, at least 0.02 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Automatic: 2 times the point spacing on surfaces.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Automatic: 2 times the root of the sum of the squares of the surface noise and 0.05 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3756,10 +3752,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 3 standard deviations: the surface noise and 0.05 point spacings.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Automatic: 3 times the mean distance of scan lines.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3773,6 +3765,10 @@
     </message>
     <message>
         <source>Automatic: 3 times the point spacing.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Automatic: 3 times the root of the sum of the squares of the surface noise and 0.05 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3808,7 +3804,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 4.5 standard deviations: the surface noise and 0.05 point spacings.</source>
+        <source>Automatic: 4.5 times the root of the sum of the squares of the surface noise and 0.05 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4596,6 +4592,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Describe the shape of each point's neighborhood by the eigenvalues of its covariance.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -4860,7 +4860,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Evens out the density of scans, where surfaces that are near or scanned twice have many times the points of others, and makes clouds smaller. Everything but position, class and count comes from the point nearest to the center.</source>
+        <source>Evens out the density of scans, where surfaces that are near or scanned twice have many times the points of others, and makes clouds smaller. The class is that of most points of the voxel, VoxelCount their number. Everything else but the position comes from the point nearest to the center.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5512,6 +5512,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>If not, no class changes. For models that contain this step.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Ignored classes</source>
         <translation type="unfinished"></translation>
     </message>
@@ -5712,7 +5716,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: the largest multiple of 50 m, from 100 to 1600 m, that has at most 5.3 million points with those around it; in dense clouds a multiple of 10 m, from 1.25 times the distance around it.</source>
+        <source>Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: the largest multiple of 50 m, from 100 to 1600 m, at which a block and the margin read around it hold at most 5.3 million points. In dense clouds a multiple of 10 m, at least 1.25 times the margin.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5725,6 +5729,10 @@
     </message>
     <message>
         <source>Largest angle of a facade to the vertical.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Largest angle of a wall to the vertical.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5860,7 +5868,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Local: points are accepted near the plane of the surface around the nearest of its points, so that smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). Or anywhere.</source>
+        <source>Local: points are accepted near the plane of the surface around the nearest of its points, so that smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). None: at any distance from a plane.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6332,10 +6340,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Most points on a surface: it has them up to 6 m from the scanner. The floor has a twentieth.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Most steps of the simulation.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -6388,7 +6392,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Noise first; then pieces of artificial scan lines in several directions are merged to segments. Segments that are higher than their surroundings are objects, the others bare earth, of which bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The rasters are made of the rest. Large halls are removed whole. In towns and forests, where walls and leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' makes fewer errors.</source>
+        <source>Noise first; then pieces of artificial scan lines in several directions are merged to segments. Segments that are higher than their surroundings are objects, large halls among them; the others are bare earth. Parts of the bare earth that are raised on both sides and joined to the terrain at both ends are bridges and fly-overs, and become bridge deck (17). The terrain model is made of the rest. In towns and forests, where walls and leaves join roofs and crowns to the terrain, use 'Classify ground points (TIN)' and then 'Classify bridges' instead: they make fewer errors.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6516,7 +6520,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Only voxels that are occupied are held in memory, never the box around the cloud. The space around the cloud is empty without an end, so that objects are not cut off at its border. Voxels start at the least coordinates of the points used. The skeleton is thinned by simple points, see &lt;code&gt;voxel_skeleton&lt;/code&gt;; it keeps tunnels and cavities, so that closing is due where voxels inside an object are empty by chance.</source>
+        <source>Only voxels that are occupied are held in memory, never the box around the cloud. The space around the cloud counts as empty, so that objects are not cut off at its border. Voxels start at the least coordinates of the points used. The skeleton is thinned by simple points, see &lt;code&gt;voxel_skeleton&lt;/code&gt;, and keeps tunnels and cavities. Where voxels inside an object are empty by chance, apply a closing first.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6900,7 +6904,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points are noise if no chain of points up to 2.4 m apart (3.5 point spacings on sparse clouds) ties them to the scene, nothing is above them, and they stop less than three tenths of the pulses. Wires, panes, the heads of lamps, and objects that the border of the cloud cuts stay. What touches the scene is not found: dust on the ground, birds in a tree.</source>
+        <source>Points are noise if no chain of points up to 2.4 m apart (3.5 point spacings on sparse clouds) ties them to the scene and nothing is above them. They must also stop less than three tenths of the pulses. Wires, panes, the heads of lamps, and objects that the border of the cloud cuts stay. What touches the scene is not found: dust on the ground, birds in a tree.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7372,7 +7376,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a fifth of its pulses had several returns. Half of its points must lie within the roughness of roofs and walls to the plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.</source>
+        <source>Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a fifth of its pulses had several returns, and half of its points lie closer to the plane of their neighborhood than the roughness of roofs and walls. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7772,6 +7776,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Single points are found by the distances to their neighbors. Isolated points, single or in groups, are found by their distance to the scene: loose objects in the open air, and a few points under the ground. Low noise (class 7) lies under its neighbors, high noise (class 18) over them.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Sithole and Vosselman (2004), Experimental comparison of filter algorithms for bare-Earth extraction.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8052,6 +8060,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>That of clouds whose files name none, and of their results. Clouds that name one keep it.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions of the building's own. Positions are compared as they are: no shift between the layers is removed.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8109,10 +8121,6 @@
     </message>
     <message>
         <source>The covariance is that of the point together with its neighbors, with their number as divisor; its eigenvalues are l1, the largest, to l3, and those of its part in plan m1 and m2. L, P and S are linearity, planarity and scattering. Coordinates are taken relative to each point, so that large ones lose nothing. Surface variation is what other programs call curvature; verticality is that of Demantké et al.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>The distances to neighbors find points that are alone. Then come isolated points, alone or many together, by their distance to the scene: loose objects in the open air, and few points under the ground. Low noise (class 7) lies under its neighbors, high noise (class 18) over them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8196,7 +8204,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The paper grows one surface after the other; here all grow together in rounds, and those whose seeds hold one another are one. A point that several surfaces could take joins that of its nearest point; where this does not hold it, the next one is tried, also if it is of the same surface. Points that join get the plane of the surface around them (least squares), as the paper asks for. The smallest square sums are measured by the root mean square distance of a seed, which may be 1.55 standard deviations, free of the degrees of freedom. The local Hough transform votes for 128 directions of planes through each point. In &lt;i&gt;global&lt;/i&gt; mode planes start from the smoothest seed of each neighborhood and are joined in mutually best pairs where they meet.</source>
+        <source>The paper grows one surface after the other. Here all grow together in rounds, and neighboring seeds that fit the planes of one another are one surface. A point that several surfaces could take joins that of its nearest neighbor. Where it does not fit the plane there, the next neighbor is tried, even if that belongs to the same surface. A point that joins gets the least squares plane of the surface around it, as the paper asks for. The paper accepts seeds by the sum of squared distances. Here the limit is a root mean square distance of 1.55 standard deviations, corrected for the degrees of freedom. The local Hough transform votes for 128 directions of planes through each point. In &lt;i&gt;global&lt;/i&gt; mode planes start from the smoothest seed of each neighborhood and are joined in mutually best pairs where they meet.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8292,7 +8300,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The tiles are those of a lattice that starts at the zero of the map; each is named by its lower left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that memory does not grow with them; on the disk the points lie once uncompressed beside the tiles while they are made. A virtual point cloud over all tiles is written with them.</source>
+        <source>The tiles are those of a lattice that starts at the origin of the coordinates; each is named by its lower left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that memory does not grow with them; on the disk the points lie once uncompressed beside the tiles while they are made. A virtual point cloud over all tiles is written with them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8312,7 +8320,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The work is done in blocks of a lattice that starts at the zero of the map, each with the points around it as far as the steps reach. So the result does not depend on how the points are spread over files. How the cloud was sampled is measured once for all blocks, and so are, where steps use them, the roughness of the ground and the mean entropies that clusters are compared with. A block that cuts off a building or a facade is worked on again with more around it; long pipes and large planes are put together from the pieces that blocks found. Rasters have the same cells in all blocks, and no seams. Steps that read layers alone are run once, on those of the whole survey.</source>
+        <source>The work is done in blocks of a lattice that starts at the origin of the coordinates, each with the points around it as far as the steps reach. So the result does not depend on how the points are spread over files. Density, spacing and noise of the cloud are measured once for all blocks. So are the roughness of the ground and the mean entropies that clusters are compared with, where steps use them. A block that cuts off a building or a facade is worked on again with more around it; long pipes and large planes are put together from the pieces that blocks found. Rasters have the same cells in all blocks, and no seams. Steps that read layers alone are run once, on those of the whole survey.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8844,19 +8852,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>With &lt;i&gt;Isolated points&lt;/i&gt;, both are found. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of points half as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the air' and the height histogram's stage find these in the same way; their notes name the objects that stay. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>With center first, points vote for a center, and those of the best center for a radius. With four dimensions, they vote for both together, which takes more memory.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>With isolated points, both errors are avoided. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of points half as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the air' and the height histogram's stage find these in the same way; their notes name the objects that stay. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>With points, each point votes for all planes through it. With normals, the normal of a point votes for a direction first, the point for a distance then, which needs surfaces smooth enough for normals.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Without it no class changes: for models that have this step.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
