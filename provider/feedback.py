@@ -67,7 +67,12 @@ class FeedbackMonitor(Monitor):
         tunable = self._stage.tunables.get(name) if self._stage else None
         param = tunable.param if tunable else Param("", "")
         # Who needs all digits finds them among the results.
-        shown = param.written(float(f"{value:.4g}")) if isinstance(value, float) else f"{value} {param.unit}".rstrip()
+        if isinstance(value, bool):
+            shown = "yes" if value else "no"
+        elif isinstance(value, float):
+            shown = param.written(float(f"{value:.4g}"))
+        else:
+            shown = f"{value} {param.unit}".rstrip()
         if tunable is None:
             return f"{name.replace('_', ' ').capitalize()}: {shown}"
         found = "none set, the cloud has" if param.empty else "automatic"

@@ -19,7 +19,7 @@ _MEASURES = (
     Measure("shift_y", "Shift northward", "m"),
     Measure("shift_z", "Shift upward", "m"),
     Measure("residual", "Residual of common walls and ends", "m"),
-    Measure("overhang", "Outlines before the walls", "m"),
+    Measure("overhang", "Overhang of the eaves", "m"),
     Measure("walls", "Common walls"),
     Measure("ends", "Common ends of walls"),
     Measure("ground", "Common cells of ground"),

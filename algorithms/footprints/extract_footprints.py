@@ -132,26 +132,26 @@ def extract_footprints(
 
     Notes
     -----
-    Points with another of their building more than 0.4 m higher beside them, at more than 72°, are walls, and so are
-    attached points with another one more than a meter (or three spacings) higher. They count as points of the building
-    but don't widen its outline. One point counts for each cell of half a square spacing.
+    A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does
+    a point outside the roof's cluster with another one more than a meter (or three spacings) higher. Points on walls
+    belong to the building but don't widen its outline. One point counts for each cell of half a square spacing.
 
     Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the
-    ground seen next to them, and against emptiness, by which a position falls short of roofs around. Gaps with roofs
-    all around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
+    other points around them, and against the density that is missing to that of the roofs around. Gaps with roofs all
+    around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
 
     The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared
     distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The
-    walls of neighbors within 30 m count, too. Rings with many walls beside these, and round ones, are drawn in
-    chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a
+    walls of neighbors within 30 m count, too. Rings with many walls off these directions, and round ones, are drawn
+    as chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a
     building or to the ground. Clusters whose points lie on one line have no area and give no polygon.
 
     Houses of a row are parted along straight lines from one side of a building to the other, in its main directions.
     Along such a line both roofs slope up from it, parallel roofs step by 0.2 m, any by 1 m, or a wall rises 0.2 m
     above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length
-    without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. Two
-    roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have six tenths
-    of the height of the higher one. Houses keep the number of their cluster.
+    without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. One
+    line is not enough, as two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower
+    house must have six tenths of the height of the higher one. Houses keep the number of their cluster.
 
     References
     ----------

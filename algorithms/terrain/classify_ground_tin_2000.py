@@ -163,7 +163,7 @@ def classify_ground_tin_2000(
     spacing that the distance allows for. So is the bound of the angle, without which rough first nodes let the surface
     climb onto anything. Facets with short edges are closed, and points near a node don't join, as they add nodes but no
     shape. The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep
-    distance 0 leaves it out. There is no terrain angle, which programs in use have as a bound of the slope between
+    distance 0 leaves it out. Nor do they have the terrain angle, with which programs in use bound the slope between
     nodes. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.
 
     References
