@@ -1704,7 +1704,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;REPORT&lt;/b&gt;: a page with Shift eastward (m), Shift northward (m), Shift upward (m), Residual of common walls and ends (m), Outlines before the walls (m), Common walls, Common ends of walls, Common cells of ground; each is an output of its own too.</source>
+        <source>&lt;b&gt;REPORT&lt;/b&gt;: a page with Shift eastward (m), Shift northward (m), Shift upward (m), Residual of common walls and ends (m), Overhang of the eaves (m), Common walls, Common ends of walls, Common cells of ground; each is an output of its own too.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3389,6 +3389,10 @@
     </message>
     <message>
         <source>A point is noise when the mean distance to its k nearest neighbors exceeds mean + m * standard deviation of all these means. Distances have a long tail wherever there are trees and walls: with m = 2 or 3, often seen elsewhere, every hundredth point or more of a good airborne cloud is lost. With the default these are less than two in a thousand on most. Two kinds of noise are missed: points very far away raise the standard deviation and hide less distant ones, and points of a flock or a plume have near neighbors.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does a point outside the roof's cluster with another one more than a meter (or three spacings) higher. Points on walls belong to the building but don't widen its outline. One point counts for each cell of half a square spacing.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5396,7 +5400,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions. Along such a line both roofs slope up from it, parallel roofs step by 0.2 m, any by 1 m, or a wall rises 0.2 m above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. Two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have six tenths of the height of the higher one. Houses keep the number of their cluster.</source>
+        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions. Along such a line both roofs slope up from it, parallel roofs step by 0.2 m, any by 1 m, or a wall rises 0.2 m above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. One line is not enough, as two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have six tenths of the height of the higher one. Houses keep the number of their cluster.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5540,7 +5544,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend, with little inside, and end next to the visible arc, where the surface of a kerb goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that are parted by a flange or by the shadow of another object are put together, if one cylinder lies as close to the points of each as its own one.</source>
+        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend and with little inside. The surface must end at the visible arc, unlike that of a kerb, which goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that are parted by a flange or by the shadow of another object are put together, if one cylinder lies as close to the points of each as its own one.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6344,7 +6348,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and the points do not fill it. They do not if other pulses see the ground amid them, or they are closer together than pulses are, or fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
+        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does: other pulses reach the ground between them, or they are closer together than pulses are, or they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6556,10 +6560,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Outlines before the walls</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Outlines of buildings that are to be assessed.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -6593,6 +6593,10 @@
     </message>
     <message>
         <source>Overhang of roofs</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Overhang of the eaves</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7089,10 +7093,6 @@
     </message>
     <message>
         <source>Points whose heights differ by less than this, and that are close enough in plan, belong together (T_Dh; the paper has 0.2 m at 12.5 and 0.3 m at 4 points/m²).</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Points with another of their building more than 0.4 m higher beside them, at more than 72°, are walls, and so are attached points with another one more than a meter (or three spacings) higher. They count as points of the building but don't widen its outline. One point counts for each cell of half a square spacing.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7648,7 +7648,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the ground seen next to them, and against emptiness, by which a position falls short of roofs around. Gaps with roofs all around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.</source>
+        <source>Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the other points around them, and against the density that is missing to that of the roofs around. Gaps with roofs all around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8316,7 +8316,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The walls of neighbors within 30 m count, too. Rings with many walls beside these, and round ones, are drawn in chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a building or to the ground. Clusters whose points lie on one line have no area and give no polygon.</source>
+        <source>The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The walls of neighbors within 30 m count, too. Rings with many walls off these directions, and round ones, are drawn as chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a building or to the ground. Clusters whose points lie on one line have no area and give no polygon.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8728,7 +8728,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>What the papers leave open, or have otherwise: how many deviations the thresholds are, and the part of the point spacing that the distance allows for. So is the bound of the angle, without which rough first nodes let the surface climb onto anything. Facets with short edges are closed, and points near a node don't join, as they add nodes but no shape. The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep distance 0 leaves it out. There is no terrain angle, which programs in use have as a bound of the slope between nodes. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.</source>
+        <source>What the papers leave open, or have otherwise: how many deviations the thresholds are, and the part of the point spacing that the distance allows for. So is the bound of the angle, without which rough first nodes let the surface climb onto anything. Facets with short edges are closed, and points near a node don't join, as they add nodes but no shape. The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep distance 0 leaves it out. Nor do they have the terrain angle, with which programs in use bound the slope between nodes. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
