@@ -42,7 +42,7 @@ FORMS = {
     "what is, for a noun": Form(r"\bwhat is\b(?! (?:missing|wrong|normal|new))", 0.1),
     "beside, for a comparison": Form(r"\bbeside (?:the (?:old |base )?maps?\b|the truth|other (?:work|programs))", 0.1),
 }
-SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.1
+SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.01
 
 # Where a sentence ends: a mark, and what begins the next one.
 _END = re.compile(r"(?<=[.!?])[\"')*]*\s+(?=[A-Z0-9\"*`\[('])")

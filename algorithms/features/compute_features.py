@@ -148,20 +148,21 @@ def compute_features(
 
     Returns
     -------
-    ndarrays of shape (n,), float32, or (n, 3) for normal; None for each feature not asked for
-        ``linearity`` (l1 - l2) / l1, ``planarity`` (l2 - l3) / l1 and ``scattering`` l3 / l1, which add up to 1;
-        ``entropy`` -L ln L - P ln P - S ln S of these, 0 to ln 3;
-        ``omnivariance`` (l1 l2 l3)^(1/3) in m²;
-        ``anisotropy`` (l1 - l3) / l1;
-        ``eigenentropy`` -sum e ln e with e = l / sum l, 0 to ln 3;
-        ``eigenvalue_sum`` l1 + l2 + l3 in m²;
-        ``surface_variation`` l3 / (l1 + l2 + l3), 0 to 1/3;
-        ``verticality`` 1 - abs(n_z), 0 on flat roofs and 1 on walls;
-        ``normal`` the unit eigenvector of l3, upward;
-        ``height_range`` highest less lowest elevation and ``height_deviation`` their standard deviation, m;
-        ``plan_radius`` largest horizontal distance r from the point to its neighbors, m, ``plan_density`` points
-        of the neighborhood per area of that circle, points/m², and ``plan_eigenvalue_ratio`` m2 / m1 of the
-        eigenvalues of the covariance in plan, 0 to 1;
+    ndarrays of shape (n,), float32, or (n, 3) for normal; None for each feature not asked for.
+        ``linearity`` (l1 - l2) / l1, ``planarity`` (l2 - l3) / l1 and ``scattering`` l3 / l1, which add up to 1.
+        ``entropy`` -L ln L - P ln P - S ln S of these, 0 to ln 3.
+        ``omnivariance`` (l1 l2 l3)^(1/3) in m².
+        ``anisotropy`` (l1 - l3) / l1.
+        ``eigenentropy`` -sum e ln e with e = l / sum l, 0 to ln 3.
+        ``eigenvalue_sum`` l1 + l2 + l3 in m².
+        ``surface_variation`` l3 / (l1 + l2 + l3), 0 to 1/3.
+        ``verticality`` 1 - abs(n_z), 0 on flat roofs and 1 on walls.
+        ``normal`` the unit eigenvector of l3, upward.
+        ``height_range`` highest less lowest elevation and ``height_deviation`` their standard deviation, m.
+        ``plan_radius`` largest horizontal distance r from the point to its neighbors, m.
+        ``plan_density`` points of the neighborhood per area of that circle, points/m².
+        ``plan_eigenvalue_ratio`` m2 / m1 of the
+        eigenvalues of the covariance in plan, 0 to 1.
         ``optimal_neighbors`` (int32) points of the neighborhood: chosen for 'optimal', found within a radius.
         NaN where a neighborhood has fewer than three points or all of them coincide, and for the features of the
         plan where all lie above one another; the number of points is defined everywhere.

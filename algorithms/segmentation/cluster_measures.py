@@ -143,8 +143,9 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     Returns
     -------
     ndarray of shape (group.max() + 1,)
-        The mean over the points of a group of the share of points of chosen groups around them, their own among them:
-        within two to four meters in plan and twice that in height. 0 for groups without points.
+        Share of the points around a point that belong to chosen groups, its own among them, in the mean over the points
+        of each group. Around is within two to four meters in plan and twice that in height. 0 for groups without
+        points.
     """
     member = np.flatnonzero(group >= 0)
     owner = group[member]

@@ -35,7 +35,7 @@ class _PointPlanes:
     """The planes of points and their neighbors."""
 
     #: (n, 4), float32, exact to a millimeter within 10 km: unit normal upward, and how far along it the plane lies from
-    #: the first of the points (m): the distance of (x, y, z, -1) from the plane is one sum of products
+    #: the first of the points (m). The distance of (x, y, z, -1) from the plane is one sum of products
     planes: np.ndarray
     deviation: np.ndarray  #: (n,), float32: standard deviation across the plane, m
     neighbors: np.ndarray  #: (n, k), int32: points that showed the plane

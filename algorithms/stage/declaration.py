@@ -146,12 +146,12 @@ def stage(title: str, *, group: str, tags: str = "", **made: Any) -> Callable[[C
     """Declare a function as a stage.
 
     The function returns its results in the order below, and not in a tuple when there is only one. With ``selects`` the
-    first are the positions of the points that its result has, int64 (m,). Then comes one array per name in ``writes``
-    (length n, with ``selects`` m, with ``merges`` that of all clouds together; None for one that the user did not ask
-    for) or ``creates`` (a new cloud of any length). One :class:`LayerFeatures` per layer follows, one
-    :class:`RasterSurface` per raster, the items of each file, and a :class:`Report` when there are measures. A stage
-    that merges and writes nothing returns None for the cloud that it makes. The decorated function checks its arrays
-    and tunables on every call and carries its :class:`Stage` as ``function.stage``.
+    first are the positions of the points that its result has, int64 (m,). Then comes one array per name in ``writes``:
+    of length n, with ``selects`` m, with ``merges`` that of all clouds together; None for one that the user did not ask
+    for. With ``creates`` it is one per name there, a new cloud of any length. One :class:`LayerFeatures` per layer
+    follows, one :class:`RasterSurface` per raster, the items of each file, and a :class:`Report` when there are
+    measures. A stage that merges and writes nothing returns None for the cloud that it makes. The decorated function
+    checks its arrays and tunables on every call and carries its :class:`Stage` as ``function.stage``.
 
     Parameters
     ----------
