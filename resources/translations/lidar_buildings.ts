@@ -2064,7 +2064,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Thresholds&lt;/b&gt;: 'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set replace these. &lt;i&gt;(one of automatic, table 2, 12.5 points/m², table 2, 4 points/m²; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Thresholds&lt;/b&gt;: 'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set replace these. &lt;i&gt;(one of automatic; table 2, 12.5 points/m²; table 2, 4 points/m²; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6348,7 +6348,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does: other pulses reach the ground between them, or they are closer together than pulses are, or they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
+        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does. They do not where other pulses reach the ground between them, where they are closer together than pulses are, or where they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
