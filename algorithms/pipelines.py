@@ -66,7 +66,7 @@ _PIPELINES = (
         tags="building,house,detection,roof,footprint,classification,entropy,k-means,las2building,lasclassify",
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
-            "Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else "
+            "Noise, ground, bridges and heights come first, then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
             "and by how much of the beam passes through it. Then walls are added, edges are corrected by a regression "
             "learned from the buildings themselves, water, wires and vegetation get classes, and outlines are drawn. "

@@ -60,9 +60,9 @@ def classify_bridges(
 
     On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become
     bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the
-    cloud, and embankments, are not found. A run in tiles sees twice the maximum width around each block, half of it
-    where bridges are looked for at gaps only: bridges that go farther beyond its border are not found there. Give long
-    ones a larger block or maximum width.
+    cloud, and embankments, are not found. A run in tiles reads twice the maximum width around each block, or half
+    the maximum width where bridges are looked for at gaps only. Bridges that go farther beyond its border are not found
+    there. For long ones set a larger block or maximum width.
 
     Parameters
     ----------

@@ -2,7 +2,8 @@
 Stem and branches
 =================
 
-Voxels, a skeleton and shortest paths from the root part a tree into branches :cite:p:`gorte2004`.
+Voxels have a shortest path to the root; slices of equal length of path are followed to stem and branches
+:cite:p:`gorte2004`.
 """
 
 import matplotlib.pyplot as plt
