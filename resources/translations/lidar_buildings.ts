@@ -6416,7 +6416,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, and by how much of the beam passes through it. Then walls are added, edges are corrected by a regression learned from the buildings themselves, water, wires and vegetation get classes, and outlines are drawn. Distances and tolerances follow the density and the noise of the cloud.</source>
+        <source>Noise, ground, bridges and heights come first, then roof surfaces and clusters of everything else above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, and by how much of the beam passes through it. Then walls are added, edges are corrected by a regression learned from the buildings themselves, water, wires and vegetation get classes, and outlines are drawn. Distances and tolerances follow the density and the noise of the cloud.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6496,7 +6496,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the cloud, and embankments, are not found. A run in tiles sees twice the maximum width around each block, half of it where bridges are looked for at gaps only: bridges that go farther beyond its border are not found there. Give long ones a larger block or maximum width.</source>
+        <source>On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the cloud, and embankments, are not found. A run in tiles reads twice the maximum width around each block, or half the maximum width where bridges are looked for at gaps only. Bridges that go farther beyond its border are not found there. For long ones set a larger block or maximum width.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
