@@ -133,8 +133,9 @@ def extract_footprints(
     Notes
     -----
     A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does
-    a point outside the roof's cluster with another one more than a meter (or three spacings) higher. Points on walls
-    belong to the building but don't widen its outline. One point counts for each cell of half a square spacing.
+    a point that a later step added to the building, if another one is more than a meter (or three spacings) higher.
+    Points on walls belong to the building but don't widen its outline. One point counts for each cell of half a square
+    spacing.
 
     Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the
     other points around them, and against the density that is missing to that of the roofs around. Gaps with roofs all

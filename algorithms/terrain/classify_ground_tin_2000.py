@@ -159,12 +159,12 @@ def classify_ground_tin_2000(
     node. A point that lies too high above its facet is tried again at its mirror image about the facet's highest node,
     if that is one of the first nodes. Rounds go on until no point qualifies, and every point is tried in each.
 
-    What the papers leave open, or have otherwise: how many deviations the thresholds are, and the part of the point
-    spacing that the distance allows for. So is the bound of the angle, without which rough first nodes let the surface
-    climb onto anything. Facets with short edges are closed, and points near a node don't join, as they add nodes but no
-    shape. The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep
-    distance 0 leaves it out. Nor do they have the terrain angle, with which programs in use bound the slope between
-    nodes. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.
+    The papers leave open how many deviations the thresholds are, and the part of the point spacing that the distance
+    allows for. They have no bound of the angle, without which rough first nodes let the surface climb onto anything.
+    They have no terrain angle either, with which programs in use bound the slope between nodes. Unlike there, facets
+    with short edges are closed, and points near a node don't join, as they add nodes but no shape. The final sweep
+    takes in the points within the noise of the finished surface, as the tools in use do; sweep distance 0 leaves it
+    out. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.
 
     References
     ----------
