@@ -3392,7 +3392,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does a point outside the roof's cluster with another one more than a meter (or three spacings) higher. Points on walls belong to the building but don't widen its outline. One point counts for each cell of half a square spacing.</source>
+        <source>A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does a point that a later step added to the building, if another one is more than a meter (or three spacings) higher. Points on walls belong to the building but don't widen its outline. One point counts for each cell of half a square spacing.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8236,6 +8236,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>The papers leave open how many deviations the thresholds are, and the part of the point spacing that the distance allows for. They have no bound of the angle, without which rough first nodes let the surface climb onto anything. They have no terrain angle either, with which programs in use bound the slope between nodes. Unlike there, facets with short edges are closed, and points near a node don't join, as they add nodes but no shape. The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep distance 0 leaves it out. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>The points become voxels, whose gaps are closed. Stems are round and upright at breast height. Every voxel has the shortest path to the root of a stem, and connected voxels about as far from it are a slice. At each fork of the slices the branch goes on where the way to its tip is longest, and the others are branches of the next order. Points of short and of crooked branches, and those far from the wood, are leaves.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8725,10 +8729,6 @@
     </message>
     <message>
         <source>What carries the pipes or lies near them and is no pipe.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>What the papers leave open, or have otherwise: how many deviations the thresholds are, and the part of the point spacing that the distance allows for. So is the bound of the angle, without which rough first nodes let the surface climb onto anything. Facets with short edges are closed, and points near a node don't join, as they add nodes but no shape. The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep distance 0 leaves it out. Nor do they have the terrain angle, with which programs in use bound the slope between nodes. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
