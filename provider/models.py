@@ -57,7 +57,7 @@ def pipeline_parameters(pipeline: Pipeline) -> dict[str, QgsProcessingParameterD
 
 
 class _Layout:
-    """Positions in the drawing of a model: one band per step, parameters on the left, the algorithm on the right."""
+    """Positions (pixels) in the drawing of a model: a band per step, parameters left, the algorithm on the right."""
 
     columns, cell, box = 3, QSizeF(250, 66), QSizeF(220, 52)
     child = QSizeF(260, 50)
@@ -81,17 +81,17 @@ class _Layout:
         return QPointF(x, self.top + self.margin + self.cell.height() * (row + 0.5))
 
     @property
-    def right(self) -> float:
-        """Where the algorithms' column has its middle."""
+    def algorithm_x(self) -> float:
+        """Middle of the column of algorithms, from the left."""
         return 2 * self.margin + self.columns * self.cell.width() + self.child.width() / 2
 
     def middle(self, height: float) -> QPointF:
         """Return the center of the band's algorithm."""
-        return QPointF(self.right, self.top + height / 2)
+        return QPointF(self.algorithm_x, self.top + height / 2)
 
     def frame(self, height: float) -> tuple[QPointF, QSizeF]:
         """Return center and size of the box around the band."""
-        width = self.right + self.child.width() / 2 + self.margin
+        width = self.algorithm_x + self.child.width() / 2 + self.margin
         return QPointF(width / 2, self.top + height / 2), QSizeF(width, height)
 
 
@@ -101,10 +101,10 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
     layout = _Layout()
     clouds = _clouds(pipeline)
     for column, definition in enumerate(clouds):
-        where = QgsProcessingModelParameter(definition.name())
-        where.setPosition(QPointF(layout.right - column * layout.cell.width(), 60))
-        where.setSize(layout.box)
-        model.addModelParameter(definition, where)
+        component = QgsProcessingModelParameter(definition.name())
+        component.setPosition(QPointF(layout.algorithm_x - column * layout.cell.width(), 60))
+        component.setSize(layout.box)
+        model.addModelParameter(definition, component)
     definitions = {input_layer_name(layer): input_layer_parameter(layer) for layer in pipeline.input_layers.values()}
     definitions.update(pipeline_parameters(pipeline))
     for step in pipeline.steps:

@@ -23,7 +23,7 @@ from qgis.core import (
 
 from ..algorithms import packages
 from ..algorithms.cloud.cloud import Cloud
-from ..algorithms.cloud.copc_sidecar import check_place, copc_path
+from ..algorithms.cloud.copc_sidecar import check_copc_beside, copc_path
 from ..algorithms.cloud.files import write_cloud
 from ..algorithms.cloud.outputs import (
     COPC,
@@ -139,7 +139,7 @@ def _check_target(definition, path: Path, inputs: list) -> None:
         check_output(path, inputs)
         # The last step of a model reads the output of the step before, so it can't know the model's input.
         if kind_of(path) != COPC:
-            check_place(path, inputs)
+            check_copc_beside(path, inputs)
     elif isinstance(definition, QgsProcessingParameterRasterDestination):
         check_raster(path)
     elif isinstance(definition, QgsProcessingParameterFeatureSink):
@@ -203,7 +203,7 @@ class Run:
         """Refuse to replace a file that was put where a cloud's view goes since the run began."""
         for path in self._clouds:
             if kind_of(path) != COPC:
-                check_place(path, ())
+                check_copc_beside(path, ())
 
     def final(self, value: Any) -> Any:
         """Return results with the files that they name where these are when all is in place."""

@@ -55,8 +55,8 @@ from .parameters import number_outputs, tunable_values
 from .run_log import RunLog, about_run, complete_page, run_log
 from .styles import switch_off
 
-# Outputs of this rank or a higher one are what the result comes from.
-_FROM_BETWEEN = 3
+# Outputs of this rank and of higher ones are intermediate results.
+_INTERMEDIATE = 3
 
 
 def _rank(output: Output) -> int:
@@ -64,7 +64,9 @@ def _rank(output: Output) -> int:
     if output.of == OUTPUT.lower():
         return 0 if output.name == output.of else 4
     rasters = [raster.name for raster in output.step.stage.rasters]
-    return 2 if output.of == REPORT.lower() else _FROM_BETWEEN if output.of in rasters else 1
+    if output.of in rasters:
+        return _INTERMEDIATE
+    return 2 if output.of == REPORT.lower() else 1
 
 
 def step_output_name(step: Step, name: str) -> str:
@@ -104,14 +106,14 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             )
         self._mend_parameters()
         if on_command_line():
-            # Of models it shows this alone.
+            # There QGIS shows only this of the help of a model.
             self.setHelpContent({"ALG_DESC": f"{pipeline.summary}\n{self.shortHelpString()}"})
 
     def _mend_parameters(self) -> None:
         """Let the input take any path, and name outputs by their names instead of their titles."""
         # A model's file holds no tooltips.
         shown = pipeline_parameters(self.pipeline)
-        # In the language of QGIS, which the file is not in.
+        # These are in the language of QGIS, those of the file in English.
         self._titles = {name: definition.description() for name, definition in shown.items()}
         helps = {name: definition.help() for name, definition in shown.items()}
         helps.update({input_layer_name(layer): layer.help for layer in self.pipeline.input_layers.values()})
@@ -145,7 +147,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             if mended.name() != OUTPUT:
                 mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
                 # Results of steps in between are made on request only.
-                mended.setCreateByDefault(_rank(output) < _FROM_BETWEEN)
+                mended.setCreateByDefault(_rank(output) < _INTERMEDIATE)
         return mended
 
     def _output(self, step_name: str, of: str) -> Output:
@@ -198,7 +200,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             self._crs = given_crs(self, given, context)
             systems = [read_extent(cloud)[2] for cloud in clouds]
             self._box = extent_box(self, systems[0] or self._crs.toWkt(FULL), given, context)
-            self._is_named = not self._crs.isValid() or all(systems)
+            self._needs_no_crs = not self._crs.isValid() or all(systems)
         self._clouds = clouds
 
     def systems(self) -> list[str]:
@@ -240,7 +242,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
         return {}
 
     def _complete_pages(self, results: dict, log: RunLog) -> None:
-        """Say on the pages of the steps of what the run is, and with which parameters."""
+        """Write on the report pages of the steps what was run on which clouds, and with which parameters."""
         systems = [read_extent(path)[2] or self._crs.toWkt(FULL) for path in self._clouds]
         rows = about_run(self.displayName(), self._clouds, self._points(), systems[0] if systems else "")
         for output in self.pipeline.outputs:
@@ -264,7 +266,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
 
     def _parts(self, folder: Path, feedback: QgsProcessingFeedback) -> dict:
         """Return the inputs that are parts of clouds or get a CRS, written to a folder; nothing for whole clouds."""
-        if not self._clouds or (self._box is None and self._is_named):
+        if not self._clouds or (self._box is None and self._needs_no_crs):
             return {}
         parts = []
         for number, path in enumerate(self._clouds):

@@ -43,10 +43,11 @@ ROOMS = (
     "tiling",
 )
 HELPERS = {"packages", "memory", "threads", "params", "rules"}
-# Lines of a room, of the lines of all rooms: a larger one holds more than one idea.
+# Share of the lines of core and provider that one room may hold: a larger one holds more than one idea.
 LARGEST_ROOM = 0.12
-# Functions that import what their first argument says.
+# Statements that import.
 IMPORTS = (ast.Import, ast.ImportFrom)
+# Functions that import the module named by their first argument.
 IMPORTERS = {"import_module", "__import__", "_Lazy"}
 
 
@@ -102,7 +103,9 @@ ndimage = _Lazy("scipy.ndimage")
 def room_of(module: str) -> str:
     """Return the room of a module of the core, ``"geometry.grid"`` or ``"run"``."""
     first, *rest = module.split(".")
-    return first if rest or (ROOT / "algorithms" / first).is_dir() else "" if first in HELPERS else "top"
+    if rest or (ROOT / "algorithms" / first).is_dir():
+        return first
+    return "" if first in HELPERS else "top"
 
 
 def modules_imported(path: str) -> Iterator[str]:
@@ -121,7 +124,7 @@ def test_rooms_import_only_from_earlier_rooms(path):
     assert not [module for module in modules_imported(path) if room_of(module) not in below]
 
 
-# Rooms and stages that measure points by themselves: parts of a cloud that are sampled otherwise than the whole.
+# Modules that measure the density of some points: of parts of a cloud that are sampled otherwise than the whole.
 MEASURE_PARTS = {
     "algorithms/footprints/extract_footprints.py",
     "algorithms/walls/extract_wall_footprints.py",
@@ -168,7 +171,7 @@ def test_module_of_a_stage_has_its_name(stage):
 
 
 @pytest.mark.parametrize("stage", STAGES.values(), ids=list(STAGES))
-def test_tests_of_a_stage_have_its_name_and_its_place(stage):
+def test_tests_of_a_stage_have_its_name_and_its_folder(stage):
     room = stage.function.__module__.split(".")[-2]
     assert (ROOT / "tests" / "algorithms" / room / f"test_{stage.name}.py").is_file()
 
@@ -271,7 +274,7 @@ print(*{name.split(".")[2] for name in sys.modules if name.startswith("lidar_bui
     assert not {"buildings", "footprints", "walls", "facades", "models3d", "quality", "simulation"} & set(rooms.split())
 
 
-def test_every_stage_loads_from_the_package_alone():
+def test_names_of_the_stage_package_are_imported_from_the_package_itself():
     """``algorithms.stage`` exports what a stage and its tests need, whichever of its modules defines it."""
     parts = [path.stem for path in (ROOT / "algorithms" / "stage").glob("*.py") if path.stem != "__init__"]
     deep = [

@@ -46,25 +46,43 @@ def column_size(density: float) -> float:
 
 
 class Columns:
-    """The cells of buildings: whose they are, whose roof they adjoin, and how high it and the highest near is."""
+    """The cells of buildings, the cells that adjoin them, and the elevations of their roofs.
+
+    Parameters
+    ----------
+    building : ndarray of shape (rows, columns), int32
+        Number of the building that covers each cell; 0 for none.
+    top : ndarray of shape (rows, columns)
+        Elevation of the roof in each cell or the nearest one with a roof, m.
+    cell_size : float
+        Side of a cell, m.
+
+    Attributes
+    ----------
+    highest : ndarray of shape (rows, columns)
+        Elevation of the highest roof within the reach of walls, m; -inf where there is none.
+    beside : ndarray of shape (rows, columns), int32
+        Number of the building that each cell without building adjoins; 0 for others.
+    """
 
     def __init__(self, building: np.ndarray, top: np.ndarray, cell_size: float) -> None:
         self.building = building
         self.top = top
-        reach = 2 * max(1, round(COLUMNS.wall_reach / cell_size)) + 1
-        self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), reach)
+        window = 2 * max(1, round(COLUMNS.wall_reach / cell_size)) + 1
+        self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), window)
         beside = ndimage.grey_dilation(building, footprint=_EIGHT)
         self.beside = np.where(building > 0, 0, beside)
 
     def owners(self, points: ColumnPoints, clearance: float, structure_height: float) -> np.ndarray:
         """Return the building (n,), int32, that each point belongs to; 0 if unassigned.
 
-        Points up to the clearance (m) above the roof do, those up to the height of structures (m) where they are few.
+        Over a building these are the points up to ``clearance`` (m) above the roof, and where points above it are few,
+        those up to ``structure_height`` (m).
         """
         above = points.elevation - self.top[points.cell]
         inside = points.raised & (self.building[points.cell] > 0)
-        stands_above = inside & (above > clearance)
-        is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
+        is_above = inside & (above > clearance)
+        is_chimney = is_above & (above <= structure_height) & self.is_sparse(points.cell, is_above)[points.cell]
         is_bush = points.height < np.minimum(COLUMNS.bush_share * (points.height - above), COLUMNS.bush_height)
         is_plant = is_bush | self.is_beside_crown(points)[points.cell]
         # Points between a roof and the next higher one are the wall of the higher one.
@@ -72,21 +90,24 @@ class Columns:
         owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
         return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
 
-    def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], stands_above: np.ndarray) -> np.ndarray:
-        """Return the cells around which the points above the roof cover a small part of it."""
-        standing = np.zeros(self.building.shape)
-        standing[tuple(of[stands_above] for of in cell)] = 1
-        around = ndimage.uniform_filter(standing, COLUMNS.around, mode="constant")
+    def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], is_above: np.ndarray) -> np.ndarray:
+        """Return the cells (rows, columns) around which the points above the roof cover a small part of it."""
+        occupied = np.zeros(self.building.shape)
+        occupied[tuple(of[is_above] for of in cell)] = 1
+        around = ndimage.uniform_filter(occupied, COLUMNS.around, mode="constant")
         roof = ndimage.uniform_filter((self.building > 0).astype(float), COLUMNS.around, mode="constant")
         return around < COLUMNS.sparse_share * roof
 
     def is_beside_crown(self, points: ColumnPoints) -> np.ndarray:
-        """Return the cells of crowns apart from buildings, and the cells next to them."""
+        """Return the cells (rows, columns) of crowns apart from buildings, and the cells next to them."""
         apart = points.raised & (self.building[points.cell] == 0) & (self.beside[points.cell] == 0)
         shape = self.building.shape
         number = np.ravel_multi_index(points.cell, shape)[apart]
-        passed, size = (np.bincount(number, of, np.prod(shape)).reshape(shape) for of in (points.goes_on[apart], None))
-        # Balconies and walls are narrower. Most points of a crown are passed by the beam, few of a wall.
-        is_wide = ndimage.binary_opening(size > 0, _EIGHT)
-        most = ndimage.uniform_filter(2.0 * passed - size, COLUMNS.around, mode="constant")
-        return ndimage.binary_dilation(is_wide & (np.rint(COLUMNS.around**2 * most) > 0), _EIGHT)
+        weights = (points.goes_on[apart], None)
+        n_passed, n_points = (np.bincount(number, one, np.prod(shape)).reshape(shape) for one in weights)
+        # Crowns are three cells wide or more, balconies and walls are not. The beam passes most points of a crown.
+        is_wide = ndimage.binary_opening(n_points > 0, _EIGHT)
+        mean_excess = ndimage.uniform_filter(2.0 * n_passed - n_points, COLUMNS.around, mode="constant")
+        # Rounded to the whole number that the sum over the square is.
+        is_mostly_passed = np.rint(COLUMNS.around**2 * mean_excess) > 0
+        return ndimage.binary_dilation(is_wide & is_mostly_passed, _EIGHT)

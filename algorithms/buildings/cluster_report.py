@@ -66,8 +66,8 @@ def _page(clusters: Clusters, values: dict, groups: dict) -> str:
         "A cluster is often one surface of a roof: where clusters are joined to whole buildings afterwards, footprints "
         "are fewer."
     )
-    if clusters.split.is_given:
-        lead += " Their entropies don't form two groups, so each was compared with the entropies of planes and volumes."
+    if clusters.split.is_one_group:
+        lead += " Their entropies form one group; the mean of the missing one is that of simulated planes or volumes."
     elif clusters.penetration is not None:
         lead += (
             " Their entropies were compared with those of planes and volumes at the density and noise of the cloud, "
@@ -90,8 +90,7 @@ def _page(clusters: Clusters, values: dict, groups: dict) -> str:
 
 
 def _means(clusters: Clusters) -> list[Mark]:
-    names = ("planes", "volumes") if clusters.split.is_given else ("buildings", "everything else")
-    return [Mark(name, value) for name, value in zip(names, (clusters.split.building, clusters.split.other))]
+    return [Mark("buildings", clusters.split.building), Mark("everything else", clusters.split.other)]
 
 
 def _chart(values: np.ndarray, groups: dict, axis: str, marks: list[Mark]) -> str:

@@ -30,12 +30,12 @@ MEAN_ENTROPIES = ("building_entropy", "other_entropy")
 class Split:
     """Two mean entropies, of buildings and of everything else; unless the first is less, clusters are undecided.
 
-    With ``is_given`` they are those of simulated planes and volumes, because the clusters form one group only.
+    With ``is_one_group`` all clusters are on one side, and the other mean is the reference that no cluster has moved.
     """
 
     building: float
     other: float
-    is_given: bool = False
+    is_one_group: bool = False
 
     @property
     def separates(self) -> bool:
@@ -95,13 +95,13 @@ def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor)
         high = float((known[~is_low].sum() + SPLIT.weight * volume) / ((~is_low).sum() + SPLIT.weight))
         if (low, high) == before:
             break
-    is_one_kind = bool(is_low.all() or not is_low.any())
-    if is_one_kind:
+    is_one_group = bool(is_low.all() or not is_low.any())
+    if is_one_group:
         monitor.warn(
-            "The entropies of the clusters don't form two groups; each cluster was compared "
-            f"with the entropy of planes ({plane:.2f}) and volumes ({volume:.2f}) instead."
+            "The entropies of the clusters don't form two groups; the mean of the missing one was taken "
+            f"from simulated planes ({plane:.2f}) or volumes ({volume:.2f})."
         )
-    split = Split(low, high, is_given=is_one_kind)
+    split = Split(low, high, is_one_group=is_one_group)
     if not split.separates:
         monitor.warn("At this noise planes have the entropy of volumes, so nothing was called a building.")
     return split

@@ -57,7 +57,7 @@ def covered_cells(cell: Cell, is_roof: np.ndarray, is_low: np.ndarray, gap: floa
     if reach:
         closed = roof | ndimage.binary_closing(roof, _disk(reach))
     holes = ndimage.binary_fill_holes(closed) & ~closed
-    # A hole as narrow as the gap may be closed too; a courtyard may not.
+    # A hole of at most the area of a square as wide as the gap is closed too; a courtyard is larger.
     small = _small(holes, max(1.0, (gap / cell_size) ** 2))
     return roof | ((closed | small) & ~open_ground)
 
@@ -141,5 +141,6 @@ def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np
 
 
 def _disk(radius: int) -> np.ndarray:
+    """Return the cells of a disk: those up to about a quarter of a cell beyond the radius, so that it looks round."""
     row, column = np.mgrid[-radius : radius + 1, -radius : radius + 1]
     return row**2 + column**2 <= radius**2 + 0.5 * radius

@@ -34,7 +34,11 @@ def decide_in_images(
     Returns
     -------
     Decisions
-        Crowns are closed and smooth over decimeters, but planar over meters in spots only, with rough leaves around.
+        Confidences above 0.5 for buildings, and the reasons.
+
+    Notes
+    -----
+    Crowns are closed and smooth over decimeters, but planar over meters in spots only, with rough leaves around.
     """
     is_surface = surface_share > 0.5
     is_green = is_surface & green
@@ -43,6 +47,7 @@ def decide_in_images(
     is_building = is_candidate & (share >= min_share)
     found = {Reason.GREEN: is_green, Reason.SURFACE: is_building, Reason.AMID_OTHERS: is_candidate}
     reasons = np.select(list(found.values()), list(found), Reason.ROUGH).astype(np.uint8)
+    # Buildings have more than 0.5, also where ``min_share`` is 0.
     confidence = np.where(is_building, 0.5 + 0.5 * np.maximum(share, 0.02), 0.5 * share)
     return Decisions(confidence, reasons)
 
@@ -62,7 +67,7 @@ def without_green(decided: Decisions, is_green: np.ndarray) -> Decisions:
 def green_clusters(
     colors: tuple[Optional[np.ndarray], ...], evidence: ClusterEvidence, is_surface: np.ndarray
 ) -> tuple[np.ndarray, Optional[float]]:
-    """Return which clusters (count,) are as green as the plants of the scene, and from which greenness on that is.
+    """Return which clusters (m,) are as green as the plants of the scene, and from which greenness on that is.
 
     Parameters
     ----------

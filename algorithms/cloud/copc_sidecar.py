@@ -25,10 +25,11 @@ _BLOCK = 1 << 20
 
 def copc_path(path: Path) -> Path:
     """Return the COPC file that QGIS looks for beside a LAS or LAZ file."""
+    # ".las" is as long as ".laz".
     return path.with_name(path.name[: -len(LAS)] + COPC)
 
 
-def check_place(path: Path, sources: Iterable[Path]) -> None:
+def check_copc_beside(path: Path, sources: Iterable[Path]) -> None:
     """Refuse a LAS or LAZ output in whose place QGIS would show a file that may not be replaced.
 
     Raises

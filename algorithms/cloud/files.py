@@ -13,7 +13,7 @@ import numpy as np
 from ..stage import Monitor
 from .cloud import Cloud
 from .copc import copc_header, write_copc
-from .copc_sidecar import VIEW_SOFTWARE, check_place, copc_path, seal
+from .copc_sidecar import VIEW_SOFTWARE, check_copc_beside, copc_path, seal
 from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
 from .laspy_library import need_lazrs
 from .laz import writing_backend
@@ -293,7 +293,7 @@ def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False)
     if kind_of(path) == LAZ:
         writing_backend(cloud.records().layout.point_format)
     if kind_of(path) != COPC:
-        check_place(path, cloud.files)
+        check_copc_beside(path, cloud.files)
 
 
 def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> None:

@@ -14,6 +14,7 @@ from .laspy_library import need_laspy
 FORMATS = range(11)
 # Formats 6-10 count the scan angle in steps of 0.006 degrees, formats 0-5 in degrees.
 _ANGLE_STEP = 0.006
+# In these steps: 180 degrees.
 _LARGEST_ANGLE = 30_000
 # laspy has another name for the scan angle of the formats 0-5.
 _NAMES = {"scan_angle_rank": "scan_angle"}
@@ -33,7 +34,7 @@ class Layout:
     extras: tuple[ExtraField, ...] = ()
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what another process needs: laspy's objects are made anew there, after it is imported as here."""
+        """Return what another process needs; it imports laspy and makes the cached objects of laspy again."""
         return {"point_format": self.point_format, "extras": self.extras}
 
     @cached_property

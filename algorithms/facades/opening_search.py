@@ -14,16 +14,25 @@ from .approaches import BEFORE, FROM_WALL, Approach
 from .facade_outline import grown
 from .facade_surfaces import Facade
 
-# Points this far from the plane (times its rms; m) are not of the wall.
-_OFF_WALL, _LEAST_OFF = 3.0, 0.03
+# Points farther than this from the plane, in standard deviations of the wall, are not of the wall.
+_OFF_WALL = 3.0
 
-# Side of a cell (spacings of the wall; m at least): a wall leaves none empty but by chance.
-_CELL_SPACINGS, _LEAST_CELL = 1.2, 0.02
+# The same in meters, if that is more.
+_LEAST_OFF = 0.03
 
-# Points behind the wall this far apart (m; cells at least) are of one opening: bars, curtains and panes leave gaps.
-_LINK, _LINK_CELLS = 0.3, 1.5
+# Side of a cell, in point spacings of the wall: a wall leaves a cell empty by chance only.
+_CELL_SPACINGS = 1.2
 
-# A side of an opening is the edge of the wall where that lies within this distance (m) of the points seen in it.
+# The same in meters, if that is more.
+_LEAST_CELL = 0.02
+
+# Gap (m) between points behind the wall that are of one opening: bars, curtains and panes leave gaps.
+_LINK = 0.3
+
+# Half of that gap in cells, if that is more.
+_LINK_CELLS = 1.5
+
+# Distance (m) from the points behind the wall within which the edge of the wall is a side of their opening.
 _REACH = 0.3
 
 # Share of the outline of an opening, its sill left out where it is a door, that must have wall beside it.
@@ -41,11 +50,14 @@ _MULLION = 0.15
 # Panes of one window end at one height within this distance (m).
 _LEVEL = 0.2
 
-# Pieces of which the smaller shares this part of its box with the larger are one opening: a shop front has many.
+# Pieces are one opening if their boxes overlap by this share of the smaller one: a shop front has many pieces.
 _SHARED = 0.3
 
-# Distance (spacings; m at least) within which the wall must go straight on to be the side of an opening.
-_STRAIGHT_SPACINGS, _LEAST_STRAIGHT = 2.0, 0.06
+# Deviation from a straight line up to which an edge of the wall is the side of an opening, in point spacings.
+_STRAIGHT_SPACINGS = 2.0
+
+# The same in meters, if that is more.
+_LEAST_STRAIGHT = 0.06
 
 # Area of the convex hull of an opening, as a share of its rectangle, from which it is that rectangle.
 _RECTANGULAR = 0.75
@@ -60,7 +72,7 @@ class Opening:
     depth: float  #: Median distance of its points behind the wall, m
     enclosed: float  #: Share of its outline that has wall beside it, 0 to 1
     seen: float  #: Share of its area with points, 0 to 1
-    points: np.ndarray  #: (k,): its points in the cloud
+    points: np.ndarray  #: (k,), int: indices of its points in the cloud
 
     @property
     def box(self) -> np.ndarray:
@@ -81,7 +93,7 @@ class Raster:
     wall : ndarray of shape (n, 2)
         Positions of the points of the wall (m).
     behind : ndarray of shape (m, 2)
-        Of those behind it.
+        Positions of the points behind the wall (m).
     size : float
         Side of a cell (m).
     """
@@ -138,16 +150,17 @@ def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: 
     """
     local = facade.frame.local(xyz[rows])
     off_wall = max(_OFF_WALL * facade.rms, _LEAST_OFF)
-    out = local[:, 2]
-    is_wall = np.abs(out) <= off_wall
-    is_behind = (out < -off_wall) & (out >= -max_depth)
+    # Outward from the wall is positive.
+    distance = local[:, 2]
+    is_wall = np.abs(distance) <= off_wall
+    is_behind = (distance < -off_wall) & (distance >= -max_depth)
     if not is_wall.any() or not is_behind.any():
         return []
     wall, behind, own = local[is_wall, :2], local[is_behind], rows[is_behind]
     raster = Raster(wall, behind[:, :2], max(_CELL_SPACINGS * facade.spacing, _LEAST_CELL))
     label, count = raster.groups()
     group = _joined(behind[:, :2], label[raster.cell(behind[:, :2])], count)
-    approach = Approach(wall, local[(out > max(FROM_WALL, off_wall)) & (out <= BEFORE), :2])
+    approach = Approach(wall, local[(distance > max(FROM_WALL, off_wall)) & (distance <= BEFORE), :2])
     found = []
     for chosen in members(group).values():
         made = _opening(facade, raster, wall, behind[chosen], own[chosen], approach, min_size)
@@ -203,9 +216,9 @@ def _opening(
 
 
 def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return a box whose sides are the edges of the wall where it lies beside them, and the share (4,) where it does.
+    """Return a box with its sides moved to the edges of the wall, and the share (4,) of each side with wall beside it.
 
-    The sides are left, right, lower and upper one.
+    The shares are those of the left, right, lower and upper side. A side without a straight edge stays where it is.
     """
     bounded, shares = box.copy(), np.zeros(4)
     for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1)):
@@ -252,7 +265,7 @@ def _shape(box: np.ndarray, positions: np.ndarray, spacing: float) -> tuple[np.n
 
 
 def _enclosure(raster: Raster, ring: np.ndarray, sill: Optional[float]) -> float:
-    """Return the share of a ring with wall within reach; a sill (m) on the ground does not count."""
+    """Return the share of a ring with wall within half the reach and a cell; a door's ``sill`` (m) does not count."""
     steps = np.diff(ring, axis=0)
     length = np.linalg.norm(steps, axis=1)
     counted = np.ones(len(steps), bool)

@@ -229,8 +229,8 @@ class FileItem(Protocol):
 class TextFile:
     """A text file that a stage makes, in the format of its extension.
 
-    ``name`` becomes the output's name (``CITYJSON``); ``formats`` are the formats by what they are called, each with
-    the endings of its files, the preferred one first. ``write`` returns the text, in parts, of any number of items in
+    ``name`` becomes the output's name (``CITYJSON``); ``formats`` gives the file extensions of each format by
+    its name, the preferred one first. ``write`` returns the text, in parts, of any number of items in
     a format and for a map; it goes through the items as often as it likes, and keeps none. ``item`` is what they are,
     a class of :class:`FileItem`, and ``of`` the layer, made by the stage or given to it, whose ``id`` is their name.
     """

@@ -30,7 +30,7 @@ _DEPTH_DEVIATIONS = 6.0
 # Deviation (m) of the ground around from which on it is too rough for a pit to be seen in it.
 _ROUGH = 0.25
 
-# Points of the smallest group.
+# Points from which on a group needs no more than the least depth.
 _GROUP_POINTS = 3
 
 # Depth (m) under the ground of one or two points that are noise: shallower, they are as likely a gutter or a hollow.
@@ -81,7 +81,7 @@ _FLOOR_POINTS = 6
 # Points on the ground amid a floor, as a share of its pulses: these see a true floor or the ground, and not both.
 _MIXED = 0.15
 
-# Standard deviations by which a floor may have more points than its area takes: more of them are a mirror's.
+# Standard deviations by which the points of a floor may exceed those expected on its area; more are multipath points.
 _CROWDED_DEVIATIONS = 2.0
 
 
@@ -158,7 +158,7 @@ def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Lev
         design = np.concatenate([off[..., :2], np.ones((*off.shape[:2], 1))], axis=2)
         weight = np.ones(off.shape[:2])
         for _ in range(_ROUNDS):
-            # A whisker on the diagonal keeps collinear nodes solvable.
+            # A small term on the diagonal keeps the equations of collinear nodes solvable.
             normal = np.einsum("mki,mk,mkj->mij", design, weight, design) + 1e-6 * np.eye(3)
             right = np.einsum("mki,mk,mk->mi", design, weight, off[..., 2])
             plane = np.linalg.solve(normal, right[..., None])[..., 0]
@@ -166,6 +166,7 @@ def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Lev
             # Least sum of absolute residuals: a few nodes far off do not count for more than others.
             weight = 1 / np.maximum(residual, _FULL_WEIGHT)
         made.height[rows], made.slope[rows] = positions[rows, 2] + plane[:, 2], plane[:, :2]
+        # The standard deviation of normally distributed residuals is 1.4826 times their median.
         made.deviation[rows] = 1.4826 * np.median(residual, axis=1)
 
     in_chunks(fit, np.arange(len(positions)), _CHUNK, monitor)
@@ -218,7 +219,7 @@ class _Near:
         return np.split(low[order], ends)
 
     def is_false(self, group: np.ndarray) -> bool:
-        """Return whether a group is small, has ground all round, and does not fill its pit."""
+        """Return whether a group is small, deep enough, has ground around, and does not fill its pit."""
         plan = self.xyz[group, :2]
         if np.ptp(plan, axis=0).max() > max(_WIDEST, _WIDEST_SPACINGS * self.spacing):
             return False

@@ -22,21 +22,33 @@ SITES = {
 }
 REAL = dict(zip(("real suburb", "real beach"), WITH_IMAGES))
 
-# Windows in which roughness is measured (m), and the cells whose highest points are counted.
-WINDOWS, _TOP_CELL = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0), 0.25
+# Sides of the windows in which roughness is measured, m.
+WINDOWS = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0)
 
-# A window counts where this share of its cells is filled, a surface where it has this many windows.
-_FULL, _FEWEST_WINDOWS = 0.7, 8
+# Side of a cell of which only the highest point is used, m.
+_TOP_CELL = 0.25
 
-# Heights above ground (m) from which on what is no building is a plant, and up to which it is open ground.
-_PLANTS, _GROUND = 2.5, 0.3
+# Share of the cells of a window that must hold a point for it to count.
+_FULL = 0.7
 
-# Bins of slopes (degrees), and depths of cells (m).
-SLOPES, DEPTHS = np.arange(0.0, 91.0, 10.0), (0.5, 1.0, 2.0, 3.0)
+# Least number of such windows by which a surface has a roughness.
+_FEWEST_WINDOWS = 8
+
+# Height above ground (m) from which on points off buildings are plants.
+_PLANTS = 2.5
+
+# Height above ground (m) up to which points off buildings are open ground.
+_GROUND = 0.3
+
+# Edges of the bins of slopes, degrees.
+SLOPES = np.arange(0.0, 91.0, 10.0)
+
+# Differences in height within a cell whose frequency is compared, m.
+DEPTHS = (0.5, 1.0, 2.0, 3.0)
 
 
 def likeness() -> list[Table]:
-    """Print roughness (m) by surface, slopes, and depths of cells (%), of real and simulated clouds."""
+    """Return tables of roughness (m) and slopes (%) by surface, and of depths of cells (%), for each cloud."""
     rough = Table("likeness", "cloud", "surface", *(f"{window:g} m" for window in WINDOWS), texts=2)
     clouds = dict(_clouds())
     for name, (xyz, surfaces) in clouds.items():
@@ -80,7 +92,7 @@ def _parted(result: Result, true: np.ndarray) -> tuple[np.ndarray, dict[str, np.
 def median_roughness(xyz: np.ndarray, window: float) -> float:
     """Return the median over windows (m) of the deviation (m) of the highest points from the plane of best fit.
 
-    NaN where hardly any window is full.
+    NaN where fewer than eight windows are full.
     """
     top = _highest(xyz) - xyz.mean(axis=0)
     _, which, count = np.unique(np.floor(top[:, :2] / window), axis=0, return_inverse=True, return_counts=True)
@@ -113,10 +125,10 @@ def slope_shares(xyz: np.ndarray) -> np.ndarray:
 def deep_shares(xyz: np.ndarray) -> list[float]:
     """Return the share (%) of cells of half a meter whose points lie farther apart in height than some depths."""
     _, cell = np.unique(np.floor(xyz[:, :2] / 0.5), axis=0, return_inverse=True)
-    high, low = np.full((2, cell.max() + 1), -np.inf)
+    high, low = np.full(cell.max() + 1, -np.inf), np.full(cell.max() + 1, np.inf)
     np.maximum.at(high, cell, xyz[:, 2])
-    np.maximum.at(low, cell, -xyz[:, 2])
-    return [100 * float(np.mean(high + low > depth)) for depth in DEPTHS]
+    np.minimum.at(low, cell, xyz[:, 2])
+    return [100 * float(np.mean(high - low > depth)) for depth in DEPTHS]
 
 
 def empty_share(xyz: np.ndarray) -> float:

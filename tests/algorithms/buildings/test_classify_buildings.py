@@ -136,9 +136,9 @@ def test_a_lone_flat_roof_is_found(rng):
     monitor = Monitor()
     found, *_, report = classify_buildings(xyz, ones(xyz), cluster_id, monitor=monitor)
     assert (found == 6).all()
-    assert "compared with the entropy of planes" in monitor.warnings[0]
-    assert "compared with the entropies of planes and volumes" in report.html
-    assert f"planes: {report.values['building_entropy']:.3g}" in report.html
+    assert "taken from simulated planes" in monitor.warnings[0]
+    assert "that of simulated planes or volumes" in report.html
+    assert f"buildings: {report.values['building_entropy']:.3g}" in report.html
 
 
 def test_a_lone_tree_is_never_a_building(rng, lawn):

@@ -1,4 +1,4 @@
-"""One point is left in every voxel, and it is the right one: held against dictionaries, fractions and brute force."""
+"""One point remains in every voxel, and it is the right one: held against dictionaries, fractions and brute force."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from lidar_buildings.tests.monitors import Listening
 
 
 def by_dictionary(steps: np.ndarray, scale: int, side: int) -> dict[tuple, list[int]]:
-    """Return the points of each voxel; coordinates are ``steps / scale`` and voxels ``side / scale``, whole numbers."""
+    """Return the points of each voxel, by integers: coordinates are steps / scale and sides side / scale (m)."""
     found = defaultdict(list)
     for i, place in enumerate(steps.tolist()):
         found[tuple(step // side for step in place)].append(i)
@@ -81,15 +81,15 @@ def test_the_order_of_the_points_changes_nothing(places, side, random):
     classes = (steps.sum(axis=1) % 7).astype(np.uint8)
     time = np.arange(len(steps)) % 5 * 0.5
     number = np.arange(len(steps), dtype=np.uint8)
-    made, mixed = (
+    result, of_shuffled = (
         (
             rows,
             *downsample_voxels(points_at(steps[rows]), classes[rows], time[rows], number[rows], voxel_size=side / 100),
         )
         for rows in (np.arange(len(steps)), order)
     )
-    assert (made[0][made[1]] == mixed[0][mixed[1]]).all()
-    for one, other in zip(made[2:], mixed[2:]):
+    assert (result[0][result[1]] == of_shuffled[0][of_shuffled[1]]).all()
+    for one, other in zip(result[2:], of_shuffled[2:]):
         assert one.tobytes() == other.tobytes()
 
 
@@ -97,11 +97,11 @@ def test_the_order_of_the_points_changes_nothing(places, side, random):
 @given(steps_of_points, st.sampled_from([1, 2, 5, 10, 25]))
 def test_the_position_of_the_cloud_changes_nothing(places, side):
     steps = np.array(places)
-    here = downsample_voxels(points_at(steps), voxel_size=side / 100)
-    there = downsample_voxels(points_at(steps + [60_000_000, 500_000_000, 0]), voxel_size=side / 100)
-    assert (here[0] == there[0]).all()
-    assert (here[3] == there[3]).all()
-    np.testing.assert_allclose(here[1], there[1] - [6e5, 5e6, 0], rtol=0, atol=3e-9)
+    at_origin = downsample_voxels(points_at(steps), voxel_size=side / 100)
+    far_away = downsample_voxels(points_at(steps + [60_000_000, 500_000_000, 0]), voxel_size=side / 100)
+    assert (at_origin[0] == far_away[0]).all()
+    assert (at_origin[3] == far_away[3]).all()
+    np.testing.assert_allclose(at_origin[1], far_away[1] - [6e5, 5e6, 0], rtol=0, atol=3e-9)
 
 
 @settings(max_examples=40)
@@ -117,9 +117,9 @@ def test_centers_stay_in_their_voxel_and_counts_add_up(places, side):
 
 def test_larger_voxels_that_hold_the_smaller_ones_are_not_more(rng):
     xyz = rng.uniform(0, 5, (5000, 3))
-    left = [len(downsample_voxels(xyz, voxel_size=side)[0]) for side in (0.1, 0.2, 0.4, 0.8, 1000)]
-    assert sorted(left, reverse=True) == left
-    assert left[-1] == 1
+    counts = [len(downsample_voxels(xyz, voxel_size=side)[0]) for side in (0.1, 0.2, 0.4, 0.8, 1000)]
+    assert sorted(counts, reverse=True) == counts
+    assert counts[-1] == 1
 
 
 # --- Exact at any coordinate
@@ -173,8 +173,8 @@ def test_a_point_alone_stays_where_it_is(rng):
 
 
 def test_equal_votes_give_the_lowest_class():
-    made = downsample_voxels(np.zeros((4, 3)), np.array([6, 2, 6, 2], np.uint8))[2]
-    assert made.tolist() == [2]
+    result = downsample_voxels(np.zeros((4, 3)), np.array([6, 2, 6, 2], np.uint8))[2]
+    assert result.tolist() == [2]
 
 
 def test_points_at_one_position_are_separated_by_time_then_by_return():
@@ -191,8 +191,8 @@ def test_all_points_at_one_position(rng):
 
 
 def test_dtypes_are_those_of_the_table(rng):
-    made = downsample_voxels(rng.uniform(0, 1, (100, 3)), np.ones(100, np.int64))
-    assert [array.dtype for array in made] == [np.int64, np.float64, np.uint8, np.uint32]
+    result = downsample_voxels(rng.uniform(0, 1, (100, 3)), np.ones(100, np.int64))
+    assert [array.dtype for array in result] == [np.int64, np.float64, np.uint8, np.uint32]
 
 
 def test_too_fine_voxels_are_refused():

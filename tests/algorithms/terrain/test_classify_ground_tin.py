@@ -119,7 +119,7 @@ def test_points_beside_nodes_of_their_facet_do_not_join(rng):
     assert np.linalg.norm(joined[:, None] - corners, axis=2).min() > 0.5
 
 
-def test_low_things_are_not_ground(rng):
+def test_low_objects_are_not_ground(rng):
     """A car, 1.5 m high, and a hedge of 1 m."""
     xyz, is_low = scan(rng, TERRAINS["slope"], [(30, 30, 34.5, 32, 1.5), (10, 60, 40, 61, 1.0)], density=5)
     missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz)), is_low)
@@ -218,7 +218,7 @@ def test_sweep_distance_is_the_width_of_the_ground(rng):
 
 
 @pytest.mark.parametrize(
-    ("classify", "most_more", "density", "noise"),
+    ("classify", "cap", "density", "noise"),
     [
         (classify_ground_tin_2000, np.inf, 2, 0.2),
         (classify_ground_tin, 0.1, 2, 0.2),
@@ -226,8 +226,8 @@ def test_sweep_distance_is_the_width_of_the_ground(rng):
         (classify_ground_tin, 0.1, 30, 0.03),
     ],
 )
-def test_the_last_third_of_six_roughnesses_is_small_in_the_sweep_distance(classify, most_more, density, noise, rng):
-    """As published it is six times the roughness of the nodes, which rough terrain makes wide.
+def test_sweep_distance_is_six_roughnesses_with_the_last_two_capped(classify, cap, density, noise, rng):
+    """As published it is six times the roughness of the nodes; on rough terrain a decimeter caps the last two of these.
 
     The lowest points of a dense cloud agree, and a tenth of its ground was left out by their roughness.
     """
@@ -237,7 +237,7 @@ def test_the_last_third_of_six_roughnesses_is_small_in_the_sweep_distance(classi
     roughness = max(roughness, CloudSampling.of(xyz).noise) if classify is classify_ground_tin else roughness
     monitor = Monitor()
     found = classify(xyz, unclassified(xyz), monitor=monitor)
-    assert monitor.values["sweep_distance"] == pytest.approx(4 * roughness + min(2 * roughness, most_more))
+    assert monitor.values["sweep_distance"] == pytest.approx(4 * roughness + min(2 * roughness, cap))
     assert (found == 2).mean() > 0.98
 
 

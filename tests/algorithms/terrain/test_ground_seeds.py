@@ -116,7 +116,7 @@ def test_a_steep_ridge_is_terrain_as_its_slope_is_measured_anew(rng):
 
 @pytest.mark.parametrize("spacing", [1.6, 2.4])
 def test_a_heap_of_soil_is_terrain_however_few_points_hold_it(spacing, rng):
-    """Cells of half the spacing hold every other rise twice as steep, and no rise beside it."""
+    """In cells of half the spacing a slope looks like steps: twice as steep in one cell, level in the next."""
     plan = even(120, 120, spacing) + rng.uniform(-0.2, 0.2, (len(even(120, 120, spacing)), 2))
     inward = 8 - np.hypot(*(plan - 60).T)
     z = np.clip(0.7 * inward, 0, None) + rng.normal(0, 0.03, len(plan))
@@ -283,7 +283,7 @@ def test_progress_only_grows():
 
 
 def test_the_search_for_pits_can_be_stopped(rng, monkeypatch):
-    """In a dense forest there are as many as trees. One thread hears of each step of the search itself."""
+    """In a dense forest there are as many pits as trees. With one thread, the monitor is called at each step."""
     monkeypatch.setattr(threads, "_TOLD", [1])
     plan, monitor = even(60, 60), Listening(stop_at=0.01)
     z = np.where(rng.random(len(plan)) < 0.1, 0.0, rng.uniform(18, 22, len(plan)))

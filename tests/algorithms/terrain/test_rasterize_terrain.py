@@ -51,8 +51,8 @@ def test_small_gaps_are_filled_and_large_ones_stay(rng):
     xyz, _ = slope_with_house(rng)
     xyz[:, 2] = 0.2 * xyz[:, 0]
     small, large = np.hypot(*(xyz[:, :2] - 6).T) < 1.5, np.hypot(*(xyz[:, :2] - 20).T) < 6
-    there = ~small & ~large
-    dsm = rasterize_terrain(xyz[there], np.full(there.sum(), 2), cell_size=0.5, gap_distance=2.0)[1]
+    is_kept = ~small & ~large
+    dsm = rasterize_terrain(xyz[is_kept], np.full(is_kept.sum(), 2), cell_size=0.5, gap_distance=2.0)[1]
     x, y = middles(dsm)
     filled = np.hypot(x - 6, y - 6) < 1
     # The highest point of a cell lies up to half a cell higher on the slope.
@@ -60,8 +60,8 @@ def test_small_gaps_are_filled_and_large_ones_stay(rng):
     from_middle = np.hypot(x - 20, y - 20)
     assert np.isnan(dsm.values[from_middle < 3]).all()
     assert np.isfinite(dsm.values[(from_middle > 4.8) & (from_middle < 6)]).all()
-    none = rasterize_terrain(xyz[there], np.full(there.sum(), 2), cell_size=0.5, gap_distance=0.0)[1]
-    assert np.isnan(none.values[filled]).all()
+    unfilled = rasterize_terrain(xyz[is_kept], np.full(is_kept.sum(), 2), cell_size=0.5, gap_distance=0.0)[1]
+    assert np.isnan(unfilled.values[filled]).all()
 
 
 def test_noise_is_left_out(rng):
@@ -73,7 +73,7 @@ def test_noise_is_left_out(rng):
 
 
 def test_round_numbers_are_the_nearest_in_proportion():
-    """None is farther than half-way, in proportion, from 2 to 5."""
+    """The widest step is that from 2 to 5: in proportion, no size is farther than half of it from a round one."""
     sizes = np.geomspace(0.04, 900, 200)
     rounded = np.array([round_cell_size(size) for size in sizes])
     assert (np.diff(rounded) >= 0).all()
@@ -118,10 +118,10 @@ def test_cells_lie_at_multiples_of_their_size_so_that_neighbors_have_no_seam(rng
             assert one.west == pytest.approx(other.west + 0.3 * column, abs=1e-9)
             assert one.north == pytest.approx(other.north - 0.3 * row, abs=1e-9)
             rows, columns = one.values.shape
-            there = other.values[row : row + rows, column : column + columns]
+            overlap = other.values[row : row + rows, column : column + columns]
             # Away from the cut both have the same triangles and the same highest points.
             inside = slice(0, 35) if part is west else slice(columns - 35, columns)
-            np.testing.assert_allclose(one.values[:, inside], there[:, inside], atol=1e-5)
+            np.testing.assert_allclose(one.values[:, inside], overlap[:, inside], atol=1e-5)
 
 
 def test_bad_clouds_are_refused(rng):
