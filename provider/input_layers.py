@@ -36,7 +36,9 @@ _TYPES = {
     "LineString": Qgis.GeometryType.Line,
     "Point": Qgis.GeometryType.Point,
 }
+# Features read between two reports of progress.
 _BETWEEN_CHECKS = 1000
+# Codes of geometries in WKB; ISO adds 1000 for heights, the older extended form sets a bit.
 _WKB_POINT, _WKB_LINE, _WKB_POLYGON = 1, 2, 3
 _Z_OF_OLD_WKB = 0x80000000
 
@@ -125,11 +127,11 @@ def refuse_elsewhere(
     boxes = [_plan_box(cloud) for cloud in clouds]
     for input_layer, layer in layers.items():
         extent = layer.sourceExtent()
-        here = [_brought_to(input_layer, layer, box, crs, context) for box, crs in boxes]
-        if extent.isNull() or any(box is None or extent.intersects(box) for box in here):
+        cloud_boxes = [_brought_to(input_layer, layer, box, crs, context) for box, crs in boxes]
+        if extent.isNull() or any(box is None or extent.intersects(box) for box in cloud_boxes):
             continue
         around = QgsRectangle()
-        for box in here:
+        for box in cloud_boxes:
             around.combineExtentWith(box)
         raise ValueError(
             f"{input_layer.title} and the point cloud{'s' * (len(clouds) > 1)} don't overlap: {_range(extent)} against "
@@ -213,21 +215,21 @@ def read_input_layer(
 def _transform(
     input_layer: InputLayer,
     layer: QgsProcessingFeatureSource,
-    there: QgsCoordinateReferenceSystem,
+    crs: QgsCoordinateReferenceSystem,
     context: QgsProcessingContext,
     monitor: Monitor,
 ) -> QgsCoordinateTransform:
     """Return the transform of a layer to the CRS of the cloud; none is needed where one of the two names no CRS."""
     own = crs_of_layer(layer)
-    if own.isValid() and there.isValid():
-        return QgsCoordinateTransform(own, there, context.transformContext())
+    if own.isValid() and crs.isValid():
+        return QgsCoordinateTransform(own, crs, context.transformContext())
     if own.isValid():
         refuse_degrees(input_layer.title, own)
         monitor.warn(
             f"{input_layer.title} is in {own.userFriendlyIdentifier()}; everything without a CRS is taken to be in it."
         )
-    elif there.isValid():
-        monitor.warn(f"{input_layer.title} names no CRS; it is taken to be in {there.userFriendlyIdentifier()}.")
+    elif crs.isValid():
+        monitor.warn(f"{input_layer.title} names no CRS; it is taken to be in {crs.userFriendlyIdentifier()}.")
     return QgsCoordinateTransform()
 
 

@@ -56,7 +56,7 @@ def fill_with_classes(menu: QMenu, field: QLineEdit) -> None:
 
 
 def chosen_classes(text: str) -> set[int]:
-    """Return the classes that a text names; none of one that can't be read."""
+    """Return the numbers of the classes that a text names; an empty set where it can't be read."""
     try:
         return set(parse_classes(text).tolist())
     except ValueError:

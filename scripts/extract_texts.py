@@ -39,7 +39,7 @@ _TABLES = ("_BY_ATTRIBUTE", "_BY_DIMENSION", "_NUMBERS")
 
 def texts() -> list[str]:
     """Return all texts, sorted, each once."""
-    found = {text for path in sorted((ROOT / "provider").glob("*.py")) for text in _called(path)}
+    found = {text for path in sorted((ROOT / "provider").glob("*.py")) for text in _of_module(path)}
     for stage in STAGES.values():
         found.update(_of_stage(stage))
     for made in (*PIPELINES.values(), *TILED_PIPELINES.values(), CUT_INTO_TILES):
@@ -48,12 +48,19 @@ def texts() -> list[str]:
         found.update(step_title(step) for step in pipeline.steps)
     for setting in (*SETTINGS.values(), *CUT_SETTINGS.values()):
         found.update((setting.title, setting.help))
+        # The meaning of an empty value is shown in the field as well.
         if "empty = " in setting.title:
             found.add(setting.title.split("empty = ")[1].rstrip(")"))
     found.update(preset.title for preset in PRESETS.values())
     found.update(captions().values())
+
+    def collected(line: str) -> str:
+        found.add(line)
+        return line
+
+    # Helps are translated line by line.
     for text in _helps():
-        translated(text, lambda line: found.add(line) or line)
+        translated(text, collected)
     return sorted(found - {""})
 
 
@@ -65,7 +72,7 @@ def _helps() -> Iterator[str]:
     yield survey_tool_help(CUT_INTO_TILES)
 
 
-def _called(path: Path) -> Iterator[str]:
+def _of_module(path: Path) -> Iterator[str]:
     """Yield the texts that are given to ``tr`` in a module, titles of options, and values of tables."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if (

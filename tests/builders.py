@@ -1,4 +1,4 @@
-"""What tests build their truth from: places, outlines, roofs, terrains. Meters and degrees throughout.
+"""What tests build their truth from: positions, outlines, roofs, terrains. Meters and degrees throughout.
 
 Each function draws its points from the generator that it is given, so that a test repeats with its seed.
 """

@@ -1,4 +1,4 @@
-"""Simulated towns with birds, dust, multipath and strays in them, and with the thin things that must not go with them.
+"""Simulated towns with noise (birds, dust, multipath, strays) and with thin objects that must not be taken for noise.
 
 What is noise is known point by point. Everything is in meters; how much noise there is and how far it lies off is as
 surveyors report it: birds alone or in flocks, a plume of dust that stops some of the pulses, echoes that took a
@@ -17,7 +17,7 @@ from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 
 
 class NoisyTown(NamedTuple):
-    """``kind`` (n,) is "" for the town itself, a thing that stays, or the kind of noise; ``is_noise`` (n,)."""
+    """Points of a town; ``kind`` (n,) is "" for the town itself, or the kind of thin object or noise."""
 
     xyz: np.ndarray
     classification: np.ndarray
@@ -29,6 +29,8 @@ NOISE_KINDS = ("bird", "flock", "dust", "multipath", "multipath group", "far")
 
 
 class _Maker:
+    """Adds thin objects and noise to a town; numbers ``n`` are points, or objects of several points."""
+
     def __init__(self, xyz: np.ndarray, classification: np.ndarray, density: float, seed: int) -> None:
         self.rng = np.random.default_rng(seed)
         self.density, self.xyz, self.all = density, xyz, xyz
@@ -94,7 +96,7 @@ class _Maker:
         self.add("far", plan, self.ground_at(plan) + away)
 
     def masts(self, n: int) -> None:
-        """Put up thin masts of 8 to 30 m, with a point on every meter or two."""
+        """Put up thin masts of 8 to 30 m, with a point every 0.2 m (dense clouds) to 1.3 m (sparse ones) on average."""
         for plan in self.anywhere(n):
             up = np.cumsum(self.rng.uniform(0.3, 1.0, 100) * np.clip(2.5 / np.sqrt(self.density), 0.3, 2.0))
             up = up[up < self.rng.uniform(8, 30)]
@@ -108,7 +110,7 @@ class _Maker:
             self.add("lamp", head, self.ground_at(plan[None]) + self.rng.uniform(6, 12) + np.zeros(size))
 
     def power_line(self) -> None:
-        """Hang three conductors from side to side, 20 to 30 m over the ground, one point per 0.2 to 1.5 m."""
+        """Hang three conductors across the town, 20 to 30 m over their higher end, with a point every 0.2 to 1.5 m."""
         start, end = self.low, np.array([self.high[0], self.high[1] - 0.3 * (self.high[1] - self.low[1])])
         length = float(np.linalg.norm(end - start))
         base = float(self.ground_at(np.stack([start, end])).max())
@@ -131,7 +133,10 @@ class _Maker:
 
 
 def noisy_town(density: float = 8.0, size: float = 0.0, seed: int = 1, **differs) -> NoisyTown:
-    """Return a town of ``size`` m (by default one of some 60,000 pulses) with noise, points in random order."""
+    """Return a town with noise, points in random order.
+
+    ``size`` is its width (m); 0 takes that of some 60,000 pulses. ``differs`` are other tunables of the town.
+    """
     size = size or float(np.clip(np.sqrt(60_000 / density), 60, 200))
     xyz, classification, *_ = simulate_town(size=size, density=density, noise_points=0.0, seed=seed, **differs)
     maker = _Maker(xyz, classification, density, seed)

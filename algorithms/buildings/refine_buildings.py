@@ -31,7 +31,7 @@ _NEVER = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, *NOISE)
 
 @dataclass(frozen=True)
 class _Rules:
-    """Points that are examined, and what changes; fitted on seven real airborne clouds, whose mean F rises by 0.86."""
+    """Points that are examined, and what changes; fitted on seven real airborne clouds, where F rises by 0.86 %."""
 
     cell_spacings: float = rule(
         4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
@@ -111,8 +111,8 @@ def refine_buildings(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        Points that look like buildings become 6, points of buildings that don't become 1; ground, noise and bridge
-        decks never change.
+        Points that look like buildings become 6, points of buildings that don't become 1; ground, water, bridge decks
+        and noise never change.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1 without gaps; points that become building get the nearest one.
     confidence : ndarray of shape (n,), float32, or None
@@ -120,8 +120,8 @@ def refine_buildings(
     reason : ndarray of shape (n,), uint8, or None
         The same with the reason; None where not given.
     building_probability : ndarray of shape (n,), float32, or None
-        Probability of building, 0 to 1, smooth over neighbors; 0 for ground and points lower than 0.2 m, NaN for
-        noise. None where nothing was learned.
+        Probability of building, 0 to 1, smooth over neighbors; 0 for ground, water, bridge decks and points lower than
+        0.2 m, NaN for noise. None where nothing was learned.
 
     Notes
     -----

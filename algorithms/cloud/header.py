@@ -32,7 +32,7 @@ _WAVEFORMS_INSIDE, _WAVEFORMS_OUTSIDE = 2, 4
 _COMPRESSED = 128
 _LARGEST_OLD_COUNT = 2**32 - 1
 _LARGEST_VLR = 65_535
-# Longer payloads (waveforms) stay in their file until they are copied.
+# Payloads of more bytes (waveforms) stay in their file until they are copied.
 _KEPT_IN_MEMORY = 2**24
 _COPIED_AT_ONCE = 2**24
 # Doubles may be this many steps of the scale apart; some files are written with far too fine a scale.
@@ -235,6 +235,7 @@ class _Reader:
         self.size, self.points_at, self.n_vlrs, kind, self.length, self.old_count = _START_SIZES.unpack_from(
             raw, _SIZES_AT
         )
+        # LASzip marks compressed files in the upper two bits of the point format.
         self.point_format, self.is_compressed = kind & 63, bool(kind & _COMPRESSED)
 
     def header(self) -> Header:

@@ -62,7 +62,7 @@ class Tracing:
 
 def triangulated(xy: np.ndarray) -> Optional[Any]:
     """Return the Delaunay triangulation of points (n, 2), m, about their middle; None where they have no area."""
-    # A millimeter of width, below which there is nothing to triangulate.
+    # With a standard deviation below a millimeter across, the points lie on a line.
     if len(xy) < 3 or np.linalg.eigvalsh(np.cov((xy - xy.mean(axis=0)).T))[0] < 1e-6:
         return None
     return spatial.Delaunay(xy - xy.mean(axis=0))
@@ -139,8 +139,8 @@ def _simple_rings(edges: list, starts: dict) -> list:
         if point in position:
             start = position[point]
             rings.append(walk[start:])
-            for left in walk[start:]:
-                del position[starts[left]]
+            for closed in walk[start:]:
+                del position[starts[closed]]
             del walk[start:]
         position[point] = len(walk)
         walk.append(edge)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Optional
 
 import numpy as np
 
@@ -85,14 +85,14 @@ def _mast(plan: np.ndarray, height: np.ndarray, top: float, reach: float) -> np.
     out = np.hypot(*(plan - axis).T)
     in_trunk = (height >= _RULES.trunk[0] * top) & (height <= _RULES.trunk[1] * top) & (out <= 2 * radius)
     part = (height[in_trunk] / _RULES.part).astype(np.int64)
-    more = np.bincount(part, np.where(out[in_trunk] <= radius, 1, -1))
+    inner_minus_outer = np.bincount(part, np.where(out[in_trunk] <= radius, 1, -1))
     # A crown beside a mast surrounds some parts of its trunk, that of a tree most of them.
-    if (more < 0).sum() > _RULES.filled * (np.bincount(part) > 0).sum():
+    if (inner_minus_outer < 0).sum() > _RULES.filled * (np.bincount(part) > 0).sum():
         return nothing
     return inside & ((out <= radius) | ((height > _RULES.trunk[1] * top) & (out <= _RULES.arms * top)))
 
 
-def _axis(plan: np.ndarray, height: np.ndarray, radius: float, top: float) -> Any:
+def _axis(plan: np.ndarray, height: np.ndarray, radius: float, top: float) -> Optional[np.ndarray]:
     """Return the position (2,) around which most parts of the height have points; None where too few have."""
     parts = max(round(top / _RULES.part), 2)
     part = np.clip(height / top * parts, 0, parts - 1).astype(np.int64)

@@ -12,11 +12,11 @@ from ..packages import spatial
 
 @dataclass(frozen=True)
 class Histogram:
-    """Occupied bins of all cells, by cell, then by level: number of the cell, level, points."""
+    """Occupied bins (k,) of the cells, sorted by cell, then by level."""
 
-    cell: np.ndarray
-    level: np.ndarray
-    count: np.ndarray
+    cell: np.ndarray  #: (k,), int64: number of the cell in its grid
+    level: np.ndarray  #: (k,), int64: number of the bin of height, from 0
+    count: np.ndarray  #: (k,), int64: points in the bin
 
 
 def pooled_histogram(grid: Grid, cell: np.ndarray, level: np.ndarray) -> Histogram:

@@ -15,9 +15,11 @@ from .plane_polygons import outline_of_cells
 # A piece of which this share lies in the largest one adds nothing to it.
 _WITHIN = 0.95
 
-# Size of the cells (m) of which the outline of several pieces of a plane is drawn, and their largest number, for which
-# the cells of larger planes are enlarged.
-_CELL, _MOST_CELLS = 0.1, 2_000_000
+# Size (m) of the cells around which the outline of several pieces of a plane is drawn.
+_CELL = 0.1
+
+# Largest number of these cells: those of larger planes are enlarged.
+_MOST_CELLS = 2_000_000
 
 
 def whole_axis(pieces: LayerFeatures, points: int) -> LayerFeatures:

@@ -14,22 +14,22 @@ from .relief import Relief
 from .scene import Building, Scene
 from .solids import Rect, Solid, flat, gable, hip, inclined, lean_to
 
-# Eave over the floor of one and two storeys.
+# Heights of eaves over the floor (m), of one storey and of two.
 _EAVES = (3.0, 5.7)
 
-# A roof never comes closer to the ground than this, on the uphill side.
+# Least height of an eave over the ground (m), on the uphill side.
 _LEAST_EAVE = 1.5
 
 
 class Site:
-    """Position of one building: it turns heights over the floor into elevations."""
+    """Elevations (m) of the floor and of the underground bottom of one building, and the id of its parts."""
 
     def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
         self.object_id = scene.new_id()
         self.floor, self.bottom = _levels(scene.relief, rect, eave)
 
     def solid(self, rect: Rect, tops: np.ndarray) -> Solid:
-        """Return a part of the building; ``tops`` are elevations."""
+        """Return a part of the building under the planes ``tops``, whose heights are elevations (m)."""
         return Solid(rect, tops, self.bottom, PointClass.BUILDING, self.object_id)
 
 
@@ -41,7 +41,7 @@ def _levels(relief: Relief, rect: Rect, eave: float) -> tuple[float, float]:
 
 
 def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
-    """Put a house, or a short row, on a plot; every second plot gets a shed in the garden."""
+    """Put a house, or a short row, on a plot; half of the plots get a shed in the garden."""
     build = _KINDS[int(rng.choice(len(_KINDS), p=_SHARES))]
     before = len(scene.buildings)
     build(scene, plot, rng)
@@ -62,6 +62,7 @@ def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     site = Site(scene, rect, eave)
     eave += site.floor
     solids = [site.solid(rect, gable(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
+    # Under roofs steeper than 35°, attics have dormers.
     if pitch > 0.7:
         positions = rng.choice([-0.25, 0.0, 0.25], int(rng.integers(0, 3)), replace=False) * rect.length
         solids += [_dormer(site, rect, eave, pitch, position, side) for position in positions for side in (-1, 1)]

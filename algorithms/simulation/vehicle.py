@@ -12,12 +12,18 @@ from .beams import Beams
 from .drone import LineScan, Surroundings, bearing, first_met, in_time_order, recorded
 from .scene import Scene
 
-# Angles (°) of the upright planes in which scanners turn, ahead of and behind the perpendicular of the drive, as on
-# most mapping vehicles: so one scanner sees each side of a recess. By scanner number, the source id of its points.
+# Angle (°) from the perpendicular of the drive to the upright plane in which each scanner turns, positive ahead, by
+# scanner number, the source id of its points. As on most mapping vehicles, each scanner sees one side of a recess.
 PLANES = {1: 45.0, 2: -45.0}
 
-# Most pulses worked on at once, and longest distance (m) that the vehicle drives during these.
-_BLOCK, _BLOCK_WAY = 50_000, 1.0
+# Most pulses worked on at once.
+_BLOCK = 50_000
+
+# Longest distance (m) that the vehicle drives during these.
+_BLOCK_WAY = 1.0
+
+# Distinguishes the random numbers of the drive from those of other parts of the simulation with the same seed.
+_STREAM = 5
 
 
 @dataclass(frozen=True)
@@ -52,7 +58,7 @@ def drive_along(scene: Scene, drive: Drive, scan: LineScan, monitor: Monitor) ->
     world, parts = Surroundings(scene, scan.max_range), []
     blocks = [(number, time) for number in PLANES for time in _blocks(drive, scan)]
     for i, (number, time) in enumerate(blocks):
-        rng = np.random.default_rng([scan.seed, 5, i])
+        rng = np.random.default_rng([scan.seed, _STREAM, i])
         beams, left = _pulses(drive, PLANES[number], time, scan.line_rate)
         echoes = first_met(world, beams, rng)
         part = recorded(echoes, left, number, rng)
@@ -85,7 +91,7 @@ def _blocks(drive: Drive, scan: LineScan) -> Iterator[np.ndarray]:
 
 
 def _pulses(drive: Drive, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-    """Return the beams of pulses, and directions to the left of the vehicle (n, 3)."""
+    """Return the beams of pulses at times (n,) (s) in a plane turned by ``turn`` (°), and the vehicle's left (n, 3)."""
     cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
     left = np.array([-drive.way[1], drive.way[0], 0.0]) / np.hypot(*drive.way[:2])
     ahead = np.array([left[1], -left[0], 0.0])

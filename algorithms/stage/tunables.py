@@ -86,7 +86,7 @@ class Tunable:
     def check(self, value: Any, called: str = "") -> Any:
         """Return ``value`` in the declared type, or raise ValueError in one sentence.
 
-        It names the tunable as it is ``called`` where the value was given, by its own name unless given.
+        The sentence names the tunable ``called``, as the user knows it, or by its own name if that is empty.
         """
         if value is None and self.is_automatic:
             return None

@@ -113,6 +113,7 @@ def test_a_full_disk(provider, context, log, town_file, small_disk, kind):
     name, values = given(kind, town_file, small_disk)
     output = small_disk / OUTPUTS[kind][2]
     output.write_text("older")
+    # With the older output, seven pages of 4 kB are free; "rest" leaves none to single files, and six to layers.
     (small_disk / "full").write_bytes(bytes(300 * 1024 - 8 * 4096))
     (small_disk / "rest").write_bytes(bytes(7 * 4096 if kind in ("LAZ", "COPC", "LAS", "raster", "page") else 4096))
     before = contents(small_disk)

@@ -44,8 +44,13 @@ def laz(request, make_las, tmp_path):
     return path.read_bytes(), tmp_path / path.name.replace("sound", "hostile")
 
 
+# Positions patched below. LAS header: 96 offset to points, 104 point format, 105 length of a record, 179 to 219 bounds,
+# 227 waveforms, 247 number of points. LASzip record: 0 compressor, 12 points of a chunk, 32 number of items, then the
+# type, size and version of each item.
+
+
 def record_at(raw):
-    """Where the payload of the LASzip record starts."""
+    """Return where the payload of the LASzip record starts: its user id is at byte 2 of a head of 54 bytes."""
     return raw.index(b"laszip encoded") - 2 + 54
 
 
@@ -116,7 +121,7 @@ def test_a_chunk_table_outside_of_the_points(laz):
 
 
 def with_table(raw, table, filled=0):
-    """Return the file with another chunk table, points and bytes of each chunk, after some bytes that are 0."""
+    """Return the file with a chunk table of (points, bytes) per chunk, moved back by ``filled`` bytes of 0."""
     lazrs = pytest.importorskip("lazrs")
     table_at = struct.unpack_from("<q", raw, points_at(raw))[0] + filled
     size = struct.unpack_from("<H", raw, record_at(raw) - 34)[0]
@@ -170,7 +175,7 @@ def test_long_records_of_many_points(make_las, tmp_path):
 
 
 def test_damage_in_the_chunk_table_and_the_heads_of_chunks(laz):
-    """Of 60 files with two changed bytes in the table one ended the process, and ten took over 1 GB."""
+    """Of 60 files with two changed bytes in the table one ended the process, and ten took refused 1 GB."""
     raw, path = laz
     rng = np.random.default_rng(1)
     (table_at,) = struct.unpack_from("<q", raw, points_at(raw))
@@ -212,7 +217,7 @@ def test_waveforms_farther_off_than_any_file_is_long(make_las):
 
 
 def test_points_of_other_kinds_in_the_laszip_record(laz):
-    """Of points that were taken for colors lazrs read the sizes of layers at a wrong place, and made room for 3 GB."""
+    """Lazrs took points for colors, read the sizes of layers at a wrong position, and made room for 3 GB."""
     raw, path = laz
     first = record_at(raw) + 34
     hostile = [patched(raw, first, "<H", kind) for kind in (0, 7, 11, 12, 13, 14, 300)]
@@ -313,16 +318,17 @@ def test_a_name_with_line_breaks_stays_one_sentence(tmp_path):
 
 def test_json_takes_a_bounded_memory(tmp_path):
     """100 MB of JSON took 2.4 GB."""
-    just, over = [], []
+    allowed, refused = [], []
     for value in ("[]", '"\u00e9b"', '"\U0001f332"', '{"":[]}'):
         size = len(value.encode()) + 1
+        # As the reader estimates it: bytes per byte of text, and 90 for each value.
         cost = size * (2 if value.isascii() else 5) + 90 * sum(map(f"{value},".count, "[{,:"))
         number = 450_000_000 // cost
-        just.append(f"[{','.join([value] * (number - 10))}]".encode())
-        over.append(f"[{','.join([value] * (number + 10))}]".encode())
-    said = readings(tmp_path / "a.vpc", *just, *over)
-    assert all("is not a virtual point cloud" in sentence for sentence in said[: len(just)])
-    assert all("larger than a virtual point cloud of a thousand" in sentence for sentence in said[len(just) :])
+        allowed.append(f"[{','.join([value] * (number - 10))}]".encode())
+        refused.append(f"[{','.join([value] * (number + 10))}]".encode())
+    said = readings(tmp_path / "a.vpc", *allowed, *refused)
+    assert all("is not a virtual point cloud" in sentence for sentence in said[: len(allowed)])
+    assert all("larger than a virtual point cloud of a thousand" in sentence for sentence in said[len(allowed) :])
 
 
 def test_json_far_too_large_is_not_read(tmp_path):

@@ -20,6 +20,12 @@ def merged(*clouds: Cloud, monitor: Monitor | None = None, **tunables) -> Cloud:
     return run_stage(merge_clouds.stage, clouds, monitor=monitor, **tunables).cloud
 
 
+def withhold_nothing(cloud: Cloud) -> None:
+    """Clear the withheld flag of all points, which stages leave out: bit 7 in old point formats, bit 2 in new ones."""
+    byte, others = ("raw_classification", 127) if cloud.header.layout.is_old else ("classification_flags", 251)
+    cloud.points[byte] &= others
+
+
 def on_map(*clouds: Cloud) -> np.ndarray:
     return np.concatenate([cloud.to_map(cloud.get("xyz")) for cloud in clouds])
 
@@ -37,9 +43,7 @@ def test_every_field_of_every_point_format_is_kept(make_las, first, second):
     """Random bytes: all fields of both, bits too, are found in the union."""
     clouds = [read_cloud(make_las(name=f"{i}.las", point_format=kind, n=40)) for i, kind in enumerate((first, second))]
     for cloud in clouds:
-        # Nothing withheld, or those points would not be there.
-        byte, bit = ("raw_classification", 127) if cloud.header.layout.is_old else ("classification_flags", 251)
-        cloud.points[byte] &= bit
+        withhold_nothing(cloud)
     union = merged(*clouds)
     layout = union.header.layout
     np.testing.assert_array_equal(on_map(union), on_map(*clouds))
@@ -73,8 +77,7 @@ def test_laspy_reads_the_merged_file(laspy, make_las, tmp_path, kinds):
     ]
     clouds = [read_cloud(path) for path in paths]
     for cloud in clouds:
-        byte, bit = ("raw_classification", 127) if cloud.header.layout.is_old else ("classification_flags", 251)
-        cloud.points[byte] &= bit
+        withhold_nothing(cloud)
     write_cloud(merged(*clouds), tmp_path / "union.laz")
     union, parts = laspy.read(tmp_path / "union.laz"), [laspy.read(path) for path in paths]
     assert union.header.scales.tolist() == [0.01, 0.01, 0.0001]
@@ -92,8 +95,8 @@ def test_laspy_reads_the_merged_file(laspy, make_las, tmp_path, kinds):
 
 def test_classes_over_31_find_room(make_las):
     clouds = [read_cloud(make_las(name=f"{i}.las", point_format=1)) for i in range(2)]
-    clouds[1].points["raw_classification"] &= 127
-    clouds[0].points["raw_classification"] &= 127
+    for cloud in clouds:
+        withhold_nothing(cloud)
     clouds[1].set("classification", np.full(100, 64))
     union = merge_records(clouds, None)
     assert union.header.layout.point_format == 6
@@ -109,7 +112,7 @@ def test_the_finest_scale_is_kept_and_offsets_may_differ(make_las):
         read_cloud(make_las(name="b.las", scale=(0.001, 0.1, 0.0001), offset=(600_050.0005, 5_000_000.0, 10.0))),
     ]
     for cloud in clouds:
-        cloud.points["classification_flags"] &= 251
+        withhold_nothing(cloud)
     union = merged(*clouds)
     assert union.header.scale.tolist() == [0.001, 0.01, 0.0001]
     apart = np.abs(on_map(union) - on_map(*clouds))
@@ -121,7 +124,7 @@ def test_a_transform_turns_about_the_zero_of_the_map(make_las):
     """Whatever the origin of the cloud in memory is."""
     clouds = [read_cloud(make_las(name=f"{i}.las", offset=(6e5, 5e6, 0.0))) for i in range(2)]
     for cloud in clouds:
-        cloud.points["classification_flags"] &= 251
+        withhold_nothing(cloud)
     before = on_map(clouds[1])
     union = merged(*clouds, transforms="0 0 90 5600000 4400000 0")
     wanted = np.column_stack([5.6e6 - before[:, 1], 4.4e6 + before[:, 0], before[:, 2]])
@@ -186,7 +189,7 @@ def test_what_stages_have_set_is_kept_and_known_dimensions_have_one_name(make_la
 def test_a_merged_cloud_can_be_merged_again(make_las):
     clouds = [read_cloud(make_las(name=f"{i}.las", n=10)) for i in range(3)]
     for cloud in clouds:
-        cloud.points["classification_flags"] &= 251
+        withhold_nothing(cloud)
     twice = merged(merged(clouds[0], clouds[1]), clouds[2])
     assert twice.get("point_source_id").tolist() == [1] * 20 + [2] * 10
     wanted = [*[1] * 10, *[2] * 10, *clouds[2].points["point_source_id"]]

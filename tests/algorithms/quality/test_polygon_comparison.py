@@ -64,6 +64,7 @@ def test_an_edge_across_the_corner_is_not_along_the_directions():
 
 @pytest.mark.parametrize(("turn", "counts"), [(5.4, True), (6.6, False)])
 def test_edges_within_three_degrees_of_the_directions_count(turn, counts):
+    """Two edges are turned against the other two; the directions lie halfway between, half the turn from both."""
     rise = 10 * np.tan(np.deg2rad(turn))
     tilted = 20 / np.cos(np.deg2rad(turn))
     expected = 1.0 if counts else tilted / (20 + tilted)

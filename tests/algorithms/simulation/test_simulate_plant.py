@@ -19,7 +19,7 @@ def test_points_lie_on_their_pipes_and_spheres(plant):
     xyz, _, segment_id, shape, axes, centers = plant
     assert [kind for kind in axes.columns["kind"]].count("pipe") == 6
     for number, line, radius, points in zip(
-        *(axes.columns[n] for n in ("id",)), axes.geometries, axes.columns["radius"], axes.columns["points"]
+        axes.columns["id"], axes.geometries, axes.columns["radius"], axes.columns["points"]
     ):
         own = xyz[segment_id == number]
         assert len(own) == points
@@ -32,9 +32,8 @@ def test_points_lie_on_their_pipes_and_spheres(plant):
     )
 
 
-def test_what_is_hidden_has_no_points(plant):
-    """Tanks are seen from outside, the floor is not seen under them, and pipes not all around."""
-    xyz, classification, segment_id, _, axes, _ = plant
+def test_the_floor_under_a_tank_has_no_points(plant):
+    xyz, classification, _, _, axes, _ = plant
     tank = axes.columns["kind"].index("tank")
     middle, radius = axes.geometries[tank][0], axes.columns["radius"][tank]
     floor = xyz[classification == 2]
@@ -51,6 +50,7 @@ def test_density_and_seed_have_the_described_effect(monkeypatch):
     assert len(other[0]) != len(plant[0])
     noisy = simulate_plant(**small, noise=0.01)
     np.testing.assert_array_equal(noisy[2], plant[2])
+    # The distance is the absolute value of a normal error along the beam: its deviation is smaller by this factor.
     assert np.linalg.norm(noisy[0] - plant[0], axis=1).std() == pytest.approx(0.01 * np.sqrt(1 - 2 / np.pi), rel=0.05)
     bare = simulate_plant(**small, clutter=False)
     assert (bare[2] == 0).sum() == 0
@@ -60,7 +60,7 @@ def test_density_and_seed_have_the_described_effect(monkeypatch):
 
 
 def test_an_elbow_joins_its_pipes(rng):
-    """Every point of a quarter of a torus lies so far from its bent axis as it says."""
+    """Every point of a quarter of a torus lies at the radius of the pipe from its bent axis."""
     elbow = plant_parts.elbow(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, 1.0]), 0.6, 0.2)
     places, normals = elbow.sample(rng, 2000)
     ring = np.hypot(places[:, 0], places[:, 2] - 0.6)
