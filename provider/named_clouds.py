@@ -14,7 +14,7 @@ from ..algorithms.cloud.units import NO_CRS
 from ..algorithms.stage import Monitor, ProgressOnly
 from .crs import FULL, crs_units
 
-# What simulated clouds lie in, unless the user says otherwise: UTM, in whose zone 31 small coordinates are valid, too.
+# CRS of simulated clouds unless the user gives one: UTM zone 31, in which coordinates near (0, 0) are valid, too.
 SIMULATED_CRS = "EPSG:32631"
 
 

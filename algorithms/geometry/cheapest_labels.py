@@ -9,9 +9,14 @@ import numpy as np
 from ..packages import csgraph, sparse
 from .groups import run_starts
 
-# Costs become whole numbers of 32 bits for the flow, to these precisions of cuts and of labels. Those of a cell's edges
-# and its own are added there: none may be more than a fifth of what fits.
-_STEPS, _STEPS_OF_LABELS, _LARGEST = 1000, 10_000, 3e8
+# The flow takes costs as whole numbers of 32 bits: steps per unit of cost, of cuts.
+_STEPS = 1000
+
+# The same, of labels.
+_STEPS_OF_LABELS = 10_000
+
+# Largest cost in steps. It is a seventh of the largest number of 32 bits, as the costs of edges are added in these.
+_LARGEST = 3e8
 
 # Sweeps over all labels; costs hardly change after the second one.
 _SWEEPS = 4
@@ -28,7 +33,7 @@ def cheapest_labels(
     Parameters
     ----------
     cost : ndarray of shape (n, m)
-        Of each label in each cell, >= 0.
+        Cost of each label in each cell, >= 0.
     edges : ndarray of shape (k, 2)
         Cells that touch.
     border : callable
@@ -45,31 +50,31 @@ def cheapest_labels(
     """
     label = start.copy()
     every, cells = np.arange(len(edges)), np.arange(len(cost))
-    now = border(label[edges[:, 0]], label[edges[:, 1]], every)
+    border_cost = border(label[edges[:, 0]], label[edges[:, 1]], every)
     # Labels that were tried since the last change.
     tried = 0
     for alpha in list(range(cost.shape[1])) * _SWEEPS:
         if tried == cost.shape[1]:
             break
         tried += 1
-        more = cost[:, alpha] - cost[cells, label]
-        # Where a label costs more than all borders of a cell could save, the cell never takes it. Cells that border on
-        # each other take it only if one of them costs less without its present borders.
-        wanted = more <= most
-        own = np.bincount(edges.ravel(), np.repeat(now, 2), len(cost))
-        if not (wanted & (more < own)).any():
+        extra = cost[:, alpha] - cost[cells, label]
+        # A cell never takes a label that costs more than all its borders could save. Cells that border on each other
+        # take it only if one of them costs less without its present borders.
+        wanted = extra <= most
+        own = np.bincount(edges.ravel(), np.repeat(border_cost, 2), len(cost))
+        if not (wanted & (extra < own)).any():
             continue
         rows = np.flatnonzero(wanted[edges].any(axis=1))
-        takes = _takers(more, edges, rows, label, alpha, wanted, border)
+        takes = _takers(extra, edges, rows, label, alpha, wanted, border)
         changed = np.where(takes, alpha, label)
         after = border(changed[edges[rows, 0]], changed[edges[rows, 1]], rows)
-        if more[takes].sum() + after.sum() - now[rows].sum() < -1e-9:
-            label, now[rows], tried = changed, after, 1
+        if extra[takes].sum() + after.sum() - border_cost[rows].sum() < -1e-9:
+            label, border_cost[rows], tried = changed, after, 1
     return label
 
 
 def _takers(
-    more: np.ndarray,
+    extra: np.ndarray,
     edges: np.ndarray,
     rows: np.ndarray,
     label: np.ndarray,
@@ -79,7 +84,7 @@ def _takers(
 ) -> np.ndarray:
     """Return those cells (n,), bool, of the ones ``wanted``, that take ``alpha`` where that is cheapest, together.
 
-    They cost ``more`` (n,) by themselves and have the edges ``rows``.
+    ``extra`` (n,) is what ``alpha`` costs beyond the present label in each cell; ``rows`` are the edges of those cells.
     """
     p, q = edges[rows].T
     other = np.full(len(rows), alpha)
@@ -88,15 +93,17 @@ def _takers(
     # nothing where both change. That is a sum of terms of one cell each, and one of the first keeping while the second
     # changes.
     inner, from_p, from_q = wanted[p] & wanted[q], wanted[p] & ~wanted[q], wanted[q] & ~wanted[p]
-    take = more.copy()
+    take = extra.copy()
     np.add.at(take, p[inner | from_p], (first - both)[inner | from_p])
     np.add.at(take, q[inner], -first[inner])
     np.add.at(take, q[from_q], (second - both)[from_q])
     chosen, number = np.flatnonzero(wanted), np.cumsum(wanted) - 1
-    take, there = take[chosen], np.maximum(first + second - both, 0.0)[inner]
-    ends, back = number[[p[inner], q[inner]]], np.zeros_like(there)
-    keeps = cheapest_cut(ends[0], ends[1], there, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, _STEPS_OF_LABELS)
-    takes = np.zeros(len(more), bool)
+    take, edge_cost = take[chosen], np.maximum(first + second - both, 0.0)[inner]
+    ends, back = number[[p[inner], q[inner]]], np.zeros_like(edge_cost)
+    keeps = cheapest_cut(
+        ends[0], ends[1], edge_cost, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, _STEPS_OF_LABELS
+    )
+    takes = np.zeros(len(extra), bool)
     takes[chosen[~keeps]] = True
     return takes
 
@@ -117,11 +124,11 @@ def cheapest_cut(
     left, right : ndarray of shape (e,)
         The two cells of each edge.
     cost : ndarray of shape (e,)
-        Of an edge with one of its cells inside and the other outside, >= 0.
+        Cost of an edge with one of its cells inside and the other outside, >= 0.
     if_inside, if_outside : ndarray of shape (n,)
-        Of a cell that is inside, and of one that is not, >= 0.
+        Cost of a cell that is inside, and of one that is not, >= 0.
     back : ndarray of shape (e,), optional
-        Of an edge whose left cell is outside and its right one inside, if that is not ``cost``.
+        Cost of an edge whose left cell is outside and its right one inside; ``cost`` by default.
     steps : int
         Steps to which costs are rounded, per unit.
     """

@@ -10,7 +10,8 @@ import numpy as np
 # A cut that passes a vertex this closely (m) goes through it.
 SNAP = 0.05
 
-# A piece of a line that reaches less far into a cell than this many times the snapping distance does not cut it.
+# Least reach of a piece of a line into a cell that it cuts, in snapping distances, or half of the way across the cell
+# if that is less.
 _LEAST_REACH = 2.5
 
 OUTSIDE = -1
@@ -36,6 +37,8 @@ class Subdivision:
         The points in each cell.
     cell_of : dict
         The cell to the left of each edge, which is a pair of vertices (start, end).
+    is_closed : list of bool
+        Cells that no further line cuts.
     """
 
     def __init__(self, low: np.ndarray, high: np.ndarray, xy: np.ndarray) -> None:
@@ -121,7 +124,7 @@ class Subdivision:
         self._split(cell, one, other, line)
 
     def _vertex_on(self, u: int, v: int, from_u: float, from_v: float) -> int:
-        """Put a vertex on an edge where the distances of its ends to a line, of opposite signs, become zero."""
+        """Put a vertex where an edge crosses a line, at signed distances ``from_u`` and ``from_v`` (m) of its ends."""
         (xa, ya), (xb, yb) = self.vertices[u], self.vertices[v]
         share = from_u / (from_u - from_v)
         return self.insert(u, v, (xa + share * (xb - xa), ya + share * (yb - ya)))
@@ -146,7 +149,7 @@ class Subdivision:
         first = loop[i : j + 1] if i < j else loop[i:] + loop[: j + 1]
         second = loop[j : i + 1] if j < i else loop[j:] + loop[: i + 1]
         x0, y0, ux, uy = line
-        # The first part runs from one to other; it lies to the left where its middle does.
+        # The first part lies to the left of the line if its vertex farthest off the line does.
         beyond = [ux * (self.vertices[v][1] - y0) - uy * (self.vertices[v][0] - x0) for v in first]
         if max(beyond) < -min(beyond):
             first, second = second, first

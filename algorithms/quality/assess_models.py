@@ -20,12 +20,16 @@ from ..report.page import Row, build_page, percent
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
 
-# With a smaller share of its points on it a face is invented, and with a smaller share on the model a plane is missing.
+# A face with a smaller share of its points on it is invented; a plane with a smaller share on the model is missing.
 _ON_FACE = 0.5
 
 # Faces with less than this area in plan (m²) are upright: walls.
 _UPRIGHT = 1e-3
 
+# Slope (°) of the steepest plane of a roof, the default of 'Reconstruct roofs'.
+_MAX_SLOPE = 75.0
+
+# Percentile of the fields and measures named p95.
 _PERCENTILE = 95.0
 
 MATCHED, MISSING, INVENTED, UNSEEN = "matched", "missing", "invented", "unseen"
@@ -103,7 +107,7 @@ def assess_models(
         float,
         Param(
             "Minimum plane area",
-            "Planes of the points that are smaller, seen from above, are not missed.",
+            "Smaller planes of the points, seen from above, are not reported as missing.",
             unit="m²",
             low=0.1,
             high=1000,
@@ -145,7 +149,7 @@ def assess_models(
     building_distances : LayerFeatures
         A point per building, with its distances.
     report : Report
-        Distances and counts of all, and a page. What there is nothing to compute from is NaN.
+        Distances and counts of all, and a page. Figures without points are NaN.
 
     Raises
     ------
@@ -154,7 +158,8 @@ def assess_models(
 
     Notes
     -----
-    Distances are across the planes of the faces; above 5 m they count as 5 m. Points more than a meter below both
+    Distances are differences in height; those above 5 m count as 5 m. A point lies on a face within the tolerance
+    across its plane. Points more than a meter below both
     the model and others of class 6 beside them are of walls and are not counted. A face without points is unseen,
     neither matched nor invented. The volume is that of prisms between the faces and the lowest point of class 6 or 2 in
     the building's box.
@@ -198,13 +203,13 @@ def assess_models(
 
 @dataclass
 class _Face:
-    """A face of a roof as a plane through its corners: rings, name, heights (m) of points above it, which lie on it."""
+    """A face of a roof as a plane through its corners."""
 
-    rings: list
-    building: str
-    plane: np.ndarray
-    off: np.ndarray
-    is_on: np.ndarray
+    rings: list  #: (m, 3) each: the exterior, then the holes, m
+    building: str  #: Name of the building, "" for none
+    plane: np.ndarray  #: (3,): a, b, c of z = a x + b y + c
+    off: np.ndarray  #: (k,): heights of the roof points above it, m
+    is_on: np.ndarray  #: (k,), bool: which of these lie on it
 
     def height(self, xy: np.ndarray) -> np.ndarray:
         """Return the height (n,) of the plane (m)."""
@@ -311,12 +316,12 @@ def _compared(
         roof = []
         for face in of_one:
             over = points.over(face.rings)
-            here = points.xyz[over]
-            above = here[:, 2] - face.height(here[:, :2])
+            xyz = points.xyz[over]
+            above = xyz[:, 2] - face.height(xyz[:, :2])
             is_roof = are_on_roof(above, points.is_low[over])
             face.off = distances(above[is_roof])
             face.is_on = np.abs(face.off) * face.cosine <= tolerance
-            roof.append(here[is_roof])
+            roof.append(xyz[is_roof])
         building = _Building(name, of_one, [], _volume(of_one, points))
         building.missing = _missing(np.concatenate(roof), building.is_on, tolerance, min_points)
         buildings.append(building)
@@ -328,7 +333,7 @@ def _missing(xyz: np.ndarray, on_model: np.ndarray, tolerance: float, min_points
     """Return the points of each plane of a building of which most lie off the model."""
     if len(xyz) < min_points:
         return []
-    planes = find_roof_planes(xyz - xyz.mean(axis=0), tolerance, 75.0, min_points)
+    planes = find_roof_planes(xyz - xyz.mean(axis=0), tolerance, _MAX_SLOPE, min_points)
     found = [planes.label == plane for plane in range(len(planes))]
     return [xyz[rows] for rows in found if on_model[rows].mean() < _ON_FACE]
 

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import html
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import fixed_grid_over
 from .page import picture, position
 
-# Pixels of a view, and meters around a building that it shows.
-_WIDTH, _HEIGHT, _AROUND = 340, 240, 4.0
+# Largest width and height of a view, pixels.
+_WIDTH, _HEIGHT = 340, 240
 
-# Colors of a view: paper, other points, points of buildings.
+# Width of the surroundings of a building in its view, m.
+_AROUND = 4.0
+
+# Colors of a view (red, green, blue): background, other points, points of buildings.
 _COLORS = np.array([[255, 255, 255], [187, 187, 187], [187, 85, 102]])
 
-# Pixels of a dot, from its middle.
+# Pixels of the dot of a point, from its middle: right, up.
 _DOT = ((0, 0), (1, 0), (0, 1), (-1, 0), (0, -1))
 
 # Side of the cells by which the points around a building are found, m.
@@ -69,8 +73,18 @@ def draw_views(views: Views, geometries: list, captions: list[str]) -> str:
     return "\n".join(parts)
 
 
-def _view(plan: np.ndarray, depth: np.ndarray, is_building: np.ndarray, low, high, ring) -> str:
-    """Return points (n, 2) in a box, the nearest drawn last, and a ring (m, 2) over them."""
+def _view(
+    plan: np.ndarray,
+    depth: np.ndarray,
+    is_building: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    ring: Optional[np.ndarray],
+) -> str:
+    """Return the SVG of points (n, 2), those of the greatest ``depth`` (n,) drawn last, and of a ring (m, 2) over them.
+
+    All are in meters within the box from ``low`` to ``high`` (2,).
+    """
     size = float(max((high - low) / (_WIDTH, _HEIGHT)))
     columns, lines = np.maximum(np.ceil((high - low) / size), 1).astype(int)
     image = np.zeros((lines, columns), np.uint8)

@@ -18,9 +18,14 @@ from .town_layout import TownPlan
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
 
-# Points at this height above the ground (m) where there is only ground are of an adjacent object, smeared; plants and
-# cars whose points lie lower than this (m) are ground there.
-_SMEARED, _GROUND = 0.3, 0.1
+# Height above the ground (m) from which points of cells of ground are of an adjacent object, whose edge is smeared.
+_SMEARED = 0.3
+
+# Height above the ground (m) below which points of plants and cars are ground.
+_GROUND = 0.1
+
+# Distinguishes the random numbers of matching from those of other parts of the simulation with the same seed.
+_STREAM = 6
 
 # Height from hollows to hills, m.
 _RELIEF = 2.0
@@ -136,7 +141,7 @@ def simulate_drone_site(
         )
     plan = TownPlan(size, slope, _RELIEF, terrace_height, buildings, trees, forest=0.0, river=False, seed=seed)
     scene = build_site(plan, halls)
-    rng = np.random.default_rng([seed, 6])
+    rng = np.random.default_rng([seed, _STREAM])
     monitor.progress(0.1)
     field = see_from_above(scene, unevenness, rng)
     monitor.progress(0.4)
@@ -144,6 +149,7 @@ def simulate_drone_site(
     monitor.progress(0.8)
     xyz, row, column = sample(field, matched, density, walls, noise, rng)
     row, column = _cells_of_objects(field, xyz, row, column)
+    # From 8 to 16 bits.
     colors = (matched.colors[row, column] * 257).astype(np.uint16)
     classes, objects = _truth(field, xyz, row, column)
     ones = np.ones(len(xyz), np.uint8)

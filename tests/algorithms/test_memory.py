@@ -1,5 +1,6 @@
 """Freed memory goes back to the system."""
 
+import mmap
 import platform
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from lidar_buildings.algorithms import memory
 
 def held():
     """Return the bytes of memory that this process holds."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+    return int(Path("/proc/self/statm").read_text().split()[1]) * mmap.PAGESIZE
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems return it by themselves")

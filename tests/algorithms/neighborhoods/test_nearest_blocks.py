@@ -37,10 +37,10 @@ def covariance(xyz, weight):
 
 
 def check(xyz, shapes, order, weigh, rows):
-    place = dict(zip(order, range(len(order))))
+    position = dict(zip(order, range(len(order))))
     for row in rows:
         weight = weigh(xyz[row])
-        inside, found = weight > 0, place[row]
+        inside, found = weight > 0, position[row]
         off = xyz[inside] - xyz[row]
         expected = covariance(xyz - xyz[row], weight)
         np.testing.assert_allclose(shapes.covariances[found], expected, rtol=0, atol=1e-12 * expected[:3].sum())
@@ -91,9 +91,9 @@ def test_equally_far_points_share_what_is_left(rng, count):
     np.testing.assert_allclose(products, 0, atol=1e-10)
     shuffled = rng.permutation(len(grid))
     again, order_again = nearest(grid[shuffled], count)
-    here, there = np.empty((len(grid), 6)), np.empty((len(grid), 6))
-    here[order], there[shuffled[order_again]] = shapes.covariances, again.covariances
-    np.testing.assert_allclose(there, here, atol=1e-12)
+    ordered, of_shuffled = np.empty((len(grid), 6)), np.empty((len(grid), 6))
+    ordered[order], of_shuffled[shuffled[order_again]] = shapes.covariances, again.covariances
+    np.testing.assert_allclose(of_shuffled, ordered, atol=1e-12)
 
 
 @pytest.mark.parametrize("n_equal", [8, 12])

@@ -44,7 +44,7 @@ def test_planes_edges_bends_balls_and_clutter_are_no_cylinders(rng):
     spacing, noise = 0.03, 0.002
     ball = rng.normal(size=(3000, 3))
     ball = 0.4 * ball / np.linalg.norm(ball, axis=1)[:, None] + rng.normal(0, noise, ball.shape)
-    things = [
+    parts = [
         slab(rng, 2.0, spacing, noise),
         edge(rng, 2.0, spacing, noise) + [4, 0, 0],
         bent(rng, 0.15, 0.45, spacing, noise) + [8, 0, 0],
@@ -52,7 +52,7 @@ def test_planes_edges_bends_balls_and_clutter_are_no_cylinders(rng):
         rng.uniform(-0.4, 0.4, (1500, 3)) + [16, 0, 0],
     ]
     monitor = Monitor()
-    ids, _, axes = detect(np.concatenate(things), max_radius=2.0, monitor=monitor)
+    ids, _, axes = detect(np.concatenate(parts), max_radius=2.0, monitor=monitor)
     assert len(axes) == 0
     assert not ids.any()
     assert monitor.warnings == ["No cylinder was found; no point got a new SegmentID."]
@@ -218,7 +218,7 @@ def test_real_tanks_are_found_in_a_yard_and_nothing_else_is(rng):
     _, _, axes = detect(farm.xyz, min_radius=0.2)
     found = sorted(zip(axes.columns["radius"], [line[:, :2].mean(axis=0) for line in axes.geometries]), reverse=True)
     assert [radius for radius, _ in found] == pytest.approx([13.74, 8.56], abs=0.03)
-    assert np.array([place for _, place in found]) == pytest.approx(farm.tanks[:, :2], abs=0.05)
+    assert np.array([position for _, position in found]) == pytest.approx(farm.tanks[:, :2], abs=0.05)
 
 
 def test_a_kerb_is_no_pipe(rng):
