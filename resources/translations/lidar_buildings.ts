@@ -1088,7 +1088,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum plane area (m²)&lt;/b&gt;: Planes of the points that are smaller, seen from above, are not missed. &lt;i&gt;(at least 0.1 m² and at most 1,000 m²; default 2 m²)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum plane area (m²)&lt;/b&gt;: Smaller planes of the points, seen from above, are not reported as missing. &lt;i&gt;(at least 0.1 m² and at most 1,000 m²; default 2 m²)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4752,7 +4752,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Distances are across the planes of the faces; above 5 m they count as 5 m. Points more than a meter below both the model and others of class 6 beside them are of walls and are not counted. A face without points is unseen, neither matched nor invented. The volume is that of prisms between the faces and the lowest point of class 6 or 2 in the building's box.</source>
+        <source>Distances are differences in height; those above 5 m count as 5 m. A point lies on a face within the tolerance across its plane. Points more than a meter below both the model and others of class 6 beside them are of walls and are not counted. A face without points is unseen, neither matched nor invented. The volume is that of prisms between the faces and the lowest point of class 6 or 2 in the building's box.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6844,10 +6844,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Planes of the points that are smaller, seen from above, are not missed.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Planes of the roofs of a simulated village, each in a color of its own.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7829,6 +7825,10 @@
     </message>
     <message>
         <source>Smaller holes are filled, larger ones are courtyards.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Smaller planes of the points, seen from above, are not reported as missing.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
