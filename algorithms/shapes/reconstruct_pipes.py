@@ -44,8 +44,8 @@ def reconstruct_pipes(
     radius: Annotated[
         float,
         Param(
-            "Radius of others",
-            "Radius of lines and points without an attribute 'radius', such as wires.",
+            "Radius without attribute",
+            "Radius of lines and points that have no attribute 'radius', such as wires.",
             unit="m",
             low=0.001,
             high=100,
