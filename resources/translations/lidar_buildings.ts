@@ -1744,7 +1744,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Radius of others (m)&lt;/b&gt;: Radius of lines and points without an attribute 'radius', such as wires. &lt;i&gt;(at least 0.001 m and at most 100 m; default 0.05 m)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Radius without attribute (m)&lt;/b&gt;: Radius of lines and points that have no attribute 'radius', such as wires. &lt;i&gt;(at least 0.001 m and at most 100 m; default 0.05 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7192,15 +7192,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Radius of lines and points without an attribute 'radius', such as wires.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Radius of others</source>
+        <source>Radius of lines and points that have no attribute 'radius', such as wires.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Radius of the sphere around a point; used by the neighborhood 'radius'.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Radius without attribute</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8232,7 +8232,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The paper's steps 1 to 13 grow one region after another with a sphere; their result is the transitive closure of equations 2 and 3, which does not depend on the order of points and is computed directly. T_Np = Ar_min d is the paper's. Its T_Dxy are twice the spacings that it states (0.3 and 0.7 m); here the spacing is s = 1 / sqrt(d), which is 0.28 and 0.5 m there. For T_Dh it names "internal altimetric accuracy" and takes 0.2 and 0.3 m, about ten times the range noise of the two scanners. Automatic is ten times the measured noise between these two values. 'Thresholds' takes the values of the paper's table 2 themselves.</source>
+        <source>The paper's steps 1 to 13 grow one region after another with a sphere; their result is the transitive closure of equations 2 and 3, which does not depend on the order of points and is computed directly. The least number of points is the paper's: T_Np = Ar_min d, the minimum building area times the density. Its T_Dxy are twice the spacings that it states (0.3 and 0.7 m); here the spacing is s = 1 / sqrt(d), which is 0.28 and 0.5 m there. For T_Dh it names "internal altimetric accuracy" and takes 0.2 and 0.3 m, about ten times the range noise of the two scanners. Automatic is ten times the measured noise between these two values. 'Thresholds' takes the values of the paper's table 2 themselves.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
