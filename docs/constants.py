@@ -76,8 +76,8 @@ def _behind(name: str, seen: set[str]) -> Iterator[ModuleType]:
     waiting = [name]
     while waiting:
         name = waiting.pop(0)
-        room = name[len(_PACKAGE) :].split(".")
-        if name in seen or not name.startswith(_PACKAGE) or len(room) < 2 or room[0] in _OTHER_ROOMS:
+        parts = name[len(_PACKAGE) :].split(".")
+        if name in seen or not name.startswith(_PACKAGE) or len(parts) < 2 or parts[0] in _OTHER_ROOMS:
             continue
         seen.add(name)
         module = importlib.import_module(name)

@@ -45,7 +45,7 @@ _DECIMALS = 3
 class Styler(QgsProcessingLayerPostProcessorInterface):
     """Gives a loaded result the style of one file, and its table the units of the fields and few decimals.
 
-    A layer that ``is_off`` is there, and switched off: the result of a step that another step has taken further.
+    With ``is_off`` the layer is loaded but not visible: it is the result of a step that another step has used.
     ``crs`` (WKT) is for clouds in which QGIS finds none: it reads WKT alone.
     """
 
@@ -64,7 +64,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, if there is one, and say so in the log when it can't be."""
-        # That of a virtual point cloud is the one that catalogs look it up by.
+        # The system that QGIS takes for a virtual point cloud is that of the catalog entry, not of the points.
         if self.crs and (not layer.crs().isValid() or layer.providerType() == "vpc"):
             layer.setCrs(crs_of(self.crs))
         if self.stem is not None:
@@ -245,12 +245,12 @@ def name_after(context: QgsProcessingContext, titles: Collection[str], subject: 
             loaded.groupName = group
 
 
-# What files that were loaded are of, so that runs on them say so, too: those of temporary files have no names.
+# Subject of each loaded file by its path: results of runs on it get that name, as temporary files have no plain ones.
 _SUBJECTS: dict[str, str] = {}
 
 
 def subject_of_file(path: Path) -> str:
-    """Return what a file is of: that of the run that made it, else its name."""
+    """Return the subject of a file: that of the run that made it, else its own name."""
     return _SUBJECTS.get(str(path)) or path.name.split(".")[0]
 
 

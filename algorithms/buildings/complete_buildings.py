@@ -37,7 +37,7 @@ COMPLETION = CompletionRules()
     group="Buildings",
     tags="building,roof,facade,chimney,dormer,attach",
     writes=("classification", "cluster_id", "confidence", "reason"),
-    # Gaps are closed from both sides; usual clouds have the least.
+    # Gaps are closed from both sides. An automatic gap is wider than this only where points are over 2.5 m apart.
     reach=lambda tunables: tunables["gap"] or 10.0,
 )
 def complete_buildings(
@@ -203,14 +203,14 @@ class _Limits:
 
 @dataclass(frozen=True)
 class _Roofs:
-    """All points (n,), with the roofs to start from; noise and bridge decks can be of no building."""
+    """All points (n,), with the roofs to start from."""
 
-    xyz: np.ndarray
-    height: np.ndarray
-    is_roof: np.ndarray
-    is_noise: np.ndarray
-    may_stand: np.ndarray
-    segment_id: Optional[np.ndarray]
+    xyz: np.ndarray  #: (n, 3): coordinates, m
+    height: np.ndarray  #: (n,): height above ground, m
+    is_roof: np.ndarray  #: (n,), bool: points of the roofs to start from
+    is_noise: np.ndarray  #: (n,), bool: points of noise
+    may_belong: np.ndarray  #: (n,), bool: points that may be of a building: neither noise nor bridge decks
+    segment_id: Optional[np.ndarray]  #: (n,): roof surface of each point; 0 if unassigned
 
     @classmethod
     def of(
@@ -219,8 +219,8 @@ class _Roofs:
         """Find roofs, noise and bridge decks by the classes of points."""
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
         # Points on a bridge deck have no ground below them and are no walls.
-        may_stand = ~is_noise & (classification != PointClass.BRIDGE_DECK)
-        return cls(xyz, height, is_roof, is_noise, may_stand, segment_id)
+        may_belong = ~is_noise & (classification != PointClass.BRIDGE_DECK)
+        return cls(xyz, height, is_roof, is_noise, may_belong, segment_id)
 
 
 def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
@@ -229,7 +229,7 @@ def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
     refuse_sparse(roofs.xyz, cell_size)
     margin = int(np.ceil(limits.gap / cell_size)) + 2
     cell = raster_cells(roofs.xyz[:, :2], cell_size, margin)
-    raised = (roofs.height >= LASER.foot) & roofs.may_stand
+    raised = (roofs.height >= LASER.foot) & roofs.may_belong
     # Multipath through a skylight is no ground that shows in it.
     covered = covered_cells(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
     building, refused = numbered(covered, limits.min_area, cell_size)
@@ -259,7 +259,7 @@ def _coverage_in_images(roofs: _Roofs, limits: _Limits) -> Coverage:
     building = extent.faces(building)
     raised |= (building[cell] > 0) & (roofs.height >= IMAGES.foot)
     top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)
-    return Coverage(cell, surface.size, building, refused, top, raised & roofs.may_stand)
+    return Coverage(cell, surface.size, building, refused, top, raised & roofs.may_belong)
 
 
 def _in_order(owner: np.ndarray, cell: np.ndarray) -> np.ndarray:

@@ -25,7 +25,7 @@ _BITS = 21
 _TOP_BITS = 6
 _DEEPEST = _BITS - _GRID_LEVELS
 _EVLR_HEAD = 60
-# Which points a level shows is drawn by lot, always the same one.
+# Seed of the random choice of the points that a level shows.
 _SEED = 0
 # The index of LAStools counts points in the order of the old file.
 _LAX = (b"LAStools", 30)
@@ -36,11 +36,11 @@ _WAVEFORM_BITS = 2 | 4
 class Octree:
     """Points by node: node i holds ``order[ends[i-1]:ends[i]]``."""
 
-    low: np.ndarray  #: Least corner of the root cube, in file coordinates
-    side: float  #: Its side
-    order: np.ndarray  #: Positions of the points, node after node
-    keys: np.ndarray  #: Level, x, y, z of each node
-    ends: np.ndarray  #: Where each node's points end in ``order``
+    low: np.ndarray  #: (3,): least corner of the root cube, in coordinates of the file
+    side: float  #: Side of the root cube, in units of the file
+    order: np.ndarray  #: (n,), int64: rows of the points, node after node
+    keys: np.ndarray  #: (m, 4), int32: level, x, y, z of each node
+    ends: np.ndarray  #: (m,), int64: where each node's points end in ``order``
 
     @property
     def spacing(self) -> float:
@@ -51,7 +51,7 @@ class Octree:
 def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree:
     """Sort points (n,), records of the header's scale and offset, into the nodes of an octree, coarse samples above.
 
-    Each node takes one point, drawn by lot, of every occupied cell of its grid, and passes the others on to its
+    Each node takes one point, chosen at random, of every occupied cell of its grid, and passes the others on to its
     children; with 65 536 points or fewer it takes all.
     """
     low, side = _cube(points, header)
@@ -154,7 +154,7 @@ def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def copc_header(header: Header) -> Header:
-    """Return ``header`` in the form of COPC: LAS 1.4, the info record first, nothing about waveforms and old orders."""
+    """Return ``header`` in the form of COPC: LAS 1.4, the info record first, no waveforms, no LAStools index."""
     kept = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS, _LAX)
     encoding = kept.encoding & ~_WAVEFORM_BITS | (WKT_BIT if has_wkt(kept) else 0)
     info = Vlr(*COPC_INFO, bytes(INFO.size), description=b"COPC info")

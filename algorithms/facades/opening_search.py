@@ -17,19 +17,19 @@ from .facade_surfaces import Facade
 # Points farther than this from the plane, in standard deviations of the wall, are not of the wall.
 _OFF_WALL = 3.0
 
-# The same in meters, if that is more.
+# Least distance (m) from the plane of points that are not of the wall.
 _LEAST_OFF = 0.03
 
 # Side of a cell, in point spacings of the wall: a wall leaves a cell empty by chance only.
 _CELL_SPACINGS = 1.2
 
-# The same in meters, if that is more.
+# Least side of a cell (m).
 _LEAST_CELL = 0.02
 
 # Gap (m) between points behind the wall that are of one opening: bars, curtains and panes leave gaps.
 _LINK = 0.3
 
-# Half of that gap in cells, if that is more.
+# Least half of that gap between points behind the wall, in cells.
 _LINK_CELLS = 1.5
 
 # Distance (m) from the points behind the wall within which the edge of the wall is a side of their opening.
@@ -56,7 +56,7 @@ _SHARED = 0.3
 # Deviation from a straight line up to which an edge of the wall is the side of an opening, in point spacings.
 _STRAIGHT_SPACINGS = 2.0
 
-# The same in meters, if that is more.
+# Least such deviation of the side of an opening from a straight line (m).
 _LEAST_STRAIGHT = 0.06
 
 # Area of the convex hull of an opening, as a share of its rectangle, from which it is that rectangle.

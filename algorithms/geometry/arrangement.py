@@ -33,9 +33,9 @@ class Arrangement:
     Parameters
     ----------
     points, directions : ndarray of shape (m, 2)
-        The lines.
+        A point on each line (m), and its direction.
     low, high : ndarray of shape (2,)
-        Corners of the rectangle (m), beyond everything that matters.
+        Corners of the rectangle (m), outside of all cells that may be chosen.
 
     Attributes
     ----------

@@ -12,7 +12,7 @@ from .groups import run_starts
 # The flow takes costs as whole numbers of 32 bits: steps per unit of cost, of cuts.
 _STEPS = 1000
 
-# The same, of labels.
+# Steps per unit of cost, of labels.
 _STEPS_OF_LABELS = 10_000
 
 # Largest cost in steps. It is a seventh of the largest number of 32 bits, as the costs of edges are added in these.

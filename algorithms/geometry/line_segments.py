@@ -14,6 +14,7 @@ def is_valid(rings: list) -> bool:
         return False
     starts = np.concatenate([ring[:-1] for ring in rings])
     ends = np.concatenate([ring[1:] for ring in rings])
+    # An edge shorter than a micrometer is a vertex given twice.
     if (np.hypot(*(ends - starts).T) < 1e-6).any():
         return False
     first = np.cumsum([0, *(len(ring) - 1 for ring in rings)])
@@ -54,7 +55,7 @@ def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
 
 
 def are_inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Return which points (n, 2) lie inside a ring, by the parity of the walls to their east."""
+    """Return which points (n, 2) lie inside a ring, by the parity of the edges to their east."""
     (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
     slope = np.divide(x1 - x0, y1 - y0, out=np.zeros_like(x0), where=y0 != y1)
     inside, step = np.empty(len(points), bool), max(1, _PAIRS_AT_ONCE // len(x0))
@@ -76,7 +77,7 @@ def farthest(points: np.ndarray, line: np.ndarray) -> float:
 
 
 def nearest_edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return the distances (n,) (m) of points (n, 2) to the nearest of segments (m, 2), which there must be."""
+    """Return the distances (n,) (m) of points (n, 2) to the nearest of segments (m, 2), at least one."""
     nearest, step = np.empty(len(points)), max(1, _PAIRS_AT_ONCE // len(starts))
     for low in range(0, len(points), step):
         nearest[low : low + step] = edge_distances(points[low : low + step], starts, ends).min(axis=1)

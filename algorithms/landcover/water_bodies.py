@@ -11,7 +11,8 @@ from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage
 from ..stage import Monitor
 
-# How far from a point (m) others decide whether its surface is level, and whether a gap is one in the cloud.
+# Distance (m) within which other points decide whether the surface at a point is level. Gaps of the cloud up to twice
+# as wide are filled.
 REACH = 10.0
 
 _EIGHT = np.ones((3, 3), bool)

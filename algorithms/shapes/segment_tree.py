@@ -13,7 +13,7 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_fits import Cylinder
 from .stem_search import BREAST, find_stems, ground_level
 from .surface_normals import refuse_line
-from .tree_structure import Branch, Slices, branches_of, smooth, standing, voxels_of
+from .tree_structure import Branch, Slices, branches_of, self_supporting_slices, smooth, voxels_of
 
 # Side of a voxel (spacings), and the least (m): bark is not resolved any finer.
 _VOXEL_SPACINGS, _LEAST_VOXEL = 2.0, 0.02
@@ -175,7 +175,7 @@ def segment_tree(
     voxels = voxels_of(positions, voxel_size, min_count, max_gap, monitor.part(0.1, 0.4))
     feet = np.array([_at_breast(stem, level) for stem, level in stems])
     radii = np.array([stem.radius for stem, _ in stems])
-    slices = standing(voxels, feet, radii, voxel_size)
+    slices = self_supporting_slices(voxels, feet, radii, voxel_size)
     monitor.progress(0.7)
     branches, of_slice = branches_of(slices, min_length, monitor.part(0.7, 0.9))
     of_point = np.where(voxels.of_point >= 0, slices.of_voxel[voxels.of_point], -1)

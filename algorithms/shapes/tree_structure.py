@@ -18,7 +18,7 @@ _GAP_PRICE = 3.0
 # Thickness of a slice (voxels): thinner ones don't define a position, thicker ones hold two forks.
 _SLICE = 3.0
 
-# The lowest part of a stem, in which its root is looked for, reaches this high above breast height (m).
+# Distance (m) within which the root of a stem is looked for: in plan from its axis, and above breast height.
 _SAME_STEM = 0.5
 
 # A branch leads from its base to its tip without too many turns: its chord over its length. Paths through leaves and
@@ -117,11 +117,11 @@ def _gaps(positions: np.ndarray, piece: np.ndarray, max_gap: float, monitor: Mon
         monitor.progress(start / len(small))
         own = small[start : start + _CHUNK]
         near = tree.query_ball_point(positions[own], max_gap, workers=n_threads())
-        there = np.concatenate([np.array(one, np.int64) for one in near])
-        here = np.repeat(own, [len(one) for one in near])
-        # Two voxels of small pieces see each other.
-        is_pair = (piece[here] != piece[there]) & ((here < there) | ~is_small[there])
-        shortest.append(_shortest(positions, piece, np.column_stack([here[is_pair], there[is_pair]])))
+        neighbor = np.concatenate([np.array(one, np.int64) for one in near])
+        center = np.repeat(own, [len(one) for one in near])
+        # A pair of voxels of two small pieces is found from both sides, and counted once.
+        is_pair = (piece[center] != piece[neighbor]) & ((center < neighbor) | ~is_small[neighbor])
+        shortest.append(_shortest(positions, piece, np.column_stack([center[is_pair], neighbor[is_pair]])))
     return _shortest(positions, piece, np.concatenate(shortest))
 
 
@@ -145,7 +145,7 @@ def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
     return np.unique(np.array(roots, np.int64))
 
 
-def standing(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: float) -> Slices:
+def self_supporting_slices(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: float) -> Slices:
     """Return the slices of the trees over those stems that can carry themselves.
 
     Parameters

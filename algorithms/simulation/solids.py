@@ -1,4 +1,4 @@
-"""Things with plane faces: oriented boxes under planes, and where a beam enters them.
+"""Objects with plane faces: oriented boxes under planes, and where a beam enters them.
 
 Houses, dormers, chimneys, cars, walls and bridge decks are all one shape, a rectangle on the map with vertical sides. A
 plane is its underside (level but for the slabs of roofs), and the lowest of up to four planes its top. Such a solid is
@@ -118,13 +118,14 @@ def hip(rect: Rect, eave: float, pitch: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class SolidArrays:
-    """Many solids as arrays: faces (m, 9, 4) with n·p <= d inside, and boxes around them (m, 3)."""
+    """Many solids as arrays."""
 
-    faces: np.ndarray
+    faces: np.ndarray  #: (m, 9, 4): normal n and offset d of each face, with n·p <= d inside
+    #: low, high, (m, 3): corners of the boxes around the solids, m
     low: np.ndarray
     high: np.ndarray
-    classification: np.ndarray
-    object_id: np.ndarray
+    classification: np.ndarray  #: (m,), uint8: class code
+    object_id: np.ndarray  #: (m,), int32: number of the object
 
     def enter(self, which: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """Return the ranges (n,) (m) at which beams enter the solids ``which``, inf where they miss or have passed."""
@@ -133,13 +134,13 @@ class SolidArrays:
         for face in range(_FACES):
             normal, offset = self.faces[which, face, :3], self.faces[which, face, 3]
             speed = dot(normal, direction)
-            left = offset - dot(normal, origin)
+            remaining = offset - dot(normal, origin)
             with np.errstate(divide="ignore", invalid="ignore"):
-                crossing = left / speed
+                crossing = remaining / speed
             near = np.where(speed < 0, np.maximum(near, crossing), near)
             far = np.where(speed > 0, np.minimum(far, crossing), far)
             # A beam parallel to a face, and on its wrong side, never comes in.
-            far = np.where((speed == 0) & (left < 0), -np.inf, far)
+            far = np.where((speed == 0) & (remaining < 0), -np.inf, far)
         return np.where((near < far) & (near > 0), near, np.inf)
 
 

@@ -12,52 +12,98 @@ from .solids import Rect, Solid, gable
 
 KINDS = ("plain", "recess", "bay", "curved", "balconies")
 
-# Thickness of walls, and their depth below ground (m).
-_WALL, _BELOW = 0.3, 1.0
+# Thickness of walls (m).
+_WALL = 0.3
 
-# Heights of a storey, of a sill over the floor, of windows and doors, and their widths (m).
-_STOREY, _SILL, _WINDOW, _DOOR = 3.0, 0.9, (1.2, 1.5), (1.1, 2.2)
+# Depth of walls below the ground (m).
+_BELOW = 1.0
 
-# Panes lie this far behind the front, frames before them (m); frames are so wide.
-_PANE, _FRAME, _FRAME_WIDTH = 0.16, 0.10, 0.07
+# Height of a storey (m).
+_STOREY = 3.0
 
-# Width of the axis of windows, least distance of a window from the end of a wall (m).
-_AXIS, _MARGIN = 2.4, 0.5
+# Height of sills over the floor (m).
+_SILL = 0.9
 
-# Depth of recesses and bays, depth and height of balconies (m).
-_STEP, _BALCONY, _PARAPET = 1.2, 1.1, 1.0
+# Width and height of windows, and of doors (m).
+_WINDOW, _DOOR = (1.2, 1.5), (1.1, 2.2)
 
-# Stairs to a raised door: depth of the landing, run and greatest rise of a step, width beside the door (m).
-_LANDING, _RUN, _RISE, _BESIDE = 1.2, 0.28, 0.18, 0.25
+# Distance of panes behind the front (m).
+_PANE = 0.16
 
-# Houses behind fronts: depth (m), pitch of their gable roofs (°), thickness of the lid of a bay (m).
-_DEPTH, _PITCHES, _LID = 10.0, (30.0, 45.0), 0.2
+# Distance of frames behind the front, before the panes (m).
+_FRAME = 0.10
 
-# Cellar windows under raised floors: sill over the ground and height (m); floors from this height (m) have them.
-_CELLAR, _LEAST_RAISED = (0.25, 0.8), 1.4
+# Width of frames (m).
+_FRAME_WIDTH = 0.07
 
-# Strips of a curved front, and the angle (°) that it turns by.
-_STRIPS, _TURN = 6, 60.0
+# Distance between the middles of neighboring windows (m).
+_AXIS = 2.4
+
+# Least distance of a window from the end of a wall (m).
+_MARGIN = 0.5
+
+# Depth of recesses and bays (m).
+_STEP = 1.2
+
+# Depth of balconies (m).
+_BALCONY = 1.1
+
+# Height of the parapets of balconies (m).
+_PARAPET = 1.0
+
+# Depth of the landing before a raised door (m).
+_LANDING = 1.2
+
+# Run of a step of stairs (m).
+_RUN = 0.28
+
+# Greatest rise of a step of stairs (m).
+_RISE = 0.18
+
+# Width of stairs on each side of their door (m).
+_BESIDE = 0.25
+
+# Depth of houses behind their fronts (m).
+_DEPTH = 10.0
+
+# Least and greatest pitch of gable roofs (°).
+_PITCHES = (30.0, 45.0)
+
+# Thickness of the roof of a bay (m).
+_LID = 0.2
+
+# Cellar windows: height of the sill over the ground, and of the window (m).
+_CELLAR = (0.25, 0.8)
+
+# Height of the ground floor over the street from which there are cellar windows (m).
+_LEAST_RAISED = 1.4
+
+# Plane strips that make up a curved front.
+_STRIPS = 6
+
+# Angle that a curved front turns by (°).
+_TURN = 60.0
 
 
 @dataclass
 class Truth:
     """Truth of the fronts: polygons and kinds, and the object ids that belong to them.
 
-    Walls that go on in one plane are one facade, of however many houses.
+    Walls that go on in one plane are one facade, also of several houses. Facades and openings are numbered from 1.
     """
 
+    #: Walls of each facade: feet at both ends, (3,) each, and elevation of the top (m)
     walls: list[list[tuple[np.ndarray, np.ndarray, float]]] = field(default_factory=list)
-    kinds: list[str] = field(default_factory=list)
-    openings: list[np.ndarray] = field(default_factory=list)
-    opening_kinds: list[str] = field(default_factory=list)
-    opening_facades: list[int] = field(default_factory=list)
-    facade_of: dict[int, int] = field(default_factory=dict)
-    opening_of: dict[int, int] = field(default_factory=dict)
-    glass: set[int] = field(default_factory=set)
-    houses: list[np.ndarray] = field(default_factory=list)
-    eaves: list[float] = field(default_factory=list)
-    ridges: list[float] = field(default_factory=list)
+    kinds: list[str] = field(default_factory=list)  #: Kind of each facade, one of :data:`KINDS`
+    openings: list[np.ndarray] = field(default_factory=list)  #: Closed ring (5, 3) of each opening (m)
+    opening_kinds: list[str] = field(default_factory=list)  #: "window" or "door" of each opening
+    opening_facades: list[int] = field(default_factory=list)  #: Facade of each opening
+    facade_of: dict[int, int] = field(default_factory=dict)  #: Facade by object id of its walls
+    opening_of: dict[int, int] = field(default_factory=dict)  #: Opening by object id of its pane and frame
+    glass: set[int] = field(default_factory=set)  #: Object ids of panes of glass
+    houses: list[np.ndarray] = field(default_factory=list)  #: Closed ring (k, 3) of each house on the ground (m)
+    eaves: list[float] = field(default_factory=list)  #: Elevation of the eaves of each house (m)
+    ridges: list[float] = field(default_factory=list)  #: Elevation of the ridge of each house (m)
 
     @property
     def facades(self) -> list[np.ndarray]:

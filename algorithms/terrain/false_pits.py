@@ -21,10 +21,10 @@ from ..threads import in_chunks
 # Least depth under the ground (m): less is grass, ruts, curbs and the scanner's own noise.
 _DEPTH = 0.45
 
-# The same in point spacings, if that is more: the ground bends unseen between points.
+# Least depth under the ground in point spacings, if that is more: the ground bends unseen between points.
 _DEPTH_SPACINGS = 0.4
 
-# The same in standard deviations of the ground around, if that is more: rough ground has true hollows.
+# Least depth in standard deviations of the ground around, if that is more: rough ground has true hollows.
 _DEPTH_DEVIATIONS = 6.0
 
 # Deviation (m) of the ground around from which on it is too rough for a pit to be seen in it.
@@ -51,19 +51,19 @@ _CHUNK = 20_000
 # Extent in plan (m) of the widest group: mirrors are panes, cars and wet spots.
 _WIDEST = 3.0
 
-# The same in point spacings, if that is more.
+# Extent of the widest group in point spacings, if that is more.
 _WIDEST_SPACINGS = 3.0
 
 # Points of a group lie in cells of this side (m) that touch.
 _LINK = 0.5
 
-# The same in point spacings, if that is more.
+# Side of these cells in point spacings, if that is more.
 _LINK_SPACINGS = 1.5
 
 # Width (m) of the rim around a group that must be ground.
 _RIM = 2.0
 
-# The same in point spacings, if that is more.
+# Width of the rim in point spacings, if that is more.
 _RIM_SPACINGS = 3.0
 
 # Sectors around a group in which ground is looked for.

@@ -17,8 +17,8 @@ from ..cloud.outputs import replacing
 class View:
     """What pages show of a survey, and the folder in which tiles leave it.
 
-    ``cell`` is the side (m) of the cells whose topmost point is shown, ``boxes`` (k, 2, 2), m, those of which all
-    points are, both from ``origin`` (3,), m.
+    ``cell`` is the side (m) of the cells of which the topmost point is shown. ``boxes`` (k, 2, 2), m, are lower and
+    upper corners in plan: all points in them are shown. Cells and boxes are measured from ``origin`` (3,), m.
     """
 
     folder: Path

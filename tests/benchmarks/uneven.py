@@ -27,7 +27,7 @@ _BAND = 60.0
 # Standard deviation (m) along each axis in plan between the points of a pair: 5 cm over both axes.
 _PAIR = 0.05 / 1.4
 
-# Standard deviation (m) in height between these.
+# Standard deviation (m) in height between the points of a pair.
 _PAIR_HEIGHT = 0.01
 
 # More than the number of lines, rows and steps: makes one number of two.

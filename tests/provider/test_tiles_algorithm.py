@@ -239,7 +239,7 @@ def test_a_virtual_point_cloud_that_is_read_is_not_written_over(provider, contex
 @pytest.mark.parametrize(
     ("name", "kept"), [("detectbuildingsintiles", "what was done is kept in"), ("cutintotiles", "that were complete")]
 )
-def test_who_stops_a_run_is_reported_what_stays(provider, context, log, folder, tmp_path, name, kept):
+def test_a_stopped_run_reports_what_is_kept(provider, context, log, folder, tmp_path, name, kept):
     log.cancel()
     given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "out"), **(QUICKLY if "detect" in name else {})}
     provider.algorithm(name).run(given, context, log, {}, False)

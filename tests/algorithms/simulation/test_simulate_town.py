@@ -104,8 +104,8 @@ def test_outlines_are_closed_counterclockwise_and_as_large_as_the_roofs():
 
 def test_buildings_do_not_overlap():
     scene = build_town(TownPlan(size=300.0, forest=0.0, buildings=34.0))
-    places = np.random.default_rng(0).uniform(0, 300, (100_000, 2))
-    assert sum(building.contains(*places.T).astype(int) for building in scene.buildings).max() == 1
+    positions = np.random.default_rng(0).uniform(0, 300, (100_000, 2))
+    assert sum(building.contains(*positions.T).astype(int) for building in scene.buildings).max() == 1
 
 
 def test_rows_share_walls_and_differ_in_height():
