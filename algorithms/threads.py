@@ -18,7 +18,7 @@ from .stage import Cancelled, Monitor
 # than the cloud.
 _MOST_THREADS = 32
 
-# Positions that a thread searches the neighbors of, at least: starting it takes as long as searching for a few hundred.
+# Least number of positions whose neighbors a thread searches: starting it takes as long as a few hundred of these.
 _SEARCHED = 5_000
 
 # Rows that a thread works on at once: their values stay in the processor's caches.
@@ -27,14 +27,14 @@ ROWS_AT_ONCE = 20_000
 # Seconds between two checks for a cancellation by the user.
 _BETWEEN_LOOKS = 0.2
 
-# Threads set for a process that shares the machine with others of its kind.
-_TOLD: list[int] = []
+# Number of threads assigned to a process that shares the machine with others of its kind; empty without one.
+_ASSIGNED: list[int] = []
 
 
 def n_threads() -> int:
     """Return how many threads work at once: one for each core that this process may use, at most 32."""
-    if _TOLD:
-        return _TOLD[-1]
+    if _ASSIGNED:
+        return _ASSIGNED[-1]
     # Where batch systems and containers give a process some of the cores, only Linux shows which.
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return min(cores, _MOST_THREADS)
@@ -47,7 +47,7 @@ def searchers(count: int) -> int:
 
 def use_threads(count: Optional[int]) -> None:
     """Let this process work with ``count`` threads at once; None is one for each core."""
-    _TOLD[:] = [] if count is None else [count]
+    _ASSIGNED[:] = [] if count is None else [count]
 
 
 @contextmanager
@@ -105,13 +105,13 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
     Parameters
     ----------
     work : callable
-        Is given the number of an item, from 0, and a monitor. What that one receives is passed on in order.
+        Receives the number of an item, from 0, and a monitor, whose messages are passed on in the order of items.
     count : int
         Number of items. No more than there are threads are ready or being made at a time.
     monitor : Monitor
         Receives the progress of items that are waited for, and ends the work in all threads where it is cancelled.
     share : float
-        How much of the progress of an item, 0 to 1, its making is; the rest is that of its use.
+        Share of an item's progress, 0 to 1, that making it is; the rest is that of its use.
     """
     if count < 2 or n_threads() < 2:
         for item in range(count):
@@ -120,16 +120,16 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
             yield made
         return
     stop, pool, ahead = Event(), ThreadPoolExecutor(n_threads()), n_threads()
-    heard = [_Thread(stop) for _ in range(count)]
+    monitors = [_ThreadMonitor(stop) for _ in range(count)]
     try:
-        futures = [pool.submit(work, item, heard[item]) for item in range(min(ahead, count))]
+        futures = [pool.submit(work, item, monitors[item]) for item in range(min(ahead, count))]
         for item in range(count):
             while not wait(futures[:1], _BETWEEN_LOOKS).done:
-                monitor.progress((item + share * heard[item].reached) / count)
+                monitor.progress((item + share * monitors[item].reached) / count)
             made = futures.pop(0).result()
-            heard[item].pass_on(monitor)
+            monitors[item].pass_on(monitor)
             if item + ahead < count:
-                futures.append(pool.submit(work, item + ahead, heard[item + ahead]))
+                futures.append(pool.submit(work, item + ahead, monitors[item + ahead]))
             monitor.progress((item + share) / count)
             yield made
     finally:
@@ -137,7 +137,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-class _Thread(Monitor):
+class _ThreadMonitor(Monitor):
     """The monitor of work in a thread: it keeps messages and progress, and ends the work when all is to stop."""
 
     def __init__(self, stop: Event) -> None:

@@ -19,7 +19,9 @@ _UNUSED = ("pyproj", "requests")
 
 @cache
 def need_laspy() -> Any:
-    """Return laspy with its modules. The threads that decompress are a run's first: memory is shared from then on.
+    """Return laspy with its modules.
+
+    The first threads of a run decompress points: from here on, threads share freed memory.
 
     Raises
     ------

@@ -21,10 +21,10 @@ from ..threads import in_chunks
 from .grid import find_cells, plan_box
 from .groups import components
 
-# Positions of a tile at most: each takes half the time that it takes among a hundred thousand.
-_PLACES = 3000
+# Most positions of a tile: each takes half the time that it takes among a hundred thousand.
+_TILE_POSITIONS = 3000
 
-# Below this number of nodes, one triangulation takes less time than tiles.
+# Up to this number of positions, one triangulation takes less time than tiles.
 _FEW = 30_000
 
 # Surroundings of a tile, in distances between positions: nearly all circles on its border end there.
@@ -117,15 +117,15 @@ def _by_qhull(plan: np.ndarray) -> Triangulation:
 def _tiles(plan: np.ndarray, rows: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Halve the plane until each part has few positions; yield the rows of these and those around, and both boxes."""
     everywhere = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
-    left = [(rows.astype(np.int32), plan[rows], everywhere, everywhere)]
-    while left:
-        rows, near, box, seen = left.pop()
+    waiting = [(rows.astype(np.int32), plan[rows], everywhere, everywhere)]
+    while waiting:
+        rows, near, box, seen = waiting.pop()
         own = near[_within(near, box)]
         low, high = plan_box(own) if len(own) else np.zeros((2, 2))
         axis = int(np.argmax(high - low))
         # Off the middle, where no lines of regular grids are: circles with the same center have one owner.
         middle = 0.5137 * low[axis] + 0.4863 * high[axis]
-        if len(own) <= _PLACES or not low[axis] < middle < high[axis]:
+        if len(own) <= _TILE_POSITIONS or not low[axis] < middle < high[axis]:
             yield rows, box, seen
             continue
         margin = _MARGIN * np.sqrt((high - low).prod() / len(own))
@@ -133,7 +133,7 @@ def _tiles(plan: np.ndarray, rows: np.ndarray) -> Iterator[tuple[np.ndarray, np.
             half, wider = box.copy(), seen.copy()
             half[1 - upper, axis] = middle
             wider[1 - upper, axis] = middle - margin if upper else middle + margin
-            left.append((rows[chosen], near[chosen], half, wider))
+            waiting.append((rows[chosen], near[chosen], half, wider))
 
 
 def _within(plan: np.ndarray, box: np.ndarray) -> np.ndarray:
@@ -151,15 +151,15 @@ def _part(plan: np.ndarray, rows: np.ndarray, box: np.ndarray, seen: np.ndarray)
     # Near the origin squares keep their digits.
     near = plan[rows] - plan[rows[0]]
     if np.linalg.matrix_rank(near) < 2:
-        none = np.empty((0, 3), np.int32)
-        return Triangulation(plan, none, none)
+        no_facets = np.empty((0, 3), np.int32)
+        return Triangulation(plan, no_facets, no_facets)
     found = _by_qhull(near)
     facets = rows[found.facets]
     center, radius = circles(plan, facets)
     x, y = center.T
     (left, bottom), (right, top) = seen
     is_known = (x - radius > left) & (x + radius < right) & (y - radius > bottom) & (y + radius < top)
-    # What closes the hull of all positions has no other side, by which it would fit to the rest.
+    # Triangles at the hull of these positions have an edge without neighbor, which fits no other tile.
     is_known &= (found.neighbors >= 0).all(axis=1)
     return _chosen(plan, facets, found.neighbors, is_known & _within(center, box))[0]
 
@@ -180,9 +180,10 @@ def _joined(parts: list[Triangulation]) -> Triangulation:
     neighbors = np.concatenate([part.neighbors + (part.neighbors >= 0) * start for part, start in zip(parts, first)])
     whole = Triangulation(parts[0].plan, facets, neighbors)
     facet, corner, ends = _open_sides(whole)
-    there, back = ends @ [len(whole.plan), 1], ends @ [1, len(whole.plan)]
-    order = np.argsort(there)
-    mate, found = find_cells(there[order], back)
+    # A side and the same side of the other facet run in opposite directions.
+    key, opposite_key = ends @ [len(whole.plan), 1], ends @ [1, len(whole.plan)]
+    order = np.argsort(key)
+    mate, found = find_cells(key[order], opposite_key)
     neighbors[facet[found], corner[found]] = facet[order[mate[found]]]
     return whole
 
@@ -201,7 +202,7 @@ def _mended(part: Triangulation, rows: np.ndarray) -> Optional[Triangulation]:
     border = _open_sides(part)[2] @ [len(part.plan), 1]
     outside = np.isin(sides @ [len(part.plan), 1], border).reshape(-1, 3)
     inside = np.isin(sides @ [1, len(part.plan)], border).reshape(-1, 3)
-    # What borders don't part is in the same hole or in none.
+    # Facets of the patch that no border separates lie in the same hole, or in none.
     neighbors = np.where(outside | inside, -1, patch.neighbors)
     links = neighbors >= 0
     which = components(np.nonzero(links)[0], neighbors[links], len(facets))[1]

@@ -70,7 +70,7 @@ def find_solid_objects(
     candidates = np.flatnonzero((is_opaque & has_area & (top <= _RULES.highest))[group])
     is_smooth = _on_surfaces(xyz[candidates], sampling, monitor.part(0.6, 1))
     smooth = np.bincount(group[candidates], is_smooth, len(size))
-    # Half of the points of an object that is no candidate are never counted.
+    # Points of objects that are no candidates are not counted, so that these are never solid.
     is_solid = smooth >= np.maximum(_RULES.smooth_share * size, 1)
     rise = top - low
     is_pole = has_area & (rise >= _RULES.slenderness * _extent(group, xyz, size))

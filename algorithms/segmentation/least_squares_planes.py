@@ -17,11 +17,11 @@ _CHUNK = 500_000
 
 @dataclass(frozen=True)
 class Planes:
-    """Points ``count`` (m,), their ``center`` (m, 3) and ``covariance`` (m, 6; xx, yy, zz, xy, xz, yz; divisor n)."""
+    """Planes of m groups of points."""
 
-    count: np.ndarray
-    center: np.ndarray
-    covariance: np.ndarray
+    count: np.ndarray  #: (m,): points of each group
+    center: np.ndarray  #: (m, 3): their mean, m
+    covariance: np.ndarray  #: (m, 6): their xx, yy, zz, xy, xz, yz, with the divisor n, m²
 
     def __len__(self) -> int:
         return len(self.count)
@@ -79,7 +79,7 @@ def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int, rows: Optional[
     rows : ndarray of shape (m,), optional
         Points that count.
     """
-    # As many points as there are groups: more chunks would take longer to add up than the points.
+    # Each chunk makes sums of all groups: with fewer points than groups it would take longer than the points.
     size = max(_CHUNK, n_groups)
     parts = [slice(start, start + size) for start in range(0, len(group), size)]
     count, center, covariance = np.zeros(n_groups, np.int64), np.zeros((n_groups, 3)), np.zeros((n_groups, 6))

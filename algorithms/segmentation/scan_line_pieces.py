@@ -118,7 +118,7 @@ def pieces_of_lines(
 
 
 def _near_on_lines(points: np.ndarray, line: np.ndarray, near: NearPoints) -> np.ndarray:
-    """Return a number (n,) for each point, the same where points of a line are near each other or through others."""
+    """Return a number (n,) for each point, the same where points of a line are near, directly or through others."""
     if not len(points):
         return np.zeros(0, np.int64)
     breaks = (line[1:] != line[:-1]) | ~near.hold(points[:-1], points[1:])

@@ -28,12 +28,15 @@ _WITHIN = 4.5
 # freedom 1 % of the planes have more (chi-square).
 _SMOOTH = 1.5
 
-# Distance of adjacent lines at most, in mean distances of lines: where strips do not overlap lines are twice as far
+# Largest distance of adjacent lines, in mean distances of lines: where strips do not overlap lines are twice as far
 # apart as on the average, and pulses do not fall side by side.
 _LINES = 3.0
 
-# Steps between points of a line at most, in the same distances and in median steps of the lines.
-_LINE_GAPS, _STEP_GAPS = 3.0, 10.0
+# Largest step between points of a line, in mean distances of lines.
+_LINE_GAPS = 3.0
+
+# Largest step between points of a line in median steps of the lines, if that is more.
+_STEP_GAPS = 10.0
 
 _Tolerance = Annotated[
     Optional[float],
@@ -44,7 +47,8 @@ _Tolerance = Annotated[
         low=0,
         high=100,
         open_low=True,
-        automatic="4.5 times the root of the sum of the squares of the surface noise and 0.05 point spacings.",
+        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
+        "spacings.",
     ),
 ]
 
@@ -85,7 +89,7 @@ def segment_recorded_lines(
             low=0,
             high=1000,
             open_low=True,
-            automatic="3 times the mean distance of scan lines.",
+            automatic=f"{_LINES:g} times the mean distance of scan lines.",
         ),
     ] = None,
     max_gap: Annotated[
@@ -97,7 +101,8 @@ def segment_recorded_lines(
             low=0,
             high=1000,
             open_low=True,
-            automatic="the larger of 10 median steps between points and 3 distances of scan lines.",
+            automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINE_GAPS:g} distances of scan "
+            "lines.",
         ),
     ] = None,
     min_overlap: Annotated[
@@ -186,9 +191,9 @@ def segment_recorded_lines(
 
     last = np.flatnonzero(_is_last(return_number, number_of_returns, used))
     row = last[recording.take(last).order(points[last])]
-    between = _distance_of_lines(points[row], density)
-    line_distance = _LINES * between if line_distance is None else line_distance
-    max_gap = max(_LINE_GAPS * between, _STEP_GAPS * _median_step(points[row])) if max_gap is None else max_gap
+    line_spacing = _distance_of_lines(points[row], density)
+    line_distance = _LINES * line_spacing if line_distance is None else line_distance
+    max_gap = max(_LINE_GAPS * line_spacing, _STEP_GAPS * _median_step(points[row])) if max_gap is None else max_gap
     monitor.resolved(density=density, noise=noise, tolerance=tolerance, line_distance=line_distance, max_gap=max_gap)
     line = recorded_lines(points[row], recording.take(row), max_gap)
     piece = split_lines(points[row], line, tolerance, min_piece, monitor.part(0, 0.3))

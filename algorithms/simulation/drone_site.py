@@ -10,20 +10,38 @@ from .solids import Rect, Solid, flat
 from .town_houses import Site
 from .town_layout import TownPlan, build_town, park_car
 
-# Halls (m): lengths and widths between these, heights of their roofs, and of the parapets on them.
+# Least and greatest length of halls (m).
 _HALL_SIZES = (10.0, 100.0)
+
+# Least and greatest height of their roofs (m).
 _HALL_HEIGHTS = (3.0, 9.0)
+
+# Height and width of the parapets around them (m).
 _PARAPET_HEIGHT, _PARAPET_WIDTH = 0.6, 0.35
 
-# Blocks: number of flat roofs that touch, each a little higher or lower than the next (m).
-_BLOCK_ROOFS, _BLOCK_DEPTH, _BLOCK_STEP = 4, 12.0, 0.8
+# Number of flat roofs that touch in a block.
+_BLOCK_ROOFS = 4
 
-# Vans (m).
+# Depth of a block (m).
+_BLOCK_DEPTH = 12.0
+
+# Largest difference of a roof of a block from their mean height (m).
+_BLOCK_STEP = 0.8
+
+# Length and width of vans (m).
 _VAN = (5.4, 2.0)
+
+# Least and greatest height of vans (m).
 _VAN_HEIGHT = (1.9, 2.6)
 
-# Positions that are tried for each thing before it is left out, and the room it keeps to buildings (m).
-_TRIES, _ROOM = 60, 3.0
+# Vans and cars added per hectare.
+_VANS = 8
+
+# Positions that are tried for each object before it is left out.
+_TRIES = 60
+
+# Least distance of an object from buildings (m).
+_ROOM = 3.0
 
 
 def build_site(plan: TownPlan, halls: int) -> Scene:
@@ -36,12 +54,12 @@ def build_site(plan: TownPlan, halls: int) -> Scene:
         _add_hall(scene, k, rng)
     if plan.buildings and halls:
         _add_block(scene, rng)
-    for _ in range(round(8 * plan.size**2 / 1e4)):
+    for _ in range(round(_VANS * plan.size**2 / 1e4)):
         _add_van(scene, rng)
     return scene
 
 
-def _free_position(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
+def _free_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
     """Return a free rectangle of these sides (m) anywhere on the site, None where none was found."""
     reach = np.hypot(long, wide) / 2 + 1.0
     if 2 * reach >= scene.size:
@@ -70,8 +88,9 @@ def _clear(scene: Scene, rect: Rect) -> None:
 def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
     """Put a flat roof with a parapet, the k-th of sides spread evenly from the least to the greatest."""
     least, most = _HALL_SIZES
+    # Steps of the golden ratio spread the lengths evenly, whatever the number of halls.
     long = min(least * (most / least) ** float(np.mod(0.35 + 0.382 * k, 1.0)), 0.6 * scene.size)
-    rect = _free_position(scene, long, long * rng.uniform(0.5, 0.8), rng)
+    rect = _free_rectangle(scene, long, long * rng.uniform(0.5, 0.8), rng)
     if rect is None:
         return
     _clear(scene, rect)
@@ -95,7 +114,7 @@ def _parapets(site: Site, rect: Rect, top: float) -> list[Solid]:
 def _add_block(scene: Scene, rng: np.random.Generator) -> None:
     """Put a block of touching flat roofs."""
     wide = rng.uniform(7.0, 11.0)
-    rect = _free_position(scene, _BLOCK_ROOFS * wide, _BLOCK_DEPTH, rng)
+    rect = _free_rectangle(scene, _BLOCK_ROOFS * wide, _BLOCK_DEPTH, rng)
     if rect is None:
         return
     _clear(scene, rect)
@@ -109,7 +128,7 @@ def _add_block(scene: Scene, rng: np.random.Generator) -> None:
 
 def _add_van(scene: Scene, rng: np.random.Generator) -> None:
     """Park a van or a car where there is room."""
-    rect = _free_position(scene, *_VAN, rng)
+    rect = _free_rectangle(scene, *_VAN, rng)
     if rect is None:
         return
     if rng.random() < 0.5:

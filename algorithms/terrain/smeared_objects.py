@@ -29,7 +29,7 @@ SMEARED = SmearedRules()
 _EIGHT = np.ones((3, 3), bool)
 
 
-def nowhere(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
+def on_no_object(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
     """Return False for each point (n,): in laser scans, whose edges are sharp, no object is smeared."""
     return np.zeros(len(xyz), bool)
 
@@ -42,7 +42,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     xyz : ndarray of shape (n, 3), float64
         Points (m).
     is_ground : ndarray of shape (n,), bool
-        Those that have been found to be ground.
+        Points that the filter has found to be ground.
     spacing : float
         Point spacing (m).
 
@@ -51,7 +51,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     The lowest ground points of cells are opened with a window. Planes of any slope and plateaus wider than the window
     stay as they are. Sheds are removed, and so is the ring of ground points on the smeared walls of a house, since no
     window is centered on its roof. Ridges and dikes narrower than the window rise above the opened surface as well:
-    objects longer than a shed stay, but for such rings.
+    what is longer than two windows stays, except for such rings.
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)
@@ -65,7 +65,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     is_occupied[row, column] = True
     is_far = ndimage.distance_transform_edt(~has_ground) > radius
     opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
-    # Slopes rise within a cell, to no more than the next one has.
+    # On a slope points lie higher than the lowest one of their cell, but not than that of the next cell uphill.
     highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
     is_above = is_ground & (xyz[:, 2] > highest[row, column] + LASER.foot)
     above = np.zeros(lowest.shape, bool)
@@ -78,7 +78,7 @@ def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndar
 
     Cells of large ones are ``is_other`` (rows, columns): they have points, and no ground.
     """
-    # Parts are joined over a cell, so that a crest is one where noise interrupts it. It is longer than two sheds.
+    # Parts are joined over a cell: noise interrupts crests of terrain. Parts longer than two windows are such crests.
     part, count = ndimage.label(ndimage.binary_dilation(above, _EIGHT), _EIGHT)
     is_short = np.zeros(count + 1, bool)
     for number, box in enumerate(ndimage.find_objects(part), 1):

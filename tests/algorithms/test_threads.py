@@ -26,7 +26,7 @@ def test_each_row_is_worked_on_once(rng, size):
 
 
 def test_few_positions_start_no_threads(monkeypatch):
-    monkeypatch.setattr(threads, "_TOLD", [4])
+    monkeypatch.setattr(threads, "_ASSIGNED", [4])
     assert [searchers(count) for count in (0, 9_999, 10_000, 1_000_000)] == [1, 1, 2, 4]
 
 
@@ -90,7 +90,7 @@ def test_an_exception_in_a_chunk_is_that_of_the_whole():
 
 @pytest.fixture(params=[1, 3])
 def count_of_threads(request, monkeypatch):
-    monkeypatch.setattr(threads, "_TOLD", [])
+    monkeypatch.setattr(threads, "_ASSIGNED", [])
     use_threads(request.param)
     return request.param
 
@@ -112,7 +112,7 @@ def test_items_come_in_order_and_few_are_made_ahead(count_of_threads):
 
 
 def test_a_cancellation_ends_what_is_made_ahead(monkeypatch):
-    monkeypatch.setattr(threads, "_TOLD", [2])
+    monkeypatch.setattr(threads, "_ASSIGNED", [2])
     before, stopped = threading.enumerate(), []
 
     def work(item, own):
@@ -131,7 +131,7 @@ def test_a_cancellation_ends_what_is_made_ahead(monkeypatch):
 
 
 def test_progress_of_an_item_is_heard_while_it_is_made(monkeypatch):
-    monkeypatch.setattr(threads, "_TOLD", [2])
+    monkeypatch.setattr(threads, "_ASSIGNED", [2])
     monitor, is_heard = Listening(), threading.Event()
     monkeypatch.setattr(monitor, "progress", lambda fraction: fraction == 0.125 and is_heard.set())
 

@@ -37,11 +37,17 @@ LEAST_AREA = 10.0
 # Simplification (m) of traced rings: much less than the distance of points.
 TRACED = 0.05
 
-# Sides (m) of the blocks that are compared with the whole, and the cloud.
-SIDES, IN_TILES = (100.0, 140.0), "buildings/ahn3-delft-4"
+# Sides (m) of the blocks whose footprints are compared with those of the whole.
+SIDES = (100.0, 140.0)
 
-# Pulses per m² and seeds of simulated towns of 200 m, as full of buildings as they can be.
-DENSITIES, TOWNS = (8.0, 16.0), (1, 2, 3, 4)
+# The cloud of this comparison.
+IN_TILES = "buildings/ahn3-delft-4"
+
+# Pulses per m² on simulated towns of 200 m, with as many buildings as fit.
+DENSITIES = (8.0, 16.0)
+
+# Seeds of these towns.
+TOWNS = (1, 2, 3, 4)
 
 # Least area (m²) of the houses of the map that are sought one by one.
 HOUSE = 20.0

@@ -14,7 +14,7 @@ from lidar_buildings.tests.builders import FAR
 
 
 def canal(drop=1.0, width=12.0, share=0.2, fall=0.0, density=8.0, length=60.0, seed=2):
-    """Land of 80 m by 60 m with a canal that gives a ``share`` of the pulses, ``drop`` (m) lower, and which is which.
+    """Land of 80 m by 60 m with a canal ``drop`` (m) lower that returns a ``share`` of the pulses, and which is water.
 
     Land falls by 1 % across the canal; the canal falls by ``fall`` along it.
     """

@@ -75,9 +75,9 @@ def test_distances_stay_whatever_the_decimals(seed):
 
 def test_a_transform_and_its_inverse_bring_the_cloud_back(two):
     rotation = Rotation.from_euler("xyz", [10, -20, 130], degrees=True)
-    there = merged(two, written(matrix_of(rotation.as_matrix(), [5, 6, 7])))[0][50:]
+    moved = merged(two, written(matrix_of(rotation.as_matrix(), [5, 6, 7])))[0][50:]
     back = matrix_of(rotation.inv().as_matrix(), -rotation.inv().apply([5, 6, 7]))
-    np.testing.assert_allclose(merged([two[0], there], written(back))[0][50:], two[1], atol=1e-9)
+    np.testing.assert_allclose(merged([two[0], moved], written(back))[0][50:], two[1], atol=1e-9)
 
 
 # --- Which cloud goes where

@@ -324,7 +324,7 @@ def test_memory_is_bounded_by_the_points(planarity, most, monkeypatch):
     for module in (surface_growing, local_planes_module):
         monkeypatch.setattr(module, "CHUNK_NEIGHBORS", 12_000)
     # With several threads it depends on their timing how many chunks are in memory at once.
-    monkeypatch.setattr(threads, "_TOLD", [1])
+    monkeypatch.setattr(threads, "_ASSIGNED", [1])
     few, many = (peak_memory(n_points, planarity) for n_points in (10_000, 30_000))
     assert (many - few) / 20_000 < most
 

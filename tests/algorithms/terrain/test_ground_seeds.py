@@ -284,7 +284,7 @@ def test_progress_only_grows():
 
 def test_the_search_for_pits_can_be_stopped(rng, monkeypatch):
     """In a dense forest there are as many pits as trees. With one thread, the monitor is called at each step."""
-    monkeypatch.setattr(threads, "_TOLD", [1])
+    monkeypatch.setattr(threads, "_ASSIGNED", [1])
     plan, monitor = even(60, 60), Listening(stop_at=0.01)
     z = np.where(rng.random(len(plan)) < 0.1, 0.0, rng.uniform(18, 22, len(plan)))
     with pytest.raises(Cancelled):
