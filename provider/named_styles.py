@@ -48,12 +48,17 @@ _CONFIDENCE = ((0.0, 0.5, "#bb5566"), (0.5, 0.7, "#ddaa33"), (0.7, 1.0, "#004488
 # Colors of kinds (Tol's muted scheme); further ones begin again.
 _KINDS = ("#88ccee", "#cc6677", "#ddcc77", "#117733", "#332288", "#aa4499", "#44aa99", "#999933", "#882255")
 
-# Low to high.
+# Colors of the lowest, middle and highest values of an attribute.
 _LOW, _MIDDLE, _HIGH = "#4a6fa5", "#f5e6a1", "#b5202c"
+
+# Classes of values of an attribute.
 _CLASSES = 6
 
-# Share of the cells of a raster that are lower and higher than its colors: single masts would make all others pale.
-_CUT, _CELLS_LOOKED_AT = 0.02, 250_000
+# Share of the cells of a raster that are left out at each end of its colors: single masts would make all others pale.
+_CUT = 0.02
+
+# Most cells by which these ends are found.
+_SAMPLED_CELLS = 250_000
 
 
 def add_named_styles(layer: QgsMapLayer) -> None:
@@ -117,7 +122,7 @@ def fit_ramp(layer: QgsRasterLayer) -> None:
     function = _ramp(layer)
     if function is None:
         return
-    _, high = layer.dataProvider().cumulativeCut(1, _CUT, 1 - _CUT, layer.extent(), _CELLS_LOOKED_AT)
+    _, high = layer.dataProvider().cumulativeCut(1, _CUT, 1 - _CUT, layer.extent(), _SAMPLED_CELLS)
     items = function.colorRampItemList()
     if not items or not high > 0:
         return

@@ -23,8 +23,14 @@ _FAN = 15.0
 # A run advances by this share of its length at least: it is an edge, and no bulge.
 _ADVANCE = 0.5
 
-# Turns (°) below which a corner is flat, and above which it is sharp; and differences that rounding leaves.
-_FLAT, _SHARP, _SAME = 20.0, 110.0, 0.5
+# Turn (°) below which a corner is flat.
+_FLAT = 20.0
+
+# Turn (°) above which a corner is sharp.
+_SHARP = 110.0
+
+# Difference (°) up to which two directions are the same or opposite: rounding leaves it.
+_SAME = 0.5
 
 # First length (samples) in which a corner is looked for to begin at.
 _TRIAL = 64
@@ -46,7 +52,8 @@ class Prices:
     corner: float  #: Price of a right-angled corner, m³: that of leaving out a bay of two spacings by four
     flat: float = 1.5  #: Corner that turns by less than 20°, which noise makes more easily than a sharper one
     step: float = 2.0  #: Step or turn by 180°, both of which are drawn with two corners
-    sharp: float = 4.0  #: Corner that turns by 170° or more; from 110° on the price grows to this
+    #: Corner that turns by 170° or more. Corners from 110° on have a price between that of a right angle and this.
+    sharp: float = 4.0
     #: Edge along the second main direction. With 1.0, the short side of a house whose front is oblique was drawn
     #: parallel to the front's direction.
     second: float = 0.5
@@ -147,6 +154,7 @@ class _Ways:
 def _turn_prices(turned: np.ndarray, prices: Prices) -> np.ndarray:
     """Return what turns by angles (°, -180 to 180) cost, in multiples of a right-angled corner."""
     size = np.abs(turned)
+    # In proportion, from the price at 90° to that at 170°.
     sharp = 1 + (prices.sharp - 1) * np.clip((size - 90) / 80, 0.0, 1.0)
     cost = np.where(size < _FLAT, prices.flat, np.where(size > _SHARP, sharp, 1.0))
     return np.where((size < _SAME) | (size > 180 - _SAME), prices.step, cost)

@@ -21,7 +21,7 @@ _CHUNK = 20_000
 # Neighbors by which seeds are connected first: most of the others then are of the same surface already.
 _FIRST_NEIGHBORS = 3
 
-# Growth by one neighborhood in each round: more than the widest gap between seeds takes.
+# Most rounds of growth, each by one neighborhood: more than the widest gap between seeds takes.
 _MAX_ROUNDS = 1000
 
 # Whether the surfaces at some points (m,) hold other points (m,), by their numbers.
@@ -54,17 +54,17 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     Surfaces that meet there and agree are one.
     """
     surface = connected_seeds(planes, is_seed, criteria, monitor.part(0, 0.6))
-    open_ = np.flatnonzero(surface < 0).astype(np.int32)
+    unassigned = np.flatnonzero(surface < 0).astype(np.int32)
     for step in range(_MAX_ROUNDS):
         part = monitor.part(1 - 0.4 * 0.8**step, 1 - 0.4 * 0.8 ** (step + 1))
-        parent = _nearest_that_holds(planes, open_, surface, partial(planes.hold, criteria), part)
+        parent = _nearest_that_holds(planes, unassigned, surface, partial(planes.hold, criteria), part)
         joins = parent >= 0
-        rows, parent = open_[joins], parent[joins]
+        rows, parent = unassigned[joins], parent[joins]
         if not len(rows):
             break
         surface[rows] = surface[parent]
         _refit(planes, rows, parent, surface)
-        open_ = _beside(planes, open_[~joins], rows)
+        unassigned = _beside(planes, unassigned[~joins], rows)
     return _met(planes, surface, np.flatnonzero((surface >= 0) & ~is_seed), criteria)
 
 
@@ -264,14 +264,14 @@ def _take_points(
     planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: Criteria, monitor: Monitor
 ) -> Planes:
     """Let planes take the points beside them in rounds, and return the planes of all points then."""
-    open_ = np.flatnonzero(surface < 0).astype(np.int32)
+    unassigned = np.flatnonzero(surface < 0).astype(np.int32)
     for step in range(_MAX_ROUNDS):
         part = monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1))
-        rows = _join(planes, open_, surface, partial(_plane_holds, planes, surface, fitted, criteria), part)
+        rows = _join(planes, unassigned, surface, partial(_plane_holds, planes, surface, fitted, criteria), part)
         if not len(rows):
             break
         fitted = _with_points(fitted, planes.xyz, surface[rows], rows)
-        open_ = open_[surface[open_] < 0]
+        unassigned = unassigned[surface[unassigned] < 0]
     return fitted
 
 

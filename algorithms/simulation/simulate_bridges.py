@@ -12,7 +12,7 @@ from .scanner import MAX_PULSES, RECORDED, Survey, scan
 
 _ALL = "all"
 
-# Decks are ground where the land beneath them is no farther (m): they lie on it.
+# Height over the land (m) up to which points of a deck are ground: the deck lies on the land.
 _ON_LAND = 0.5
 
 _DECK_FIELDS = (

@@ -15,7 +15,7 @@ _MIRROR_SHARE = 0.25
 
 
 def mirrored_angle(
-    tin: Tin, facet: np.ndarray, here: np.ndarray, distance: float, n_start: int, *, longest: float
+    tin: Tin, facet: np.ndarray, points: np.ndarray, distance: float, n_start: int, *, longest: float
 ) -> np.ndarray:
     """Return the angles (°) of points that lie beyond a breakline, at their mirror images; inf where they don't fit.
 
@@ -29,7 +29,7 @@ def mirrored_angle(
         The surface.
     facet : ndarray of shape (n,), int
         The facet under each point.
-    here : ndarray of shape (n, 3), float64
+    points : ndarray of shape (n, 3), float64
         Points, m.
     distance : float
         Largest distance at which a point joins its facet, m.
@@ -38,17 +38,17 @@ def mirrored_angle(
     longest : float
         Longest distance in plan over which a point is mirrored, m.
     """
-    angle = np.full(len(here), np.inf)
+    angle = np.full(len(points), np.inf)
     corners = tin.facets[facet]
     highest = corners[np.arange(len(corners)), np.argmax(tin.nodes[corners, 2], axis=1)]
-    image = 2 * (tin.nodes[highest] + tin.shift) - here
-    reach = np.linalg.norm(here[:, :2] - image[:, :2], axis=1) / 2
-    can = (corners >= CORNERS).all(axis=1) & (reach < longest)
-    can[can] = (highest[can] < CORNERS + n_start) & (here[can, 2] > tin.elevation(here[can], facet[can]))
-    of, image = np.flatnonzero(can), image[can]
-    there = tin.locate_near(image, highest[of])
-    offset, found = offset_and_angle(tin, there, image)
+    image = 2 * (tin.nodes[highest] + tin.shift) - points
+    reach = np.linalg.norm(points[:, :2] - image[:, :2], axis=1) / 2
+    rows = np.flatnonzero((corners >= CORNERS).all(axis=1) & (reach < longest) & (highest < CORNERS + n_start))
+    rows = rows[points[rows, 2] > tin.elevation(points[rows], facet[rows])]
+    image = image[rows]
+    other_facet = tin.locate_near(image, highest[rows])
+    offset, found = offset_and_angle(tin, other_facet, image)
     level = (tin.slope_cosine() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
-    fits = (offset <= _MIRROR_SHARE * distance) & level[there]
-    angle[of[fits]] = found[fits]
+    fits = (offset <= _MIRROR_SHARE * distance) & level[other_facet]
+    angle[rows[fits]] = found[fits]
     return angle

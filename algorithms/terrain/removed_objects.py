@@ -126,10 +126,10 @@ class ObjectRemoval:
 class _Side:
     """The cells of a surface and those beside them on one side."""
 
-    #: here, beside: What selects them
+    #: here, beside: slices that select the cells and their neighbors on this side
     here: tuple[slice, ...]
     beside: tuple[slice, ...]
-    joins: np.ndarray  #: Whether a cell joins the one beside it without a step
+    joins: np.ndarray  #: (of the shape selected), bool: whether a cell joins the one beside it without a step
 
 
 def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
@@ -200,8 +200,9 @@ def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
     while np.isnan(filled).any() and scale < widest:
         share = ndimage.gaussian_filter(weight, scale, mode="nearest")
         mean = ndimage.gaussian_filter(weighted, scale, mode="nearest")
-        now = np.isnan(filled) & (share > 1e-3)
-        filled[now] = mean[now] / share[now]
+        # Far from known cells the share is all rounding.
+        is_reached = np.isnan(filled) & (share > 1e-3)
+        filled[is_reached] = mean[is_reached] / share[is_reached]
         scale *= 2
     return nearest_known(filled, np.isnan(filled)) if np.isfinite(filled).any() else surface
 

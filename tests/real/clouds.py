@@ -49,8 +49,14 @@ GROUND_IN_TOWN = (DELFT,)
 # A cloud with the points that its makers rejected.
 OUTLIERS = "outliers/ign-crop3"
 
-# Cells in which the area that is called building is counted (m): every roof cell should hold a point.
-_CELL, _SPARSE_CELL, _SPARSE_DENSITY = 0.5, 1.0, 6.0
+# Side (m) of the cells in which the area called building is counted: every roof cell should hold a point.
+_CELL = 0.5
+
+# The side (m) in sparse clouds.
+_SPARSE_CELL = 1.0
+
+# Density (points/m²) up to which a cloud is sparse.
+_SPARSE_DENSITY = 6.0
 
 
 @dataclass(frozen=True)

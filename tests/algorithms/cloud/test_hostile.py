@@ -175,7 +175,7 @@ def test_long_records_of_many_points(make_las, tmp_path):
 
 
 def test_damage_in_the_chunk_table_and_the_heads_of_chunks(laz):
-    """Of 60 files with two changed bytes in the table one ended the process, and ten took refused 1 GB."""
+    """Of 60 files with two changed bytes in the table one ended the process, and ten took over 1 GB."""
     raw, path = laz
     rng = np.random.default_rng(1)
     (table_at,) = struct.unpack_from("<q", raw, points_at(raw))

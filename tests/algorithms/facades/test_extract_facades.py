@@ -213,7 +213,7 @@ def test_key_points_are_where_a_boundary_turns():
     np.testing.assert_allclose(key_points(ring), [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]])
 
 
-def test_a_boundary_is_pushed_out_until_it_holds_all_places():
+def test_a_boundary_is_pushed_out_until_it_holds_all_positions():
     square = np.array([[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]], float)
     made = pushed_out(square, np.array([[2, -0.3], [4.2, 2], [4.2, -0.3]]), np.inf)
     np.testing.assert_allclose(made, [[0, -0.3], [4.2, -0.3], [4.2, 4], [0, 4], [0, -0.3]], atol=1e-9)
@@ -246,11 +246,11 @@ def test_the_search_for_one_wall_can_be_cancelled():
 
 def test_a_facade_narrower_than_its_tolerance_keeps_the_boundary_of_its_points(rng):
     """Sparse points of a strip 0.6 m wide: straight edges within two spacings would leave a line of it."""
-    places = np.column_stack([rng.uniform(0, 0.6, 60), np.sort(rng.uniform(0, 4.5, 60))])
-    places[::7, 1] += 0.4
-    outline = outline_of(places, Drawing(10.0, 1.0, 4.0, "straight edges", True))
+    positions = np.column_stack([rng.uniform(0, 0.6, 60), np.sort(rng.uniform(0, 4.5, 60))])
+    positions[::7, 1] += 0.4
+    outline = outline_of(positions, Drawing(10.0, 1.0, 4.0, "straight edges", True))
     assert len(outline.ring) > 3
-    assert outline.seen_area <= ring_area(outline.ring) <= 1.1 * np.prod(np.ptp(places, axis=0))
+    assert outline.seen_area <= ring_area(outline.ring) <= 1.1 * np.prod(np.ptp(positions, axis=0))
 
 
 def test_walls_are_found_among_the_facade_lines_of_a_vehicle_and_a_fence_before_them_is_not():
@@ -266,8 +266,8 @@ def test_walls_are_found_among_the_facade_lines_of_a_vehicle_and_a_fence_before_
     along, up, out = frame.local(xyz).T
     # Points low on the front become those of the fence, which hides the front there.
     is_fence = true & (up < ring[0, 2] + 3.0 - frame.origin[2]) & (along > 2.0) & (along < 5.0) & (np.abs(out) < 0.1)
-    before = frame.normal
-    fenced = xyz + 4.0 * is_fence[:, None] * before
+    outward = frame.normal
+    fenced = xyz + 4.0 * is_fence[:, None] * outward
     unclassified = np.zeros(len(xyz), np.uint8)
     times = points["gps_time"], points["point_source_id"]
     everywhere, _ = extract_facades(fenced, unclassified, *times)

@@ -38,7 +38,7 @@ def test_members_are_the_positions_of_each_number_from_1(values):
 
 
 @given(st.lists(st.tuples(st.integers(0, 7), st.integers(0, 7)), max_size=10))
-def test_things_are_of_one_group_where_a_chain_of_pairs_leads(pairs):
+def test_items_are_of_one_group_if_a_chain_of_pairs_joins_them(pairs):
     one, other = np.array(pairs, np.int64).reshape(-1, 2).T
     count, group = components(one, other, 8)
     wanted = list(range(8))
@@ -63,5 +63,5 @@ def test_equal_keys_are_ordered_by_their_ties(rng, n_keys):
     assert ordered(key, first, second).tolist() == expected
 
 
-def test_no_keys_have_an_order_of_none():
+def test_the_order_of_no_keys_is_empty():
     assert ordered(np.zeros(0, np.int64), np.zeros(0)).tolist() == []

@@ -1,4 +1,4 @@
-"""The triangulated surface against scipy's own interpolation and search, and at the places where those end."""
+"""The triangulated surface against scipy's own interpolation and search, and where those end."""
 
 import numpy as np
 import pytest
@@ -19,33 +19,33 @@ def nodes(rng):
 
 
 @pytest.fixture
-def places(rng):
+def positions(rng):
     """Points all over and around the nodes; their own elevation means nothing."""
     return np.column_stack([rng.uniform([-20, -20], [120, 80], (3000, 2)), np.zeros(3000)])
 
 
-def test_elevation_inside_the_hull_is_that_of_scipy(nodes, places):
+def test_elevation_inside_the_hull_is_that_of_scipy(nodes, positions):
     tin = Tin(nodes)
-    facet = tin.locate(places)
-    theirs = LinearNDInterpolator(nodes[:, :2], nodes[:, 2])(places[:, :2])
+    facet = tin.locate(positions)
+    theirs = LinearNDInterpolator(nodes[:, :2], nodes[:, 2])(positions[:, :2])
     inside = np.isfinite(theirs)
     own = ~tin.is_extrapolated()[facet]
     # The corners may take a sliver off the hull, and never add to it.
     assert not (own & ~inside).any()
     assert (inside & ~own).sum() < 0.02 * inside.sum()
-    np.testing.assert_allclose(tin.elevation(places, facet)[own], theirs[own], atol=1e-9)
+    np.testing.assert_allclose(tin.elevation(positions, facet)[own], theirs[own], atol=1e-9)
 
 
-def test_facets_are_those_that_qhull_finds(nodes, places):
+def test_facets_are_those_that_qhull_finds(nodes, positions):
     tin = Tin(nodes)
     whole = Delaunay(tin.nodes[:, :2])
-    found = whole.simplices[whole.find_simplex(places[:, :2] - tin.shift[:2])]
-    np.testing.assert_array_equal(np.sort(tin.facets[tin.locate(places)], axis=1), np.sort(found, axis=1))
+    found = whole.simplices[whole.find_simplex(positions[:, :2] - tin.shift[:2])]
+    np.testing.assert_array_equal(np.sort(tin.facets[tin.locate(positions)], axis=1), np.sort(found, axis=1))
 
 
-def test_nodes_that_join_change_the_surface_as_if_they_had_been_there(nodes, places):
+def test_nodes_that_join_change_the_surface_as_if_they_had_been_there(nodes, positions):
     box = np.array([[0.0, 0], [100, 60]])
-    points = np.concatenate([nodes[300:], places])
+    points = np.concatenate([nodes[300:], positions])
     tin, whole = Tin(nodes[:300], box), Tin(nodes, box)
     before = tin.locate(points)
     facet = tin.add(points, before, np.arange(100))
@@ -59,23 +59,23 @@ def test_nodes_that_join_change_the_surface_as_if_they_had_been_there(nodes, pla
     np.testing.assert_array_equal(tin.locate_near(points, np.full(len(points), 7))[100:], facet[100:])
 
 
-def test_chunks_change_nothing(nodes, places, monkeypatch):
-    whole = Tin(nodes).locate(places)
+def test_chunks_change_nothing(nodes, positions, monkeypatch):
+    whole = Tin(nodes).locate(positions)
     monkeypatch.setattr(module, "_CHUNK", 700)
-    np.testing.assert_array_equal(Tin(nodes).locate(places), whole)
+    np.testing.assert_array_equal(Tin(nodes).locate(positions), whole)
 
 
-def test_a_walk_that_does_not_end_is_finished_by_search(nodes, places, monkeypatch):
+def test_a_walk_that_does_not_end_is_finished_by_search(nodes, positions, monkeypatch):
     tin = Tin(nodes)
-    whole = tin.locate(places)
+    whole = tin.locate(positions)
     monkeypatch.setattr(module, "_MAX_STEPS", 1)
-    np.testing.assert_array_equal(tin.locate(places), whole)
+    np.testing.assert_array_equal(tin.locate(positions), whole)
 
 
-def test_large_coordinates_keep_their_digits(nodes, places):
-    here, there = Tin(nodes), Tin(nodes + FAR)
-    near = here.elevation(places, here.locate(places))
-    np.testing.assert_allclose(there.elevation(places + FAR, there.locate(places + FAR)), near, atol=1e-5)
+def test_large_coordinates_keep_their_digits(nodes, positions):
+    at_origin, far_away = Tin(nodes), Tin(nodes + FAR)
+    near = at_origin.elevation(positions, at_origin.locate(positions))
+    np.testing.assert_allclose(far_away.elevation(positions + FAR, far_away.locate(positions + FAR)), near, atol=1e-5)
 
 
 def test_nodes_lie_on_their_surface_also_on_a_regular_grid():
@@ -85,10 +85,10 @@ def test_nodes_lie_on_their_surface_also_on_a_regular_grid():
     np.testing.assert_allclose(tin.elevation(nodes, tin.locate(nodes)), nodes[:, 2], atol=1e-9)
 
 
-def test_duplicate_nodes_count_once(nodes, places):
+def test_duplicate_nodes_count_once(nodes, positions):
     once, twice = Tin(nodes), Tin(np.concatenate([nodes, nodes[::3]]))
-    expected = once.elevation(places, once.locate(places))
-    np.testing.assert_allclose(twice.elevation(places, twice.locate(places)), expected, atol=1e-9)
+    expected = once.elevation(positions, once.locate(positions))
+    np.testing.assert_allclose(twice.elevation(positions, twice.locate(positions)), expected, atol=1e-9)
     tall = Tin(np.array([[0.0, 0, 0], [0, 0, 7], [4, 0, 0], [0, 4, 0], [4, 4, 0]]))
     at = np.zeros((1, 3))
     assert tall.elevation(at, tall.locate(at))[0] in (pytest.approx(0), pytest.approx(7))
@@ -104,7 +104,7 @@ def test_outside_the_hull_the_surface_goes_on_at_the_height_of_the_nearest_nodes
 
 
 def test_points_farther_than_the_corners_are_outside_too(rng):
-    """Ground known in one small place of a large cloud once gave heights of some unrelated facet."""
+    """Ground known in one small part of a large cloud once gave heights of some unrelated facet."""
     nodes = rng.uniform(0, 2, (6, 3))
     far = rng.uniform(-5000, 5000, (200, 3))
     tin = Tin(nodes)
@@ -114,9 +114,9 @@ def test_points_farther_than_the_corners_are_outside_too(rng):
 
 
 @pytest.mark.parametrize("nodes", [[[3, 4, 5]], [[3, 4, 5], [3, 4, 5]]])
-def test_one_node_is_a_level_surface(nodes, places):
+def test_one_node_is_a_level_surface(nodes, positions):
     tin = Tin(np.array(nodes, float))
-    np.testing.assert_allclose(tin.elevation(places[:50], tin.locate(places[:50])), 5)
+    np.testing.assert_allclose(tin.elevation(positions[:50], tin.locate(positions[:50])), 5)
 
 
 def test_nodes_on_a_line_interpolate_along_it():
@@ -135,8 +135,8 @@ def test_slope_cosine_and_longest_edge_of_a_roof():
 
 def test_circles_go_through_their_nodes_and_hold_no_other(nodes):
     """To all digits in map coordinates too: else circles without a node inside would seem to have one."""
-    for place in (0, FAR):
-        tin = Tin(nodes + place)
+    for shift in (0, FAR):
+        tin = Tin(nodes + shift)
         center, radius = tin.circles(np.arange(len(tin.facets)))
         distance = np.linalg.norm(tin.nodes[None, :, :2] - center[:, None], axis=2)
         own = np.take_along_axis(distance, tin.facets, axis=1)
@@ -203,6 +203,6 @@ def test_robust_deviation_of_normal_noise(rng):
 
 
 def test_truth_of_the_comparison(nodes):
-    """The hull that the comparison rests on leaves places outside, so that both sides are tested."""
+    """The hull that the comparison uses leaves positions outside, so that both sides are tested."""
     outside = Delaunay(nodes[:, :2]).find_simplex([[-15.0, 5], [50, 30]]) < 0
     assert outside.tolist() == [True, False]
