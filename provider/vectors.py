@@ -106,9 +106,9 @@ def _column(
         return [None if value is None else str(value) for value in column]
     if declared.axis is None:
         return column
-    places = np.zeros((len(column), 2))
-    places[:, declared.axis] = column
-    return to_map(places)[:, declared.axis]
+    positions = np.zeros((len(column), 2))
+    positions[:, declared.axis] = column
+    return to_map(positions)[:, declared.axis]
 
 
 def plain(value: Any) -> Any:

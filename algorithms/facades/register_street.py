@@ -31,7 +31,7 @@ _MEANINGS = {
     "shift_y": "Added to its northings.",
     "shift_z": "Added to its elevations, from the ground that both scans show.",
     "residual": "Root mean square distance of common walls and ends from the outlines after the shift.",
-    "overhang": "Mean distance of the outlines from the air before the walls: eaves, and the edge of the points.",
+    "overhang": "Mean distance of airborne outlines outside the walls: eaves, and the spacing of the points at edges.",
     "walls": "Facades that lie on an edge of a footprint.",
     "ends": "Ends of facades that lie at a corner of a footprint; they give the shift along the street.",
     "ground": "Cells of 0.5 m in which the lowest point of the street is ground from the air, too.",

@@ -70,9 +70,8 @@ def _segments(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         for step in (1, 2, 3):
             leaving = (side + step) % 4
             pairs = enters[side] & leaves[leaving]
-            # The line that enters goes around the corner that is next to it: outward from a joined middle.
-            wanted = 1 if step == 1 else 3
-            chosen = pairs & (~is_saddle | ((step != 2) & (is_joined == (wanted == 1))))
+            # In a saddle the line goes around one corner: to the next side if the middle is joined, else to the last.
+            chosen = pairs & (~is_saddle | (is_joined == (step == 1)))
             starts.append(sides[side][chosen])
             ends.append(sides[leaving][chosen])
     return np.concatenate(starts), np.concatenate(ends)

@@ -22,9 +22,12 @@ from .delaunay import circles
 from .grid import grid_over, plan_box
 from .tin import CORNERS, Tin
 
-# Nodes and points of a tile at most: per node, tiles of this size take less than half the time of tiles of twenty
-# thousand; in smaller ones the overlap of tiles takes more.
-_NODES, _PLACES = 5_000, 20_000
+# Most nodes of a tile: per node, tiles of this size take less than half the time of tiles of twenty thousand; in
+# smaller ones the overlap of tiles takes more.
+_TILE_NODES = 5_000
+
+# Most positions of a tile.
+_TILE_POSITIONS = 20_000
 
 # Tiles that a thread works on between two reports.
 _TILES_AT_ONCE = 4
@@ -176,20 +179,20 @@ def _tiles(nodes: np.ndarray, positions: np.ndarray) -> Iterator[tuple[np.ndarra
 
     Nodes close to a part are in it too.
     """
-    left = [(np.arange(len(nodes), dtype=np.int32), np.arange(len(positions), dtype=np.int32))]
-    while left:
-        rows, own = left.pop()
+    waiting = [(np.arange(len(nodes), dtype=np.int32), np.arange(len(positions), dtype=np.int32))]
+    while waiting:
+        rows, own = waiting.pop()
         if not len(own):
             continue
-        low, high = plan_box(nodes[rows] if len(rows) > _NODES else positions[own])
+        low, high = plan_box(nodes[rows] if len(rows) > _TILE_NODES else positions[own])
         axis = int(np.argmax(high - low))
         middle = (low[axis] + high[axis]) / 2
-        if (len(rows) <= _NODES and len(own) <= _PLACES) or not low[axis] < middle:
+        if (len(rows) <= _TILE_NODES and len(own) <= _TILE_POSITIONS) or not low[axis] < middle:
             yield rows, own
             continue
         margin = 2 * _cell_size(nodes, rows)
         along, is_lower = nodes[rows, axis], positions[own, axis] < middle
-        left += [(rows[along < middle + margin], own[is_lower]), (rows[along >= middle - margin], own[~is_lower])]
+        waiting += [(rows[along < middle + margin], own[is_lower]), (rows[along >= middle - margin], own[~is_lower])]
 
 
 def _cell_size(nodes: np.ndarray, rows: np.ndarray) -> float:

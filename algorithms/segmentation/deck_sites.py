@@ -51,7 +51,7 @@ def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, deck
         return np.zeros(len(xyz), bool)
     reach = DECK.far * decks.reach
     is_near = ndimage.distance_transform_edt(~is_site) * decks.cell <= reach
-    # Points higher than roads that rise from surfaces around are of crowns beside them and over them.
+    # A road that rises from the surfaces around gets no higher than this; points above it are of crowns.
     side = 2 * int(np.ceil(reach / decks.cell)) + 1
     highest = ndimage.maximum_filter(np.where(is_site, surface, -np.inf), side) + decks.near.slope * reach
     return is_near[row, column] & (xyz[:, 2] <= highest[row, column])

@@ -81,7 +81,7 @@ def segment_patches(
         return np.full(len(used), -1, np.int32)
     # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
     xyz = xyz.take(used, axis=0)
-    # Here, as the whole cloud measured from there would take as much memory again.
+    # The used points only: a copy of the whole cloud would take as much memory again.
     xyz[:, :2] -= corner
     order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(used)))
@@ -177,7 +177,7 @@ def _links(
     One surface is within ``reach`` (m) of both points.
     """
     n_links = np.zeros(len(plane) + 1, np.int64)
-    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // ROWS_AT_ONCE)
+    linked: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // ROWS_AT_ONCE)
 
     def work(rows: np.ndarray) -> None:
         neighbors = planes.neighbors[rows]
@@ -192,10 +192,10 @@ def _links(
         same &= np.abs(np.einsum("ij,ij->i", points[a], of_b)) <= reach
         is_link[apart] = same
         n_links[rows + 1] = is_link.sum(axis=1)
-        there[rows[0] // ROWS_AT_ONCE] = neighbors[is_link]
+        linked[rows[0] // ROWS_AT_ONCE] = neighbors[is_link]
 
     in_chunks(work, np.arange(len(plane)), ROWS_AT_ONCE, monitor)
-    return np.concatenate(there), np.cumsum(n_links)
+    return np.concatenate(linked), np.cumsum(n_links)
 
 
 def _components(linked: np.ndarray, starts: np.ndarray) -> np.ndarray:

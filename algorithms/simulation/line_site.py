@@ -11,17 +11,38 @@ from .relief import Relief
 from .scene import Scene
 from .solids import Rect, Solid, gable
 
-# Height of a tower (m), of its three pairs of arms, length of an arm on each side, and half the distance of its legs.
-_TOWER, _ARMS, _ARM, _LEG = 30.0, (29.0, 25.0, 21.0), 5.0, 1.6
+# Height of a tower (m).
+_TOWER = 30.0
+
+# Heights of its three pairs of arms (m).
+_ARMS = (29.0, 25.0, 21.0)
+
+# Length of an arm on each side (m).
+_ARM = 5.0
+
+# Half of the distance between the legs of a tower (m).
+_LEG = 1.6
 
 # Sag of conductors, as a share of their span: usual at 20 °C.
 _SAG = 0.03
 
-# Height of poles, distance between them, sag of their wires, and how far these hang from the middle (m).
-_POLE, _POLES, _POLE_SAG, _SIDES = 9.0, 40.0, 0.8, (-0.8, 0.0, 0.8)
+# Height of poles (m).
+_POLE = 9.0
 
-# Houses lie this far from the poles' line (m); and the sag of their wires (m).
-_HOUSE, _DROP_SAG = 16.0, 0.3
+# Distance between neighboring poles (m).
+_POLES = 40.0
+
+# Sag of the wires of poles (m).
+_POLE_SAG = 0.8
+
+# Distances of these wires from the line of the poles (m).
+_SIDES = (-0.8, 0.0, 0.8)
+
+# Distance of houses from the line of the poles (m).
+_HOUSE = 16.0
+
+# Sag of the wire from a pole to a house (m).
+_DROP_SAG = 0.3
 
 # Straight pieces that a wire is made of.
 _PIECES = 24

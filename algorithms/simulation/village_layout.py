@@ -15,14 +15,19 @@ from .solids import Rect
 from .town_layout import park_car
 from .village_houses import build_home, build_shed
 
-# Streets are this far apart, with two rows of plots between them (m).
-_STREETS, _STREET_WIDTH = 60.0, 8.0
+# Distance (m) between the axes of neighboring streets, with two rows of plots between these.
+_STREETS = 60.0
+
+# Width of a street (m).
+_STREET_WIDTH = 8.0
+
+# Length along the street and depth of a plot (m).
 _PLOT = (22.0, 26.0)
 
-# Plots on a hectare of streets and plots: as many as can be built on.
+# Plots, and so houses at most, on a hectare of streets and plots.
 MAX_HOMES = 15
 
-# Hills and hollows of a few meters.
+# Height from hollows to hills (m).
 _HILLS = 2.0
 
 

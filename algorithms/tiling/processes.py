@@ -26,10 +26,13 @@ PACKAGE = __name__.split(".", maxsplit=1)[0]
 FOLDER = Path(__file__).resolve().parents[2]
 _PROGRAM = Path(__file__).with_name("worker_process.py")
 
-# Seconds that an interpreter has to answer, and that a process has to end.
-_ANSWER, _END = 15, 5
+# Seconds that an interpreter has to answer.
+_ANSWER = 15
 
-# A call is made this often: once more where the system ended the process that worked on it.
+# Seconds that a process has to end.
+_END = 5
+
+# Most attempts at a call: once more where the system ended the process that worked on it.
 _ATTEMPTS = 2
 
 

@@ -35,7 +35,7 @@ MOST_MEMORY = 600.0  # MB
 MOST_TIME = 10.0  # s
 # Address space beyond that of a process at rest (MB): an allocation that is refused shows what a file asked for.
 ADDRESS_SPACE = 1500.0
-# Starting a process takes a second, on a loaded machine much longer; and what sleeps does not work.
+# Longest time of an answer, also of a process that starts on a loaded machine or waits without working.
 _START = 120.0  # s
 # Threads of lazrs and arenas of the C library take address space by the number of cores.
 _ENVIRONMENT = {
@@ -44,6 +44,7 @@ _ENVIRONMENT = {
     "MALLOC_ARENA_MAX": "2",
     "PYTHONFAULTHANDLER": "",
 }
+# Bytes of the end of an error stream that are kept.
 _TAIL = 2000
 
 
@@ -175,21 +176,21 @@ def _note(result: Result, answer: dict[str, Any], seconds: float, seed: int, kin
 def keep(finding: dict[str, Any], folder: Path) -> Path:
     """Write the files of a finding and its error to a folder, and return it."""
     number, seed, kinds = finding["number"], finding["seed"], finding["kinds"]
-    place = folder / f"{seed}-{number}-{finding['kind']}"
-    place.mkdir(parents=True, exist_ok=True)
+    own = folder / f"{seed}-{number}-{finding['kind']}"
+    own.mkdir(parents=True, exist_ok=True)
     for name, raw in mutant(seed, number, kinds).files.items():
-        (place / name).write_bytes(raw)
+        (own / name).write_bytes(raw)
     again = f"python tests/attacks/fuzz.py --seed {seed} --only {number} --kinds {' '.join(kinds)}\n"
-    (place / "said.txt").write_text(f"{again}{finding['said']}\n", encoding="utf-8", errors="backslashreplace")
-    return place
+    (own / "said.txt").write_text(f"{again}{finding['said']}\n", encoding="utf-8", errors="backslashreplace")
+    return own
 
 
 def cause(finding: dict[str, Any]) -> str:
     """Return the last line of an error without numbers, which is the same for findings of one cause."""
     lines = [line.strip() for line in finding["said"].splitlines() if line.strip()]
     where = [line for line in lines if line.startswith("File ") and "tests/attacks" not in line]
-    place = re.sub(r'File ".*/(\w+/\w+\.py)", line (\d+).*', r"\1:\2 ", where[-1]) if where else ""
-    return place + re.sub(r"\d+", "#", (lines or [""])[-1])[:160]
+    position = re.sub(r'File ".*/(\w+/\w+\.py)", line (\d+).*', r"\1:\2 ", where[-1]) if where else ""
+    return position + re.sub(r"\d+", "#", (lines or [""])[-1])[:160]
 
 
 def show(result: Result, folder: Path) -> None:

@@ -18,8 +18,8 @@ SIDE = 80.0
 @pytest.fixture(autouse=True)
 def small_tiles(monkeypatch):
     """Tiles so small that the few points of a test make many."""
-    monkeypatch.setattr(module, "_NODES", 400)
-    monkeypatch.setattr(module, "_PLACES", 600)
+    monkeypatch.setattr(module, "_TILE_NODES", 400)
+    monkeypatch.setattr(module, "_TILE_POSITIONS", 600)
 
 
 def ground(rng, where, count=6000):
@@ -131,8 +131,8 @@ def test_order_and_position_change_nothing(rng):
 def test_size_of_tiles_changes_nothing(rng, monkeypatch):
     nodes, places = ground(rng, lambda plan: from_middle(plan) > 20), rng.uniform(0, SIDE, (3000, 2))
     found = TiledTin(nodes).elevation(places)
-    monkeypatch.setattr(module, "_NODES", 100_000)
-    monkeypatch.setattr(module, "_PLACES", 100_000)
+    monkeypatch.setattr(module, "_TILE_NODES", 100_000)
+    monkeypatch.setattr(module, "_TILE_POSITIONS", 100_000)
     np.testing.assert_allclose(TiledTin(nodes).elevation(places), found, atol=1e-9)
 
 
@@ -205,7 +205,7 @@ def test_a_facet_of_nodes_on_a_line_is_taken_as_it_is(rng):
 
 @pytest.mark.parametrize("other", [3.0, np.nextafter(3.0, 4.0)])
 def test_places_that_no_line_parts_stay_in_one_tile(other, monkeypatch):
-    monkeypatch.setattr(module, "_PLACES", 1)
+    monkeypatch.setattr(module, "_TILE_POSITIONS", 1)
     places = np.array([[3.0, 7.0], [other, 7.0]])
     ((rows, own),) = module._tiles(np.zeros((1, 3)), places)
     assert (rows.tolist(), own.tolist()) == ([0], [0, 1])

@@ -41,7 +41,7 @@ def thinned(grid):
 
 
 def ball(radius, hole=0.0):
-    away = np.sqrt((np.indices((2 * radius + 3,) * 3) - radius - 1).astype(float).__pow__(2).sum(axis=0))
+    away = np.sqrt(((np.indices((2 * radius + 3,) * 3) - radius - 1).astype(float) ** 2).sum(axis=0))
     return (away <= radius) & (away >= hole)
 
 

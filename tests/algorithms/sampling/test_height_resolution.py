@@ -1,4 +1,4 @@
-"""Rounded heights give their step away; finely measured ones, flat roofs and stairs have none."""
+"""Rounded heights show their step; finely measured ones, flat roofs and stairs have none."""
 
 import numpy as np
 import pytest

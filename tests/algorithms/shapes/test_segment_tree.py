@@ -47,7 +47,7 @@ def test_the_stem_is_found_with_its_diameter_and_length(found):
     assert columns["branch_order"].count(0) == 1
     assert columns["dbh"][0] == pytest.approx(0.2, abs=0.01)
     assert columns["length"][0] == pytest.approx(9.0, rel=0.04)
-    # A cone from the base, a little thicker than at the breast, to 0.35 of it.
+    # A cone from the base, a little thicker than at breast height, to 0.35 of that at the top.
     assert columns["volume"][0] == pytest.approx(np.pi / 3 * 9 * 0.11**2 * (1 + 0.35 + 0.35**2), rel=0.15)
     assert np.isnan(columns["dbh"][1:]).all()
 
@@ -154,11 +154,11 @@ def test_the_search_for_stems_can_be_canceled(rng):
 
 def test_gaps_are_the_shortest_pairs_of_pieces_however_many_are_listed_at_once(rng, monkeypatch):
     """All voxels near all others were listed at once: 2 kB for each of a thin crown, 30 kB for each of a dense one."""
-    places = np.floor(rng.uniform(0, 12, (250, 3)))
+    positions = np.floor(rng.uniform(0, 12, (250, 3)))
     piece = rng.integers(0, 40, 250)
     monkeypatch.setattr(tree_structure, "_CHUNK", 7)
-    pairs = tree_structure._gaps(places, piece, 3.0, Monitor())
-    distance = np.linalg.norm(places[:, None] - places, axis=2)
+    pairs = tree_structure._gaps(positions, piece, 3.0, Monitor())
+    distance = np.linalg.norm(positions[:, None] - positions, axis=2)
     expected = {}
     for one in range(40):
         for other in range(one):
