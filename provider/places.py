@@ -13,21 +13,19 @@ from ..algorithms.cloud.units import NO_CRS
 from ..algorithms.stage import InputLayer, Monitor
 from .crs import code_in_space, crs_of, crs_of_layer, meters_per_unit
 
+# Local meters begin at a multiple of this (m), as those of clouds do.
 _ORIGIN_STEP = 1000.0
 
 
 @dataclass(frozen=True)
 class Place:
-    """A CRS, what turns local meters (m, 2 or 3) into its coordinates and back, and meters per unit in plan.
+    """A CRS, and how local meters become coordinates in it."""
 
-    ``code`` names it with its heights, where it has a code with them.
-    """
-
-    crs: QgsCoordinateReferenceSystem
-    to_map: Callable[[np.ndarray], np.ndarray]
-    from_map: Callable[[np.ndarray], np.ndarray]
-    unit: float = 1.0
-    code: str = ""
+    crs: QgsCoordinateReferenceSystem  #: The CRS of the map
+    to_map: Callable[[np.ndarray], np.ndarray]  #: Turns local meters (m, 2 or 3) into coordinates
+    from_map: Callable[[np.ndarray], np.ndarray]  #: Turns coordinates (m, 2 or 3) into local meters
+    unit: float = 1.0  #: Meters per unit in plan
+    code: str = ""  #: Code of the CRS with its heights, "" without one
 
 
 def place_of_cloud(cloud: Cloud) -> Place:
@@ -63,9 +61,9 @@ def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monito
         axes = np.shape(local)[-1]
         return (np.asarray(local, float) + origin[:axes]) / units[:axes]
 
-    def from_map(there: np.ndarray) -> np.ndarray:
-        axes = np.shape(there)[-1]
-        return np.asarray(there, float) * units[:axes] - origin[:axes]
+    def from_map(coordinates: np.ndarray) -> np.ndarray:
+        axes = np.shape(coordinates)[-1]
+        return np.asarray(coordinates, float) * units[:axes] - origin[:axes]
 
     return Place(crs, to_map, from_map, plane, crs.authid())
 

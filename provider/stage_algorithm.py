@@ -62,7 +62,7 @@ from .text_files import file_parameter, write_text
 from .texts import tr
 from .vectors import SOURCE_TYPES, plain
 
-# How far the progress is when clouds are read, when the stage is done, and when the cloud is written.
+# Progress when clouds are read, when the stage is done, and when the cloud is written, 0 to 1.
 _READ, _RUN, _WRITTEN = 0.15, 0.8, 0.97
 
 
@@ -127,7 +127,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             sink = QgsProcessingParameterFeatureSink(
                 layer.name.upper(), tr(layer.title), SOURCE_TYPES[layer.geometry], optional=optional
             )
-            # Of layers alone the first is what the stage is for.
+            # Where a stage writes layers only, the first is required and the others are optional.
             optional = True
             self.addParameter(with_help(sink, tr("A GeoPackage or any other vector format that QGIS writes.")))
         optional = optional or len(stage.rasters) > 1
@@ -219,7 +219,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         parts = [monitor.part(i * share, (i + 1) * share) for i in range(len(paths))]
         clouds = [read_named(path, part, self.job.crs, self.job.box) for path, part in zip(paths, parts)]
         reference = clouds.pop() if self.job.reference else None
-        self._tell_what_is_taken(clouds, monitor)
+        self._log_earlier_dimensions(clouds, monitor)
         found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.stage.input_layers}
         given = {wanted: layer for wanted, layer in found.items() if layer is not None}
         place = place_of_cloud(clouds[0]) if clouds else place_of_layers(given, monitor)
@@ -241,12 +241,12 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def _points(self) -> int:
         return sum(count_points(path, self.job.box) for path in self.job.paths)
 
-    def _tell_what_is_taken(self, clouds: list[Cloud], monitor: Monitor) -> None:
+    def _log_earlier_dimensions(self, clouds: list[Cloud], monitor: Monitor) -> None:
         """Log which dimensions of earlier runs are read; of a chain they are those of its own steps."""
         names = [name for name in self.stage.optional if name in DIMENSIONS and not DIMENSIONS[name].standard]
-        there = [DIMENSIONS[name].disk[0] for name in names if all(cloud.has(name) for cloud in clouds)]
-        if self._alone and there:
-            monitor.inform(f"The cloud has {', '.join(there)} of an earlier run; they are taken as they are.")
+        earlier = [DIMENSIONS[name].disk[0] for name in names if all(cloud.has(name) for cloud in clouds)]
+        if self._alone and earlier:
+            monitor.inform(f"The cloud has {', '.join(earlier)} of an earlier run; they are taken as they are.")
 
     def _numbers(self, outcome: Outcome, monitor: Monitor) -> dict:
         """Return the numbers by the names of their outputs."""

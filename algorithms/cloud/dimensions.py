@@ -16,8 +16,7 @@ class Dimension:
 
     ``disk`` holds the names on disk (one per component), as QGIS and PDAL write them. ``aliases`` are read as the same
     dimension; ``description`` has at most 31 bytes, since LAS has 32 for it; ``standard`` ones are LAS fields. ``of``
-    is the dimension whose numbers it describes, or is one of: where a stage numbers anew, what an earlier run said of
-    other numbers is cleared.
+    is the id dimension whose numbers it refers to or describes: a stage that writes new numbers there clears it.
     """
 
     name: str

@@ -65,7 +65,7 @@ def classify_vegetation(
         float,
         Param(
             "Minimum height",
-            "Height above the ground from which points are vegetation; lower ones are unclassified.",
+            "Points higher above the ground than this are vegetation; all others are unclassified.",
             unit="m",
             low=0,
             high=10,
@@ -128,9 +128,9 @@ def classify_vegetation(
     -----
     Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is
     a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a
-    fifth of its pulses had several returns, and half of its points lie closer to the plane of their neighborhood than
-    the roughness of roofs and walls. It is a pole if it is four times as high as its extent in plan. In thin clouds few
-    cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.
+    fifth of its pulses had several returns, and half of its points have neighbors that deviate from a plane no more
+    than points of roofs and walls do. It is a pole if it is four times as high as its extent in plan. In thin clouds
+    few cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.
 
     References
     ----------

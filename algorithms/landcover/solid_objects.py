@@ -93,7 +93,7 @@ def _extent(group: np.ndarray, xyz: np.ndarray, size: np.ndarray) -> np.ndarray:
 
 
 def _on_surfaces(xyz: np.ndarray, sampling: CloudSampling, monitor: Monitor) -> np.ndarray:
-    """Return which points (n,) lie within the roughness of surfaces to the plane of their neighborhood."""
+    """Return which points (n,) have neighbors that deviate from a plane no more than points of surfaces do."""
     is_smooth = np.zeros(len(xyz), bool)
     if len(xyz) < LEAST_NEIGHBORS:
         return is_smooth

@@ -22,24 +22,41 @@ SCANNERS = {"horizontal": 1, "vertical": 2}
 FIELD = 270.0
 _NEAREST = 0.1
 
-# The drone starts in the street, this far from the middle of the site, its scanners over the ground (m).
+# Position in the street from which the drone starts, from the middle of the site (m).
 _START = (0.8, 3.0)
+
+# Height of the scanners over the ground before the start (m).
 _STANDING = 0.4
 
-# Shares of the time in which it climbs and comes down; between, it turns once.
-_CLIMB, _LANDING = 0.2, 0.2
+# Share of the flight in which the drone climbs.
+_CLIMB = 0.2
 
-# Largest deviations by wind and control: from the path (m), from level and from the heading (°), and their periods (s).
-# They grow within two seconds after take-off, and fade within two seconds before landing.
-_DRIFT, _TILT, _YAW = 0.3, 2.0, 0.5
+# Share of the flight in which it lands; between climb and landing it turns once.
+_LANDING = 0.2
+
+# Largest deviation from the path by wind and control (m).
+_DRIFT = 0.3
+
+# Largest deviation from level (°).
+_TILT = 2.0
+
+# Largest deviation from the heading (°).
+_YAW = 0.5
+
+# Periods of these deviations (s).
 _PERIODS = (3.1, 5.3, 11.7)
+
+# Time in which they grow after take-off and fade before landing (s).
 _SETTLING = 2.0
 
 # The beams of small scanners are wide: some leaf sends an echo after this share of the way that a thin beam goes.
 _WIDE = 0.3
 
-# Pulses worked on at once, which bounds memory, and the time (s) that they may take: the drone must not go far in it.
-_BLOCK, _BLOCK_TIME = 50_000, 1.0
+# Most pulses worked on at once, which bounds memory.
+_BLOCK = 50_000
+
+# Longest time of the flight worked on at once (s): the drone must not go far in it.
+_BLOCK_TIME = 1.0
 
 
 @dataclass(frozen=True)
@@ -70,7 +87,7 @@ class Flight:
         return forward, left, np.cross(forward, left)
 
     def _sway(self, time: np.ndarray, which: slice) -> np.ndarray:
-        """Return how far (n, 3) it is off, from -1 to 1."""
+        """Return the deviations (n, 3) at times (n,), from -1 to 1 of the largest."""
         waves = np.sin(2 * np.pi * time[:, None, None] / np.array(_PERIODS) + self.phases[which]).mean(axis=-1)
         return waves * np.clip(np.minimum(time, self.duration - time) / _SETTLING, 0.0, 1.0)[:, None]
 
@@ -116,7 +133,7 @@ class Surroundings(World):
         )
 
     def met(self, kind: str, beams: Beams) -> tuple[np.ndarray, np.ndarray]:
-        """Return the pairs (beam, thing) that may meet: the beam aims at the ball around the thing's box."""
+        """Return the pairs (beam, object) that may meet: the beam aims at the ball around the object's box."""
         low, high = self.boxes(kind)
         middle = beams.origin.mean(axis=0)
         away = (low + high) / 2 - middle

@@ -120,7 +120,7 @@ def classify_ground_cloth(
     particle moves by 5 mm. All returns are used: in woods where pulses pass through the leaves, 'Classify ground
     points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other,
     particles without a point, and from where the cloth falls. These and the defaults are as in the program that its
-    authors published, with two differences. Of two points equally near to a particle the lower is taken, where the
+    authors published, with three differences. Of two points equally near to a particle the lower is taken, where the
     program takes the first in the file, so that the order of points has no influence. Particles at the corners of the
     cloud are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells
     from any point, with none in their row and column, take the height of the nearest point, where the program searches
@@ -257,11 +257,11 @@ def _let_down(cloth: Cloth) -> np.ndarray:
     hangs = (np.bincount(part.ravel(), minlength=n_parts + 1) > _SMALL_PART)[part] & cloth.is_movable
     number = np.arange(part.size).reshape(part.shape)
     links, is_held = [], np.zeros(part.size, bool)
-    for here, there in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
-        smooth = np.abs(cloth.floor[here] - cloth.floor[there]) < _LARGEST_STEP
-        both = smooth & hangs[here] & hangs[there]
-        links.append((number[here][both], number[there][both]))
-        for one, other in ((here, there), (there, here)):
+    for first, second in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
+        smooth = np.abs(cloth.floor[first] - cloth.floor[second]) < _LARGEST_STEP
+        both = smooth & hangs[first] & hangs[second]
+        links.append((number[first][both], number[second][both]))
+        for one, other in ((first, second), (second, first)):
             is_held[number[one][smooth & hangs[one] & ~cloth.is_movable[other]]] = True
     rows, columns = (np.concatenate(ends) for ends in zip(*links))
     n_groups, group = components(rows, columns, part.size)

@@ -22,26 +22,21 @@ from .views import View
 
 @dataclass(frozen=True)
 class TileTask:
-    """A tile of the output: the file that it is made of, and the blocks that have its points.
+    """A tile of the output: the file that it is made of, and the blocks that have its points."""
 
-    ``piece`` is the box (2, 2), m, of the part of the file that becomes this tile, upper edges excluded; None is all.
-    ``view`` keeps points for the pages of the survey; None where there are no pages with points. ``crs`` is the
-    coordinate reference system of files that name none, as for :func:`.open_survey`. ``shown`` is a COPC file of the
-    tile that is written too, for QGIS to show.
-    """
-
-    source: Path
-    number: int
-    target: Path
-    results: tuple[Path, ...]
-    becomes: tuple[Path, ...]
-    stop: Path
-    units: Units
-    extent: Optional[np.ndarray] = None
+    source: Path  #: The file that the tile is made of
+    number: int  #: Its number in the survey
+    target: Path  #: The tile
+    results: tuple[Path, ...]  #: Results of the blocks that have its points
+    becomes: tuple[Path, ...]  #: Files with the final numbers of what each of these blocks found
+    stop: Path  #: A file whose existence ends the work
+    units: Units  #: Units of the coordinates
+    extent: Optional[np.ndarray] = None  #: (2, 2): extent of the survey, in coordinates of the file; None is all
+    #: (2, 2): box, m, of the part of the file that becomes this tile, upper edges excluded; None is all
     piece: Optional[np.ndarray] = None
-    view: Optional[View] = None
-    crs: Optional[tuple[str, str]] = None
-    shown: Optional[Path] = None
+    view: Optional[View] = None  #: Keeps points for the pages of the survey; None where no page shows points
+    crs: Optional[tuple[str, str]] = None  #: CRS of files that name none, as for :func:`.open_survey`
+    shown: Optional[Path] = None  #: COPC file of the tile that is written for QGIS to show
 
 
 def points_outside(path: Path, count: int) -> str:

@@ -1,4 +1,4 @@
-"""Outlines of real clouds hold still when points move by 2 mm with fixed classes, and when it is run in blocks."""
+"""Outlines of real clouds hold still when points move by 2 mm with fixed classes, and are the same in blocks."""
 
 import numpy as np
 import pytest

@@ -108,9 +108,14 @@ def test_lower_limit_and_switch_have_their_effect():
     classes = np.where(kind == GROUND, 2, 14).astype(np.uint8)
     height = xyz[:, 2].astype(np.float32)
     np.testing.assert_array_equal(classify_wires(xyz, classes, height, look_for=False), classes)
-    images = CloudSampling(lambda: xyz, single_returns=True)
-    if images.is_closed_surface():
-        np.testing.assert_array_equal(classify_wires(xyz, classes, height, sampling=images), classes)
+
+
+def test_clouds_of_matched_images_are_left_as_they_are(monkeypatch):
+    xyz, kind = line()
+    classes, height = np.where(kind == GROUND, 2, 14).astype(np.uint8), xyz[:, 2].astype(np.float32)
+    assert (classify_wires(xyz, classes, height) != classes).any()
+    monkeypatch.setattr(CloudSampling, "is_closed_surface", lambda sampling: True)
+    np.testing.assert_array_equal(classify_wires(xyz, classes, height), classes)
 
 
 def test_earlier_wires_are_classified_anew_and_other_classes_stay():

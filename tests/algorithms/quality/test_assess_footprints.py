@@ -34,9 +34,9 @@ def assessed(footprints, reference, **tunables):
     return rows(buildings), report.values
 
 
-@pytest.mark.parametrize("place", [0, 1])
-def test_a_moved_square(place):
-    shift = FAR[:2] * place
+@pytest.mark.parametrize("times", [0, 1])
+def test_a_moved_square(times):
+    shift = FAR[:2] * times
     (row,), values = assessed([[ring + shift for ring in box(0.3, 0.4)]], [[ring + shift for ring in box(0, 0)]])
     shared = 9.7 * 9.6
     assert (row["status"], row["building"], row["counterpart"]) == (FOUND, "1", "1")
