@@ -1000,10 +1000,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Height above the ground from which points are vegetation; lower ones are unclassified. &lt;i&gt;(at least 0 m and at most 10 m; default 0.1 m)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Height above the ground of the lowest wires. &lt;i&gt;(at least 1 m and at most 100 m; default 4 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
@@ -1033,6 +1029,10 @@
     </message>
     <message>
         <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Only points at least this high above the ground are clustered, where heights are known. &lt;i&gt;(at least 0 m and at most 100 m; default 1.5 m)&lt;/i&gt;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Points higher above the ground than this are vegetation; all others are unclassified. &lt;i&gt;(at least 0 m and at most 10 m; default 0.1 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4804,7 +4804,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no particle moves by 5 mm. All returns are used: in woods where pulses pass through the leaves, 'Classify ground points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other, particles without a point, and from where the cloth falls. These and the defaults are as in the program that its authors published, with two differences. Of two points equally near to a particle the lower is taken, where the program takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the program searches on over the links.</source>
+        <source>Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no particle moves by 5 mm. All returns are used: in woods where pulses pass through the leaves, 'Classify ground points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other, particles without a point, and from where the cloth falls. These and the defaults are as in the program that its authors published, with three differences. Of two points equally near to a particle the lower is taken, where the program takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the program searches on over the links.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5285,10 +5285,6 @@
     </message>
     <message>
         <source>Height above ground</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Height above the ground from which points are vegetation; lower ones are unclassified.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6944,6 +6940,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Points higher above the ground than this are vegetation; all others are unclassified.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Points in correct segments</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7372,7 +7372,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a fifth of its pulses had several returns, and half of its points lie closer to the plane of their neighborhood than the roughness of roofs and walls. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.</source>
+        <source>Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a fifth of its pulses had several returns, and half of its points have neighbors that deviate from a plane no more than points of roofs and walls do. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
