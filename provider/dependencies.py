@@ -87,9 +87,9 @@ def python() -> str:
     if Path(found).stem.lower().startswith("python"):
         return found
     base, executable = Path(sys.base_prefix), Path(sys.executable or "")
-    places = (base / "python.exe", executable.parent / "bin" / "python3", base / "bin" / "python3")
+    candidates = (base / "python.exe", executable.parent / "bin" / "python3", base / "bin" / "python3")
     version = f"python{sys.version_info.major}.{sys.version_info.minor}"
-    return next((str(place) for place in places if place.is_file()), version)
+    return next((str(path) for path in candidates if path.is_file()), version)
 
 
 def _is_debian() -> bool:

@@ -14,8 +14,11 @@ _LENGTHS = (4, 8, 16, 32, 64)
 # Weight of a piece: its length (samples) to this power, so that long walls count more than their length.
 _POWER = 1.5
 
-# Standard deviation (°) of a direction, at least, and that of a piece of one sample, which falls with its length.
-_LEAST_WIDTH, _WIDTH_OF_ONE = 1.0, 28.6
+# Least standard deviation of a direction (°).
+_LEAST_WIDTH = 1.0
+
+# Standard deviation of the direction of a piece of one sample (°): that of longer pieces is inverse to their length.
+_WIDTH_OF_ONE = 28.6
 
 # Standard deviation (samples) across a straight piece; pieces with more bend, and their weight falls.
 _STRAIGHT = 0.25
@@ -27,19 +30,25 @@ _STEP = 0.5
 N_STEPS = 180
 
 # No direction dominates where the lower quartile of the weights is more than this share of their mean: 0.76 and more
-# in simulated towers, 0.72 and less in 30 real buildings, all with this many samples or more.
-_EVEN, _ROUND_SAMPLES = 0.74, 50
+# in simulated towers, 0.72 and less in 30 real buildings.
+_EVEN = 0.74
+
+# Samples of the smallest ring that may be round: those towers and buildings have at least as many.
+_ROUND_SAMPLES = 50
 
 # An edge runs along a direction within this angle (°): the deviation of an edge of 6 m whose ends lie 0.3 m apart
 # across.
 _ALONG = 3.0
 
-# Angle (°) from the first direction at which a second one begins, and least share of the first's weight it has.
-_APART, _LEAST_SHARE = 12.0, 0.25
+# Least angle between the first direction and a second one (°).
+_APART = 12.0
+
+# Least weight of a second direction, as a share of that of the first.
+_LEAST_SHARE = 0.25
 
 
 class RingPieces:
-    """The pieces of a ring, of which directions are taken: straight ones weigh more.
+    """The pieces of a ring, whose directions are counted: straight ones weigh more.
 
     Parameters
     ----------

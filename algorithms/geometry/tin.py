@@ -13,8 +13,11 @@ from .delaunay import Triangulation, circles, triangulate
 from .grid import plan_box
 from .scattered import scattered
 
-# Points looked for and planes fitted at once, on each core: their arrays stay small beside the cloud.
-_CHUNK, _FIT_CHUNK = 100_000, 20_000
+# Points located at once on each core: their arrays stay small beside the cloud.
+_CHUNK = 100_000
+
+# Planes fitted at once on each core, for the same reason.
+_FIT_CHUNK = 20_000
 
 # Points that a plane needs.
 PLANE_POINTS = 3
@@ -90,10 +93,10 @@ class Tin:
         corner = self.facets[:, 0]
         self.nodes = np.vstack([self.nodes, new])
         self._take(mesh)
-        now = became[facet]
-        gone = np.flatnonzero(now < 0)
-        now[gone] = self.locate_near(points[gone], corner[facet[gone]])
-        return now
+        new_facet = became[facet]
+        gone = np.flatnonzero(new_facet < 0)
+        new_facet[gone] = self.locate_near(points[gone], corner[facet[gone]])
+        return new_facet
 
     def _take(self, mesh: Triangulation) -> None:
         """Take the facets of a triangulation of the nodes, and what follows from them."""
@@ -277,7 +280,7 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
         heights = design[..., 2].copy()
         # The plane through offsets is slope . (x, y) + level.
         design[..., 2] = 1.0
-        # A whisker on the diagonal keeps collinear neighbors solvable.
+        # A small term on the diagonal keeps the equations of collinear neighbors solvable.
         normal = np.swapaxes(design, 1, 2) @ design + 1e-6 * np.eye(3)
         right = np.swapaxes(design, 1, 2) @ heights[..., None]
         residuals[sample] = -np.linalg.solve(normal, right)[:, 2, 0]
@@ -288,4 +291,5 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
 
 def robust_deviation(residuals: np.ndarray, floor: float = 0.01) -> float:
     """Return the standard deviation that follows from the median of absolute residuals, at least ``floor`` (m)."""
+    # The standard deviation of normally distributed residuals is 1.4826 times the median of their absolute values.
     return max(1.4826 * float(np.median(np.abs(residuals))), floor)

@@ -16,11 +16,14 @@ from .height_histograms import Histogram, own_histogram, pooled_histogram, with_
 # Points of a cell on average: enough that the highest and lowest meter of a scene hold some, whatever the density.
 _POINTS_PER_CELL = 4000
 
-# Least height of a bin, m, and in point spacings: a third of a storey, in which a roof has many points.
+# Least height of a bin (m): a third of a storey, in which a roof has many points.
 _MIN_BIN_HEIGHT = 1.0
+
+# Least height of a bin in point spacings.
 _BIN_SPACINGS = 2.0
 
-# A cell borrows the histograms of the cells around it, which are some 5 to 10 m wide (m).
+# Width (m) of the surroundings that decide on a point: a cell borrows the histograms of the cells around it. These are
+# as wide at 40 points/m², and wider in sparser clouds.
 _REACH = 10.0
 
 

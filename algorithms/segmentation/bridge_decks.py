@@ -28,7 +28,7 @@ class DeckRules:
 
     directions: int = rule(8, "", "geometry: one of the lines crosses each bridge within 12° of its shortest section")
     least_directions: int = rule(
-        2, "", "in which a deck is raised: crowns are raised in one, with which F of a real bridge is 75, not 91"
+        2, "", "fitted: in which a deck is raised; with one, as crowns may be, F of a real bridge is 75 instead of 91"
     )
     most_below: float = rule(0.15, "share of points", "physics: beams pass through crowns, and not through decks")
     edge: float = rule(0.25, "of width, of length", "beams 30° off the vertical reach under edges; and ends of a deck")
@@ -219,7 +219,7 @@ class Decks:
 
     @property
     def _stretch(self) -> np.ndarray:
-        """Factors (3,) with which ground is near ahead of a deck: steps and rises of twice the level."""
+        """Factors (3,) of coordinates by which twice the height of a step counts as half the reach in plan."""
         return np.array([1.0, 1.0, self.reach / 2 / (2 * LASER.foot)])
 
     def _with_corners(self, xyz: np.ndarray, rows: np.ndarray, raised: np.ndarray) -> np.ndarray:

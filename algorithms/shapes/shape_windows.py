@@ -8,8 +8,11 @@ import numpy as np
 
 from ..geometry.boxes import Boxes
 
-# Side of a window and spacing of its points (times the least radius of the level).
-WINDOW, _THINNING = 4.0, 0.15
+# Side of a window, in least radii of its level.
+WINDOW = 4.0
+
+# Spacing of the points of a level, in its least radii.
+_THINNING = 0.15
 
 
 @dataclass(frozen=True)

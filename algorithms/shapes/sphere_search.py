@@ -12,14 +12,20 @@ from .cylinder_fits import explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .shape_windows import WINDOW, level_of, levels
 
-# Bins of radii in one level, and side of the bins of centers (times the least radius).
-_RADII, _CENTER_BIN = 8, 0.25
+# Bins of radii in one level.
+_RADII = 8
+
+# Side of the bins of centers, as a share of the least radius of the level.
+_CENTER_BIN = 0.25
 
 # Distances from the sphere (times the least radius) at which a start is fitted again, before the tolerance counts.
 _FIRST_FITS = (0.25, 0.1)
 
-# Angle (°) between the normal of a point and the direction from the center, and its median over the sphere.
-_NORMAL_ANGLE, _MOST_MEDIAN_ANGLE = 25.0, 10.0
+# Largest angle between the normal of a point on a sphere and the direction from the center (°).
+_NORMAL_ANGLE = 25.0
+
+# Largest median of these angles over a sphere (°).
+_MOST_MEDIAN_ANGLE = 10.0
 
 # Points of a seed, and of a window in which one is looked for.
 LEAST_POINTS = 20
@@ -27,14 +33,23 @@ LEAST_POINTS = 20
 # Least share of the variance of normals in each direction: they vary in two on a sphere, in one on a cylinder.
 _LEAST_SPREAD = 0.02
 
-# Largest deviation of the points (times the noise), and of what another shape explains of it.
-_MOST_ROUGH, _MOST_BENT = 1.25, 0.6
+# Largest deviation of the points from a sphere, in multiples of the noise.
+_MOST_ROUGH = 1.25
 
-# Points inside a sphere and around it (up to this number of radii), per point on it: it is empty, and in the air.
-_MOST_INSIDE, _AROUND, _MOST_AROUND = 0.15, 1.5, 0.6
+# Largest part of that deviation that waves of another shape explain, in multiples of the noise.
+_MOST_BENT = 0.6
 
-# Points at which a fit or a test looks at most: more don't change it.
-_MOST_LOOKED_AT = 1500
+# Most points inside a sphere per point on it: it is empty.
+_MOST_INSIDE = 0.15
+
+# Radius of the surroundings of a sphere, in its radii.
+_AROUND = 1.5
+
+# Most points in the surroundings of a sphere per point on it: it lies in the air.
+_MOST_AROUND = 0.6
+
+# Most points of a fit or a test: more don't change it.
+_MOST_SAMPLED = 1500
 
 
 @dataclass(frozen=True)
@@ -123,8 +138,8 @@ class SphereSearch:
         number = np.broadcast_to(np.tile(np.arange(_RADII), 2), inside.shape)
         if self.centers_first:
             best = int(np.argmax(np.bincount(position[inside])))
-            here = inside & (position == best)
-            radius = float(radii[np.argmax(np.bincount(number[here], minlength=_RADII))])
+            of_center = inside & (position == best)
+            radius = float(radii[np.argmax(np.bincount(number[of_center], minlength=_RADII))])
         else:
             best, k = divmod(int(np.argmax(np.bincount((position * _RADII + number)[inside]))), _RADII)
             radius = float(radii[k])
@@ -139,7 +154,7 @@ class SphereSearch:
             points = rows[self._is_on(rows, center, radius, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None
-            center, radius = fit_sphere(self.xyz[points[:: len(points) // _MOST_LOOKED_AT + 1]], center, radius)
+            center, radius = fit_sphere(self.xyz[points[:: len(points) // _MOST_SAMPLED + 1]], center, radius)
             if not 0.8 * low <= radius <= 1.25 * high:
                 return None
         return (center, radius) if self._is_round(points, center, radius) else None
@@ -153,7 +168,7 @@ class SphereSearch:
 
     def _is_round(self, points: np.ndarray, center: np.ndarray, radius: float) -> bool:
         """Return whether points lie close to a sphere and their distances show no other shape."""
-        points = points[:: len(points) // _MOST_LOOKED_AT + 1]
+        points = points[:: len(points) // _MOST_SAMPLED + 1]
         offset = self.xyz[points] - center
         away, residual = unit(offset), np.linalg.norm(offset, axis=1) - radius
         facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))

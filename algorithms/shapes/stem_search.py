@@ -12,17 +12,32 @@ from ..geometry.groups import split_groups
 from ..stage import Monitor
 from .cylinder_fits import Cylinder, fit_cylinder
 
-# Height at which stems are measured (m above the ground), and half the height of the slice around it.
-BREAST, _HALF_SLICE = 1.3, 0.3
+# Height above the ground at which stems are measured (m).
+BREAST = 1.3
 
-# Points at most this far apart (m) in the slice are of one stem.
+# Half of the height of the slice around it (m).
+_HALF_SLICE = 0.3
+
+# Largest distance between neighboring points of one stem in the slice (m).
 _APART = 0.15
 
-# Points of the thinnest stem, and the share of the slice that it crosses.
-_LEAST_POINTS, _CROSSED = 12, 0.7
+# Fewest points of a stem in the slice.
+_LEAST_POINTS = 12
 
-# Radii of stems (m), and largest median distance of the points from the cylinder: of the radius, and m.
-_RADII, _ROUGH, _ROUGHNESS = (0.015, 1.0), 0.2, 0.01
+# Least share of the height of the slice that a stem crosses.
+_CROSSED = 0.7
+
+# Least and greatest radius of a stem (m).
+_RADII = (0.015, 1.0)
+
+# Largest median distance of the points from the cylinder, as a share of its radius.
+_ROUGH = 0.2
+
+# Largest median distance of the points from thin cylinders (m).
+_ROUGHNESS = 0.01
+
+# Least cosine of the lean of a stem: 37°.
+_LEAN = 0.8
 
 # Side (m) of the cells in which the ground lies as low as their lowest point, or that of the cells around.
 _GROUND_CELL = 1.0
@@ -79,6 +94,7 @@ def _stem(xyz: np.ndarray) -> Optional[Cylinder]:
     middle = xyz.mean(axis=0)
     radius = float(np.median(np.linalg.norm(xyz[:, :2] - middle[:2], axis=1)))
     stem = Cylinder(middle, np.array([0.0, 0.0, 1.0]), max(radius, 1e-3))
+    # Points far off the cylinder, of leaves and twigs, are left out of the next fit.
     for _ in range(3):
         off = np.abs(stem.local(xyz)[1] - stem.radius)
         near = off <= max(2.5 * float(np.median(off)), 1e-4)
@@ -86,5 +102,5 @@ def _stem(xyz: np.ndarray) -> Optional[Cylinder]:
             return None
         stem = fit_cylinder(xyz[near], stem)
     off = float(np.median(np.abs(stem.local(xyz)[1] - stem.radius)))
-    is_stem = _RADII[0] <= stem.radius <= _RADII[1] and abs(stem.axis[2]) > 0.8
+    is_stem = _RADII[0] <= stem.radius <= _RADII[1] and abs(stem.axis[2]) > _LEAN
     return stem if is_stem and off <= max(_ROUGH * stem.radius, _ROUGHNESS) else None

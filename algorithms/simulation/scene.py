@@ -68,7 +68,7 @@ class Scene:
     solids: list[Solid] = field(default_factory=list)  #: All solids, those of the buildings too
     crowns: Crowns = field(default_factory=Crowns)  #: Trees, bushes, hedges
     wires: list[tuple] = field(default_factory=list)  #: Straight pieces: start and end (x, y, z each, m) and object id
-    objects: int = 0
+    objects: int = 0  #: Number of objects, which is the greatest object id
 
     @property
     def size(self) -> float:

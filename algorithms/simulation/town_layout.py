@@ -16,15 +16,25 @@ from .scene import Scene
 from .solids import Rect, Solid, inclined
 from .town_houses import build_hall, build_house
 
-# Streets are this far apart, with two rows of plots between them (m).
+# Distance (m) between the axes of neighboring streets, with two rows of plots between these.
 _STREETS = 40.0
+
+# Width of a street (m).
 _STREET_WIDTH = 8.0
+
+# Length along the street and depth of a plot (m).
 _PLOT = (14.0, 16.0)
+
+# Plots of a block along the street, between two side streets.
 _PLOTS_PER_BLOCK = 6
+
+# Length and width of a hall (m).
 _HALL = (40.0, 27.0)
+
+# Largest difference of the ground between the corners of a hall (m).
 _HALL_STEP = 5.0
 
-# Plots on a hectare of streets and blocks: as many as can be built on.
+# Plots, and so buildings at most, on a hectare of streets and blocks.
 MAX_BUILDINGS = 34
 
 

@@ -35,7 +35,7 @@ METHODS: dict[str, tuple[str, dict[str, Any]]] = {
     "Segment TIN planes": ("segment_tin_planes", {}),
     "Model industry": ("model_industry", {}),
 }
-FATES = ("correct", "over", "under", "missed", "noise")
+MATCHES = ("correct", "over", "under", "missed", "noise")
 
 
 def gables() -> tuple[np.ndarray, np.ndarray]:
@@ -94,7 +94,7 @@ def main() -> None:
     parser.add_argument("scene", nargs="*", help=f"{', '.join(SCENES)}; all by default")
     parser.add_argument("--output", type=Path, default=FOLDER)
     arguments = parser.parse_args()
-    table = Table("segments", "scene", "method", *FATES, "of", "points in correct segments, %", texts=2)
+    table = Table("segments", "scene", "method", *MATCHES, "of", "points in correct segments, %", texts=2)
     for scene in arguments.scene or SCENES:
         xyz, truth = SCENES[scene]()
         reference = create_cloud({"xyz": xyz, "segment_id": truth.astype(np.int32)})
@@ -105,7 +105,11 @@ def main() -> None:
             assert report is not None
             values = report.values
             table.add(
-                scene, title, *(values[fate] for fate in FATES), values["reference_segments"], values["points_correct"]
+                scene,
+                title,
+                *(values[match] for match in MATCHES),
+                values["reference_segments"],
+                values["points_correct"],
             )
     table.write(arguments.output)
 

@@ -69,13 +69,13 @@ def test_slope_wall_and_crown(gable):
 @pytest.mark.parametrize("neighborhood", ["nearest", "radius", "optimal"])
 def test_position_turn_and_scale_change_nothing(gable, neighborhood):
     turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
-    here = named(gable, neighborhood=neighborhood, radius=1.7, n_neighbors=15)
-    there = named(3 * gable @ turn.T + [6e5, 5e6, 0], neighborhood=neighborhood, radius=5.1, n_neighbors=15)
+    original = named(gable, neighborhood=neighborhood, radius=1.7, n_neighbors=15)
+    moved = named(3 * gable @ turn.T + [6e5, 5e6, 0], neighborhood=neighborhood, radius=5.1, n_neighbors=15)
     factors = {"eigenvalue_sum": 9, "height_range": 3, "height_deviation": 3, "plan_radius": 3}
     for name in set(_FEATURES) - {"normal", "omnivariance", "plan_density"}:
-        expected = factors.get(name, 1) * here[name]
-        np.testing.assert_allclose(there[name], expected, rtol=1e-4, atol=2e-5, err_msg=name)
-    np.testing.assert_allclose(9 * there["plan_density"], here["plan_density"], rtol=1e-4)
+        expected = factors.get(name, 1) * original[name]
+        np.testing.assert_allclose(moved[name], expected, rtol=1e-4, atol=2e-5, err_msg=name)
+    np.testing.assert_allclose(9 * moved["plan_density"], original["plan_density"], rtol=1e-4)
 
 
 @pytest.mark.parametrize("neighborhood", ["nearest", "radius", "optimal"])
