@@ -134,7 +134,7 @@ def subject_of(clouds: Sequence[Path], feedback: QgsProcessingFeedback) -> str:
 
 def cloud_title(stages: Sequence[Stage]) -> str:
     """Return what the cloud is called that these stages make one after the other, in the dialog and as a layer."""
-    # What a selection or a merger writes is what its points had before.
+    # Selections and mergers only pass on dimensions that the points had before.
     of_their_own = [stage for stage in stages if not (stage.selects or stage.merges)]
     writes = [name for stage in of_their_own for name in stage.writes]
     if any(stage.creates for stage in stages):

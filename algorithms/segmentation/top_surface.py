@@ -50,6 +50,7 @@ class TopSurface:
     def __init__(self, xyz: np.ndarray, height: np.ndarray, counted: np.ndarray, density: float) -> None:
         self.size = max(CLOSED.least_spacing, TOP.cell / float(np.sqrt(density)))
         refuse_sparse(xyz, self.size)
+        # Cells of the empty border on each side.
         margin = 4
         self.cell = row, column = raster_cells(xyz, self.size, margin)
         shape = (int(row.max()) + margin + 1, int(column.max()) + margin + 1)

@@ -31,7 +31,7 @@ def test_points_on_a_line_have_a_finite_density():
 
 
 @pytest.mark.parametrize("n_points", [100, 5000])
-def test_points_above_each_other_share_a_place(n_points):
+def test_points_above_each_other_share_a_position(n_points):
     """Twenty masts: cells that shrank until they held five points each would never do so."""
     x, y = np.meshgrid(np.arange(5.0), np.arange(4.0))
     xyz = np.concatenate([np.column_stack([x.ravel(), y.ravel(), np.full(20, z)]) for z in np.arange(n_points) / 100])
