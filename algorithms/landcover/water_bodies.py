@@ -67,10 +67,9 @@ def water_levels(
     np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
     has_ground = np.isfinite(lowest)
     monitor.progress(0.3)
-    is_seen = np.zeros(lowest.shape, bool)
-    is_seen[row, column] = True
-    pulses = np.zeros(lowest.shape)
-    np.add.at(pulses, (row[is_pulse], column[is_pulse]), 1.0)
+    cell = row * lowest.shape[1] + column
+    is_seen = (np.bincount(cell, minlength=lowest.size) > 0).reshape(lowest.shape)
+    pulses = np.bincount(cell[is_pulse], minlength=lowest.size).reshape(lowest.shape).astype(float)
     is_sparse = _sparse(pulses, is_seen, size)
     radius = int(np.ceil(REACH / size))
     around = ndimage.minimum_filter(lowest, 2 * radius + 1)
