@@ -87,7 +87,8 @@ def draw_block(
     how : Drawing
         Spacing, scale of simplification and least areas.
     """
-    rings = [_drawn(ring, directions[piece.building], how) for piece in pieces for ring in piece.rings]
+    prices = Prices(_CORNER * how.scale**3)
+    rings = [draw_ring(ring, directions[piece.building], prices) for piece in pieces for ring in piece.rings]
     # Edges on both sides of a border, or of a front that goes on, were drawn from the same points: within a spacing.
     # So was an edge beside a party wall: a strip between the two would be left for the house beyond.
     numbers = sorted({piece.building for piece in pieces})
@@ -149,11 +150,6 @@ def _at_middle(cells: Subdivision, cell: int, values: np.ndarray, lattice: Latti
     column, row = np.rint(lattice.nodes(np.mean([cells.vertices[v] for v in cells.loops[cell]], axis=0))).astype(int)
     rows, columns = lattice.shape
     return values[..., min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)][..., None]
-
-
-def _drawn(ring: np.ndarray, directions: np.ndarray, how: Drawing) -> list[Edge]:
-    """Return the straight edges of a ring of samples."""
-    return draw_ring(ring, directions, Prices(_CORNER * how.scale**3))
 
 
 def _shares_of(

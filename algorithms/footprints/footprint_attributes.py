@@ -142,32 +142,18 @@ def footprint_attributes(
                 "perimeter": sum(map(perimeter, outlined.rings)),
                 "volume": area * _mean_height(outlined.nodes, plan[inner], over_ground[inner], spacing),
                 "regularized": int(outlined.is_straight),
-                **_roof_heights(measures.xyz[points[inner], 2], over_ground[inner], eaves),
-                **_evidence(measures, members[rows]),
+                "ground_elevation": _percentile(measures.xyz[points[inner], 2] - over_ground[inner], 50),
+                "eave_height": _percentile(eaves, _EAVE),
+                "ridge_height": _percentile(over_ground[inner], _RIDGE),
+                "height": _percentile(over_ground[inner], 50),
+                "max_height": _percentile(over_ground[inner], 100),
+                "points": len(rows),
+                "entropy": _mean(measures.entropy, members[rows]),
+                "confidence": _mean(measures.confidence, members[rows]),
+                "reason": _main_reason(measures.reason, members[rows]),
             }
         )
     return attributes
-
-
-def _roof_heights(elevation: np.ndarray, over_ground: np.ndarray, eaves: np.ndarray) -> dict[str, float]:
-    """Return the attributes that come from the elevations and heights (r,) of a roof and those along its outline."""
-    return {
-        "ground_elevation": _percentile(elevation - over_ground, 50),
-        "eave_height": _percentile(eaves, _EAVE),
-        "ridge_height": _percentile(over_ground, _RIDGE),
-        "height": _percentile(over_ground, 50),
-        "max_height": _percentile(over_ground, 100),
-    }
-
-
-def _evidence(measures: PointMeasures, members: np.ndarray) -> dict[str, Any]:
-    """Return the attributes that say why the points of a building are one."""
-    return {
-        "points": len(members),
-        "entropy": _mean(measures.entropy, members),
-        "confidence": _mean(measures.confidence, members),
-        "reason": _main_reason(measures.reason, members),
-    }
 
 
 class _Owners:

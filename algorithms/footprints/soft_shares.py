@@ -184,17 +184,12 @@ def find_shares(
         leader[window] = np.where(is_best, number, leader[window])
         best[window] = np.maximum(best[window], share)
     ground = 1 - (density + filled) / total
-    return {
-        number: Shares(inner, share, _greatest_other(number, lattice.window(inner), best, second, leader, ground))
-        for number, (inner, share) in shares.items()
-    }
-
-
-def _greatest_other(
-    number: int, window: tuple, best: np.ndarray, second: np.ndarray, leader: np.ndarray, ground: np.ndarray
-) -> np.ndarray:
-    """Return the greatest share in a window that the ground or another building than this one has."""
-    return np.maximum(ground[window], np.where(leader[window] == number, second[window], best[window]))
+    found = {}
+    for number, (inner, share) in shares.items():
+        window = lattice.window(inner)
+        other = np.where(leader[window] == number, second[window], best[window])
+        found[number] = Shares(inner, share, np.maximum(ground[window], other))
+    return found
 
 
 def _density(lattice: Lattice, plan: np.ndarray, width: float, weight: Optional[np.ndarray] = None) -> np.ndarray:

@@ -13,7 +13,7 @@ from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..stage import Monitor, Param, stage
 from .bent_roofs import bent_roofs, with_bent_roofs
-from .party_walls import split_blocks
+from .party_walls import from_west_to_east, split_blocks
 from .stacked_roofs import join_stacked
 
 # Least distance (m) within which surfaces are of one roof: roofs of two buildings are seldom as close.
@@ -155,14 +155,10 @@ def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, moni
         monitor.progress(1.0)
         return np.zeros(0, np.int32)
     cluster = join_stacked(xyz, dbscan(xyz, gap, points_at_corner(gap, density), monitor), gap)
-    count = int(cluster.max()) + 1
-    if not count:
-        return np.zeros(len(xyz), np.int32)
-    member = cluster >= 0
-    large = plan_areas(xyz[member], cluster[member], density) >= min_area
-    west = np.full(count, np.inf)
-    np.minimum.at(west, cluster[member], xyz[member, 0])
-    order = np.argsort(np.where(large, west, np.inf), kind="stable")
-    number = np.zeros(count + 1, np.int32)
-    number[order[: large.sum()]] = np.arange(1, large.sum() + 1)
-    return number[cluster]
+    number = np.zeros(len(xyz), np.int32)
+    member = np.flatnonzero(cluster >= 0)
+    if len(member):
+        member = member[(plan_areas(xyz[member], cluster[member], density) >= min_area)[cluster[member]]]
+    if len(member):
+        number[member] = from_west_to_east(xyz[member, 0], cluster[member])
+    return number

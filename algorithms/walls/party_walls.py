@@ -59,7 +59,7 @@ def split_blocks(
         count += int(part.max()) - 1
         monitor.progress((done + 1) / len(buildings))
     result = np.zeros_like(cluster_id)
-    result[own] = _from_west_to_east(xyz[own, 0], house)
+    result[own] = from_west_to_east(xyz[own, 0], house)
     return result
 
 
@@ -78,7 +78,7 @@ def _houses_at(plan: np.ndarray, height: np.ndarray, positions: np.ndarray, spac
     return house[tuple(nearest)][row.clip(0, rows - 1), column.clip(0, columns - 1)]
 
 
-def _from_west_to_east(x: np.ndarray, building: np.ndarray) -> np.ndarray:
+def from_west_to_east(x: np.ndarray, building: np.ndarray) -> np.ndarray:
     """Return buildings (n,) with numbers from 1 in the order of their westernmost points."""
     which = np.unique(building, return_inverse=True)[1]
     west = np.full(int(which.max()) + 1, np.inf)

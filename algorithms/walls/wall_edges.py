@@ -42,12 +42,6 @@ def points_near(walls: np.ndarray, line: WallLine, scale: Scale) -> np.ndarray:
     return np.column_stack([(walls[chosen] - line.point) @ line.direction, across[chosen]])
 
 
-def _stretch(line: WallLine, start: np.ndarray, end: np.ndarray) -> tuple[float, float]:
-    """Return where two positions lie along a line (m), the lower first."""
-    low, high = sorted([float((start - line.point) @ line.direction), float((end - line.point) @ line.direction)])
-    return low, high
-
-
 def edge_between(start: np.ndarray, end: np.ndarray, line: WallLine, near: np.ndarray, scale: Scale) -> WallEdge:
     """Return an edge with quality, points and precision from the points between its corners.
 
@@ -64,7 +58,7 @@ def edge_between(start: np.ndarray, end: np.ndarray, line: WallLine, near: np.nd
     scale : Scale
         Spacing and noise.
     """
-    low, high = _stretch(line, start, end)
+    low, high = sorted([float((start - line.point) @ line.direction), float((end - line.point) @ line.direction)])
     corner = min(_CORNER, _CORNER_SHARE * (high - low))
     low, high = low + corner, high - corner
     between = near[(near[:, 0] >= low) & (near[:, 0] < high)]
