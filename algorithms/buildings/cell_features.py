@@ -109,12 +109,12 @@ def _columns(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.nd
     values, of_cell = distinct(north * (int(east.max()) + 1) + east)
     column, of, level = of_cell[cells.cell], of_cell[chosen], cells.centers[chosen, 2]
     z, count = points.xyz[:, 2], np.bincount(column, minlength=len(values))
-    # Of several points of a column the one that is written last stays: of topmost ones of the same elevation the one
-    # highest above ground, whatever their order in the cloud.
-    upward = np.lexsort((points.height, z))
-    top, bottom, height = (np.empty(len(values)) for _ in range(3))
-    top[column[upward]], height[column[upward]] = z[upward], points.height[upward]
-    bottom[column[upward[::-1]]] = z[upward[::-1]]
+    top, bottom, height = (np.full(len(values), start) for start in (-np.inf, np.inf, -np.inf))
+    np.maximum.at(top, column, z)
+    np.minimum.at(bottom, column, z)
+    # Of topmost points of the same elevation the one highest above ground, whatever their order in the cloud.
+    topmost = np.flatnonzero(z == top[column])
+    np.maximum.at(height, column[topmost], points.height[topmost])
     above = z - bottom[column]
     mean, square = (np.bincount(column, above**power, len(values)) / count for power in (1, 2))
     ground = np.bincount(column, points.is_ground, len(values)) / count

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Annotated, Any, Optional
 
 import numpy as np
@@ -208,7 +208,7 @@ class _Scene:
         """Which points are of buildings."""
         return self.classification == PointClass.BUILDING
 
-    @property
+    @cached_property
     def is_raised(self) -> np.ndarray:
         """Which points are learned, and may be of buildings."""
         never = np.isin(self.classification, _NEVER)
