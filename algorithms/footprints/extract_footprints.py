@@ -18,7 +18,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Layer, LayerFeatures, Monitor, Param, stage
 from ..threads import made_ahead
-from .drawn_blocks import Drawing, Outlined, draw_block
+from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces
 from .roof_points import edge_weights, find_non_building_points, find_roof_points, topmost
@@ -206,7 +206,9 @@ def extract_footprints(
         for houses, one, own in zip(rows, seen, directions)
     ]
     described = made_ahead(
-        lambda number, _: _attributes(parts[number], outlines[number], measures, spacing),
+        lambda number, _: footprint_attributes(
+            outlines[number], parts[number].roof, parts[number].members, measures, spacing
+        ),
         len(parts),
         monitor.part(_DRAWN, 1.0),
     )
@@ -367,11 +369,6 @@ def _houses(
         is_inside = shares.share > shares.rest
         found[number] = split_row(shares.lattice, is_inside, plan, height[own], directions[number], how.spacing)
     return found
-
-
-def _attributes(part: _Part, outlines: list[Outlined], measures: PointMeasures, spacing: float) -> list[dict[str, Any]]:
-    """Return the attributes of the outlines of a part."""
-    return footprint_attributes(outlines, part.roof, part.members, measures, spacing) if outlines else []
 
 
 def _features(geometries: list, attributes: list[dict[str, Any]], min_area: float) -> LayerFeatures:

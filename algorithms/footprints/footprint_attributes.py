@@ -125,6 +125,8 @@ def footprint_attributes(
     list of dict
         For each outline the values of ``FIELDS`` by name, but for the number.
     """
+    if not outlines:
+        return []
     owners = _Owners(outlines, measures.plan(members), spacing)
     plan, over_ground = measures.plan(points), measures.over_ground(points)
     own = split_groups(owners.at(plan), len(outlines))

@@ -77,8 +77,9 @@ def _is_alley(
         along = np.sort((positions - wall.point) @ wall.direction, axis=1)
         length = np.diff(along, axis=1)[:, 0]
         covered = [outline.scale.covered(wall.along, low, high) if high > low else 0.0 for low, high in along]
-        side = float(np.sign(alley.across(wall.point[None])[0]))
-        if length @ covered < _SEEN * length.sum() or _area_beyond(wall, alley, side, rings) < min_area:
+        away = np.sign(alley.across(wall.point[None])[0]) * alley.normal
+        behind = sum(signed_area(_clipped(ring, wall.point, away)) for ring in rings)
+        if length @ covered < _SEEN * length.sum() or behind < min_area:
             return False
     return True
 
@@ -92,12 +93,6 @@ def _chords(line: WallLine, rings: list[np.ndarray]) -> np.ndarray:
         share = across[cut] / (across[cut] - across[cut + 1])
         crossings.append(along[cut] + share * (along[cut + 1] - along[cut]))
     return np.sort(np.concatenate(crossings)).reshape(-1, 2)
-
-
-def _area_beyond(wall: WallLine, alley: WallLine, side: float, rings: list[np.ndarray]) -> float:
-    """Return how much (m²) of rings lies behind a wall, seen from the alley; ``side`` is that of the wall."""
-    normal = side * alley.normal
-    return sum(signed_area(_clipped(ring, wall.point, normal)) for ring in rings)
 
 
 def _clipped(ring: np.ndarray, point: np.ndarray, normal: np.ndarray) -> np.ndarray:

@@ -127,14 +127,10 @@ class OutlineCells:
         ends = np.stack([self.cells.positions[self.edges.start[edges]], self.cells.positions[self.edges.end[edges]]])
         return np.column_stack([ends.min(axis=0) - room, ends.max(axis=0) + room])
 
-    def cheapest(self, is_open: np.ndarray) -> np.ndarray:
-        """Return the cells of the cheapest outline along ``is_open`` lines, but for its corners."""
-        return self.improved(np.zeros(self.cells.count, bool), is_open)
-
     def improved(
         self, inside: np.ndarray, is_open: np.ndarray, boxes: Optional[np.ndarray] = None, without: int = -1
     ) -> np.ndarray:
-        """Return an outline, chosen anew where cells reach into boxes (k, 4), or everywhere.
+        """Return an outline, chosen anew where cells reach into boxes (k, 4), or everywhere; corners cost nothing.
 
         It runs along lines that are open, but not ``without`` one of them.
         """
@@ -232,7 +228,8 @@ class Simplification:
 
     def __init__(self, cells: OutlineCells) -> None:
         self.cells = cells
-        self.inside = cells.cheapest(np.ones(len(cells.lines), bool))
+        self.every = np.ones(len(cells.lines), bool)
+        self.inside = cells.improved(np.zeros(cells.cells.count, bool), self.every)
         self.is_open = cells.is_used(self.inside)
         self.total = cells.total(self.inside)
 
@@ -258,7 +255,7 @@ class Simplification:
                 saving[~is_known] = np.inf
             line = int(np.argmax(saving))
             if line != latest:
-                inside, latest = self._without(line), line
+                inside, latest = self._without(line, self.is_open), line
                 total = self.cells.total(inside)
             if is_known[line] and total < self.total:
                 near = self._near(self.inside, inside) & self.is_open
@@ -269,12 +266,12 @@ class Simplification:
                 saving[line], is_known[line] = self.total - total, True
             monitor.progress(1 - self.is_open.mean())
 
-    def _without(self, line: int) -> np.ndarray:
-        """Return the outline with what runs along a line chosen anew."""
+    def _without(self, line: int, is_open: np.ndarray) -> np.ndarray:
+        """Return the outline with what runs along a line chosen anew from the open ones."""
         own = np.flatnonzero((self.cells.edges.line == line) & self.cells.is_cut(self.inside))
         if not len(own):
             return self.inside
-        return self.cells.improved(self.inside, self.is_open, self.cells.boxes(own, _NEARBY), line)
+        return self.cells.improved(self.inside, is_open, self.cells.boxes(own, _NEARBY), line)
 
     def _near(self, before: np.ndarray, after: np.ndarray) -> np.ndarray:
         """Return which lines (lines,) have edges near those that two outlines have not in common."""
@@ -288,11 +285,7 @@ class Simplification:
     def _restart_without(self, line: int, monitor: Monitor) -> None:
         """Choose what runs along a line from all others, simplify that, and keep it if it is cheaper."""
         best = self.inside, self.is_open, self.total
-        own = np.flatnonzero((self.cells.edges.line == line) & self.cells.is_cut(self.inside))
-        if not len(own):
-            return
-        everything = np.ones(len(self.is_open), bool)
-        self.inside = self.cells.improved(best[0], everything, self.cells.boxes(own, _NEARBY), line)
+        self.inside = self._without(line, self.every)
         self.is_open, self.total = best[1] | self.cells.is_used(self.inside), self.cells.total(self.inside)
         self.is_open[line] = False
         self._descend(self._near(best[0], self.inside), monitor)

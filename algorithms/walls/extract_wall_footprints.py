@@ -352,7 +352,7 @@ class _Building:
         edges = [edge for ring in outline.rings for edge in ring]
         is_party = self.is_party(np.array([[edge.start, edge.end] for edge in edges]))
         free = [edge for edge, hidden in zip(edges, is_party) if not hidden]
-        return share_seen([free]) if free else outline.seen
+        return share_seen([free] if free else outline.rings)
 
     def walls_outline(self, limits: Limits, seed: int, monitor: Monitor) -> Optional[WallOutline]:
         """Return the outline of the walls near the origin, None where there are too few."""

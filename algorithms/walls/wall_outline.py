@@ -51,11 +51,6 @@ class WallOutline:
     low: np.ndarray
     high: np.ndarray
 
-    @property
-    def seen(self) -> float:
-        """Share of the outline that has wall points, 0 to 1."""
-        return share_seen(self.rings)
-
 
 def share_seen(rings: list[list[WallEdge]]) -> float:
     """Return the share of the length of rings that has wall points, 0 to 1."""
