@@ -14,7 +14,7 @@ import numpy as np
 from ..stage import Field, MapFrame
 from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, NamedModel, building_attributes, face_attributes
 from .set_openings import DOOR, WINDOW
-from .solids import DECIMALS, GROUND, ROOF, WALL, Solid
+from .solids import DECIMALS, GROUND, ROOF, WALL, Solid, edges_around
 
 CITYJSON, CITYJSON_SEQ = "CityJSON", "CityJSONSeq"
 FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".jsonl")}
@@ -186,12 +186,7 @@ def _walls_of_openings(solid: Solid) -> dict[int, int]:
     openings = [face for face, kind in enumerate(solid.kinds) if kind in (WINDOW, DOOR)]
     if not openings:
         return {}
-    face_of = {
-        edge: face
-        for face, rings in enumerate(solid.faces)
-        for ring in rings
-        for edge in zip(ring, [*ring[1:], ring[0]])
-    }
+    face_of = {edge: face for face, rings in enumerate(solid.faces) for ring in rings for edge in edges_around(ring)}
     return {face: face_of[solid.faces[face][0][1], solid.faces[face][0][0]] for face in openings}
 
 

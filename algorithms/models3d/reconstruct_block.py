@@ -10,10 +10,20 @@ import numpy as np
 from ..facades.plan_segments import PlanSegments, facade_segments
 from ..facades.street_walls import fitted_to_walls
 from ..geometry.line_segments import nearest_edge_distances
+from ..packages import spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, Param, TextFile, stage
 from . import cityjson
-from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, WALL_FIELDS, NamedModel, face_attributes, face_rings
+from .building_facts import (
+    BUILDING_FIELDS,
+    ROOF_FIELDS,
+    WALL_FIELDS,
+    NamedModel,
+    face_attributes,
+    face_rings,
+    faces_of,
+    numbered_layer,
+)
 from .reconstruct_roofs import reconstruct_roofs
 from .set_openings import DOOR, WINDOW, Opening, with_openings
 from .solid_faults import fault_of
@@ -28,6 +38,10 @@ _ON_FACADE = 0.1
 
 STREET, AIR = "street", "air"
 
+BLOCK_WALL_FIELDS = (
+    *WALL_FIELDS,
+    Field("source", str, f"{STREET}: on a facade; {AIR}: on the outline of a footprint"),
+)
 OPENING_FIELDS = (
     Field("id", int, "number of the opening, from 1"),
     Field("building", str, "building that it is part of, as in the layer of buildings", of="footprints"),
@@ -60,7 +74,7 @@ OPENING_FIELDS = (
             "walls",
             "Walls",
             "Polygon",
-            (*WALL_FIELDS, Field("source", str, f"{STREET}: on a facade; {AIR}: on the outline of a footprint")),
+            BLOCK_WALL_FIELDS,
             style="model_walls",
         ),
         Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
@@ -193,21 +207,14 @@ def _inform(n_fitted: int, n_footprints: int, n_set: int, n_openings: int, monit
         )
 
 
-def _best_with_openings(one: NamedModel) -> list[Solid]:
-    return one.model.solids[LEVEL_OF_OPENINGS]
-
-
 def _walls(models: list[NamedModel], segments: PlanSegments) -> LayerFeatures:
     """Return the walls of models with the holes of their openings."""
     geometries, rows = [], []
     for one in models:
-        for solid in _best_with_openings(one):
-            for face in (face for face, kind in enumerate(solid.kinds) if kind == WALL):
-                geometries.append(face_rings(solid, face))
-                rows.append({**face_attributes(one, solid, face), "source": _wall_source(solid, face, segments)})
-    names = [*(field.name for field in WALL_FIELDS if field.name != "id"), "source"]
-    columns = {name: [row[name] for row in rows] for name in names}
-    return LayerFeatures(geometries, {"id": list(range(1, len(rows) + 1)), **columns})
+        for solid, face in faces_of(one.model.solids[LEVEL_OF_OPENINGS], WALL):
+            geometries.append(face_rings(solid, face))
+            rows.append({**face_attributes(one, solid, face), "source": _wall_source(solid, face, segments)})
+    return numbered_layer(geometries, rows, BLOCK_WALL_FIELDS)
 
 
 def _wall_source(solid: Solid, face: int, segments: PlanSegments) -> str:
@@ -221,20 +228,17 @@ def _wall_source(solid: Solid, face: int, segments: PlanSegments) -> str:
 
 def _opening_layer(done: list[tuple]) -> LayerFeatures:
     """Return windows and doors as polygons."""
-    columns: dict[str, list] = {field.name: [] for field in OPENING_FIELDS}
-    geometries = []
-    for number, (one, opening) in enumerate(done, start=1):
+    geometries, rows = [], []
+    for one, opening in done:
         ring = opening.ring
         geometries.append([np.concatenate([ring, ring[:1]])])
-        offset = ring[:, None, :2] - ring[None, :, :2]
-        values = (
-            number,
-            one.name,
-            opening.kind,
-            float(np.hypot(*offset.reshape(-1, 2).T).max()),
-            float(np.ptp(ring[:, 2])),
-            float(ring[:, 2].min() - one.model.base),
+        rows.append(
+            {
+                "building": one.name,
+                "kind": opening.kind,
+                "width": float(spatial.distance.pdist(ring[:, :2]).max()),
+                "height": float(np.ptp(ring[:, 2])),
+                "sill": float(ring[:, 2].min() - one.model.base),
+            }
         )
-        for name, value in zip(columns, values):
-            columns[name].append(value)
-    return LayerFeatures(geometries, columns)
+    return numbered_layer(geometries, rows, OPENING_FIELDS)

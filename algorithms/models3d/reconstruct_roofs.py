@@ -25,6 +25,7 @@ from .building_facts import (
     face_rings,
     faces_of,
     map_attributes,
+    numbered_layer,
 )
 from .building_models import LEVELS, Settings, model_building
 from .heights_around import RADIUS
@@ -361,7 +362,7 @@ def _building_layer(models: list[NamedModel]) -> LayerFeatures:
     """Return the grounds of buildings."""
     rows = [building_attributes(one) for one in models]
     rings = [[np.column_stack([ring, np.full(len(ring), one.model.base)]) for ring in one.rings] for one in models]
-    layer = _layer(rings, rows, BUILDING_FIELDS)
+    layer = numbered_layer(rings, rows, BUILDING_FIELDS)
     of_map = [one.attributes or {} for one in models]
     names = dict.fromkeys(name for facts in of_map for name in facts)
     layer.columns.update({name: [facts.get(name) for facts in of_map] for name in names})
@@ -371,14 +372,6 @@ def _building_layer(models: list[NamedModel]) -> LayerFeatures:
 def _face_layer(models: list[NamedModel], kind: str) -> LayerFeatures:
     """Return the faces of one kind."""
     faces = [(one, solid, face) for one in models for solid, face in faces_of(one.model.best, kind)]
-    rows = [face_attributes(*face) for face in faces]
-    return _layer(
-        [face_rings(solid, face) for _, solid, face in faces], rows, ROOF_FIELDS if kind == ROOF else WALL_FIELDS
-    )
-
-
-def _layer(geometries: list, rows: list[dict[str, Any]], fields: tuple) -> LayerFeatures:
-    names = [field.name for field in fields if field.name != "id"]
-    return LayerFeatures(
-        geometries, {"id": list(range(1, len(rows) + 1)), **{name: [row[name] for row in rows] for name in names}}
-    )
+    rings = [face_rings(solid, face) for _, solid, face in faces]
+    fields = ROOF_FIELDS if kind == ROOF else WALL_FIELDS
+    return numbered_layer(rings, [face_attributes(*face) for face in faces], fields)

@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry.points_in_polygons import are_within
 from ..geometry.rings import signed_area
 from .solid_levels import BASE, Levels, Position
-from .solids import GROUND, ROOF, WALL, Ring, Solid, edges_of, groups_of
+from .solids import GROUND, ROOF, WALL, Ring, Solid, edges_around, edges_of, groups_of
 
 # A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous.
 _SUPERFLUOUS = 0.0005
@@ -132,7 +132,7 @@ class _Builder:
 
     def _joined(self, walls: list[_Wall]) -> list[tuple[Ring, list[int]]]:
         """Return walls with neighbors in one line joined, and the cells beside each."""
-        owner = {edge: i for i, wall in enumerate(walls) for edge in zip(wall.ring, [*wall.ring[1:], wall.ring[0]])}
+        owner = {edge: i for i, wall in enumerate(walls) for edge in edges_around(wall.ring)}
         pairs = []
         for (a, b), i in owner.items():
             j = owner.get((b, a))
@@ -155,7 +155,7 @@ class _Builder:
     @staticmethod
     def _around(walls: list[_Wall]) -> list[Ring]:
         """Return the rings around walls."""
-        edges = {edge for wall in walls for edge in zip(wall.ring, [*wall.ring[1:], wall.ring[0]])}
+        edges = {edge for wall in walls for edge in edges_around(wall.ring)}
         return _rings([(a, b) for a, b in edges if (b, a) not in edges])
 
     def _are_in_line(self, one: _Wall, other: _Wall) -> bool:
@@ -233,7 +233,7 @@ def _compact(positions: list[Position], faces: list[_Built]) -> Solid:
     beside: dict[int, set[int]] = defaultdict(set)
     for _, _, rings, _ in faces:
         for ring in rings:
-            for a, b in zip(ring, [*ring[1:], ring[0]]):
+            for a, b in edges_around(ring):
                 beside[a].add(b)
                 beside[b].add(a)
     straight = _straight(positions, beside)

@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry.points_in_polygons import are_within
 from ..packages import spatial
 from .face_triangles import triangulate_face
-from .solids import Ring, Solid, edges_of, groups_of
+from .solids import Ring, Solid, edges_around, edges_of, groups_of
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def faults_of(solid: Solid) -> dict[int, str]:
 
 
 def _edges(rings: Iterable[Ring]) -> list[tuple[int, int]]:
-    return [edge for ring in rings for edge in zip(ring, [*ring[1:], ring[0]])]
+    return [edge for ring in rings for edge in edges_around(ring)]
 
 
 def _ring_faults(solid: Solid) -> Iterator[tuple[int, str]]:

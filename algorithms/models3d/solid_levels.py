@@ -8,7 +8,7 @@ from collections import defaultdict
 import numpy as np
 
 from ..geometry.subdivision import OUTSIDE, SNAP, Subdivision, loop_area
-from .solids import DECIMALS
+from .solids import DECIMALS, edges_around
 
 # Planes that intersect within this distance (m) of a vertex, in plan, meet in it: cuts pass that closely to vertices.
 _MEET = 2 * SNAP
@@ -202,13 +202,13 @@ class Levels:
         """
         cells, moved = self.cells, {kept: plan}
         around = dict.fromkeys(cells.cell_of[v, other] for v in (kept, gone) for other in self._spokes[v])
-        replaced = {edge for cell in around for edge in _edges(cells.loops[cell])}
+        replaced = {edge for cell in around for edge in edges_around(cells.loops[cell])}
         loops, edges = {}, {}
         for cell in around:
             loop = [kept if v == gone else v for v in cells.loops[cell]]
             loop = [v for v, before in zip(loop, [loop[-1], *loop]) if v != before]
             loops[cell] = loop if len(loop) > 2 else []
-            new = _edges(loops[cell])
+            new = edges_around(loops[cell])
             if len(set(loop)) < len(loop) or any(
                 edge in edges or (edge in cells.cell_of and edge not in replaced) for edge in new
             ):
@@ -298,11 +298,6 @@ class Levels:
             ring.append(cell)
             if here == start:
                 return ring
-
-
-def _edges(loop: list[int]) -> list[tuple[int, int]]:
-    """Return the edges around a cell."""
-    return list(zip(loop, [*loop[1:], *loop[:1]]))
 
 
 def turns_around(heights: list[float]) -> int:

@@ -69,6 +69,11 @@ def groups_of(pairs: Iterable[tuple[int, int]], count: int) -> list[int]:
     return [of(item) for item in range(count)]
 
 
+def edges_around(ring: Ring) -> list[tuple[int, int]]:
+    """Return the edges of an open ring, as pairs of vertices."""
+    return list(zip(ring, [*ring[1:], *ring[:1]]))
+
+
 def edges_of(ring: np.ndarray) -> np.ndarray:
     """Return the edges (n, 2, 2) of an open ring (n, 2)."""
     return np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
