@@ -22,9 +22,6 @@ _AT_LINE_SPACINGS, _AT_LINE = 2.0, 0.5
 # Contacts that make a line.
 _LEAST_CONTACTS = 3
 
-# Lines of steps along one border of two planes.
-_MOST_STEPS = 6
-
 # How far lines reach beyond their contacts (spacings, m): a cell is cut from side to side anyway.
 _BEYOND_SPACINGS, _BEYOND = 2.0, 0.5
 
@@ -151,7 +148,7 @@ class _Border:
         normals = np.column_stack([-directions[:, 1], directions[:, 0]])
         found: list[Piece] = []
         width = max(0.3, self.spacing)
-        while len(left) >= _LEAST_CONTACTS and len(found) < _MOST_STEPS:
+        while len(left) >= _LEAST_CONTACTS:
             offset = normals @ left.T
             order = np.sort(offset, axis=1)
             # Rows far apart make one ascending array of all directions.
