@@ -109,12 +109,7 @@ def topmost(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
 def edge_weights(top: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarray:
     """Return the weights (n,), 0 to 1, of the highest points of cells: less where a wall below ends the roof.
 
-    Parameters
-    ----------
-    top, walls : ndarray of shape (n, 3), (m, 3)
-        Points that :func:`topmost` has kept, and points on walls, m.
-    spacing : float
-        Mean distance of neighboring points (m).
+    ``top`` (n, 3) are points that :func:`topmost` has kept, ``walls`` (m, 3) points on walls, m.
     """
     if not len(walls) or not len(top):
         return np.ones(len(top))

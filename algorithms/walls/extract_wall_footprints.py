@@ -420,10 +420,7 @@ def _add(
     }
     for name, value in described.items():
         footprints.columns[name].append(value)
-    first = 1
-    for ring in rings:
-        _add_edges(edges, ring, len(footprints), first, building.origin)
-        first += len(ring)
+    _add_edges(edges, rings, len(footprints), building.origin)
 
 
 def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
@@ -432,9 +429,10 @@ def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
     return float(np.sqrt(np.average(deviation[seen] ** 2, weights=points[seen]))) if seen.any() else float("nan")
 
 
-def _add_edges(edges: LayerFeatures, ring: list[WallEdge], footprint: int, first: int, origin: np.ndarray) -> None:
-    """Append the edges of one ring of a footprint, numbered from ``first``."""
-    for number, (before, edge) in enumerate(zip([ring[-1], *ring], ring), start=first):
+def _add_edges(edges: LayerFeatures, rings: list[list[WallEdge]], footprint: int, origin: np.ndarray) -> None:
+    """Append the edges of a footprint, ring by ring, numbered from 1."""
+    pairs = [pair for ring in rings for pair in zip([ring[-1], *ring], ring)]
+    for number, (before, edge) in enumerate(pairs, start=1):
         edges.geometries.append(np.array([edge.start, edge.end]) + origin)
         described = {
             "id": len(edges.geometries),

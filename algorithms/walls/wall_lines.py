@@ -179,17 +179,15 @@ def find_lines(
     least = max(6, int(min_length / scale.bin))
     while len(left) >= least:
         line = _best_line(xy, ways, left, scale, rng)
-        if line is None or len(line.points) < least or not _is_wall(line, scale, min_length):
+        if line is None or len(line.points) < least:
+            break
+        start, end = line.along.min(), line.along.max()
+        if end - start < min_length or scale.covered(line.along, start, end) < _LEAST_COVERED:
             break
         lines.append(line)
         left = left[~np.isin(left, line.points)]
         monitor.progress(1 - 0.7 * len(left) / len(xy))
     return lines
-
-
-def _is_wall(line: WallLine, scale: Scale, min_length: float) -> bool:
-    start, end = line.along.min(), line.along.max()
-    return bool(end - start >= min_length and scale.covered(line.along, start, end) >= _LEAST_COVERED)
 
 
 def _ways(xy: np.ndarray, monitor: Monitor) -> np.ndarray:
