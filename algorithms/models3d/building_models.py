@@ -18,9 +18,6 @@ from .solids import Solid
 # Levels of detail, from the simplest.
 LEVELS = ("1.2", "1.3", "2.2")
 
-# A roof of which less than this share is explained by planes has no LoD2.2.
-_LEAST_EXPLAINED = 0.5
-
 # Percentile of the heights of roof points that is the ridge's, as in 'Extract footprints': chimneys rise above it.
 _RIDGE = 98
 
@@ -238,8 +235,6 @@ def _worse(model: BuildingModel, level: str, top: _Top, above: np.ndarray) -> st
     off = np.minimum(np.abs(above[np.isfinite(above) & top.is_roof & ~top.is_low]), FARTHEST)
     if not len(off):
         return "no points lie over it"
-    if level == "2.2" and np.mean(off <= _EXPLAINED * top.settings.tolerance) < _LEAST_EXPLAINED:
-        return "planes explain less than half of the roof"
     model.rms_of[level] = root_mean_square(off)
     is_near = model.rms_of[level] <= min(model.rms_of.values()) + top.settings.tolerance
     return "" if is_near else "it is farther from the points than a simpler model"

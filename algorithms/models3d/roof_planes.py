@@ -17,9 +17,6 @@ _NEIGHBORS = 12
 # Points of a plane face the same way to this (°); normals of a dozen points with 3 cm of noise vary by less than half.
 _FACING = 25.0
 
-# Planes that differ by less than this (°) may be one; roofs with a smaller turn look the same.
-_SAME_FACING = 6.0
-
 # Share of a plane's points that a round of growth must add before the plane is fitted anew.
 _REFIT = 0.3
 
@@ -79,7 +76,6 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     growth = _Growth(xyz, neighbors, normal, tolerance, float(np.cos(np.deg2rad(max_slope))))
     label = growth.all_planes(eigenvalues[:, 2], min_points)
     label = _chosen_by_neighborhood(xyz, neighbors, label, tolerance)
-    label = _merged(xyz, neighbors, label, tolerance)
     planes = planes_through(xyz, _large(label, min_points))
     # Points change planes after these have grown, and the last fit may turn a plane upright.
     return _selected_planes(planes, planes.cosine >= growth.least_upward)
@@ -206,32 +202,6 @@ def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.nd
         best = np.argmin(off, axis=1)
         rows = np.arange(len(xyz))
         label = np.where(off[rows, best] <= tolerance, options[rows, best], -1)
-    return label
-
-
-def _merged(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return the labels with touching planes joined that one plane describes as well."""
-    while label.max() >= 0:
-        fitted = planes_through(xyz, label)
-        label, n = fitted.label, len(fitted)
-        other = label[neighbors]
-        row, column = np.nonzero((other >= 0) & (other != label[:, None]) & (label[:, None] >= 0))
-        if not len(row):
-            break
-        two = label[row], other[row, column]
-        pair = np.column_stack(np.divmod(np.unique(np.minimum(*two) * n + np.maximum(*two)), n))
-        member = label >= 0
-        planes = planes_of(xyz[member], label[member], n)
-        cosine = np.einsum("ij,ij->i", planes.normal[pair[:, 0]], planes.normal[pair[:, 1]])
-        pair = pair[cosine > np.cos(np.deg2rad(_SAME_FACING))]
-        joined = planes.deviation(pair[:, 0], pair[:, 1]), planes.deviation(pair[:, 1], pair[:, 0])
-        # The smaller one lies on the plane of the larger one, as well as points lie on planes.
-        size = planes.count
-        off = np.where(size[pair[:, 0]] < size[pair[:, 1]], *joined)
-        if not len(off) or off.min() > 0.5 * tolerance:
-            break
-        one, two = pair[np.argmin(off)]
-        label = np.where(label == two, one, label)
     return label
 
 
