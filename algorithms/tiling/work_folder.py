@@ -12,7 +12,7 @@ from ..cloud.outputs import LOCK, locked_folder
 _NAME = ".lidar-buildings"
 
 # What a run makes in it: nothing else is removed. The last are folders of runs that were killed while they wrote.
-_MADE = ("block-*.npz", "numbers-*.npz", "stop", "pieces", ".lb-*.part")
+_MADE = ("block-*.npz", "numbers-*.npz", "view-*.npz", "stop", "pieces", ".lb-*.part")
 
 
 @contextmanager

@@ -358,6 +358,7 @@ def test_the_tiles_are_loaded_with_points_style_and_the_layers_in_one_group(algo
     assert {"Classification", "Intensity", "HeightAboveGround", "Confidence", "Reason"} <= dimensions
     # The folder as input of another run has each point once.
     assert sum(len(read_cloud(one)) for one in files_of_survey([out])) == results["POINTS"]
+    assert not (out / ".lidar-buildings").exists(), "points kept for the page were left"
 
 
 def test_who_wants_no_tiles_on_the_map_gets_no_copies_of_them(algorithm, context, log, folder, tmp_path):
