@@ -6836,7 +6836,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost least. A building whose planes don't explain it gets the next simpler level, with the reason.</source>
+        <source>Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost least. A building that is too far from its points gets the next simpler level, with the reason.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
