@@ -33,7 +33,6 @@ class RowRules:
     )
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
     large_step: float = rule(1.0, "m", "physics: a step between any two roofs, that of half a storey")
-    wide: float = rule(2.5, "m", "physics: where half of a step has to be left; a dormer ends before")
     least_share: float = rule(
         0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
     )
@@ -47,6 +46,11 @@ class RowRules:
     angle: float = rule(10.0, "°", "physics: between party walls of one row, which are nearly parallel")
     same: float = rule(0.8, "m", "closer lines are the same wall")
     strong: float = rule(0.5, "share", "of the greatest strength, from which the line that parts roofs best is chosen")
+
+    @property
+    def wide(self) -> float:
+        """Distance (m) at which half of a step has to be left, within the narrowest house; a dormer ends before."""
+        return self.narrowest - self.same
 
     @property
     def max_spacing(self) -> float:

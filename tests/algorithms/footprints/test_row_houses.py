@@ -280,7 +280,7 @@ def step_of(height, left=0.0, right=0.0, low=8.0):
             lambda x: step_of(0.9)(x) + 0.18 * np.cos(4 * np.pi * x),
             lambda x: step_of(0.9)(x) + 0.32 * np.cos(4 * np.pi * x),
         ),
-        # Half of the step is still there 2.5 m from every line within 0.8 m of it.
+        # Half of the step is still there 2.7 m from every line within 0.8 m of it.
         (lambda x: step_of(0.9)(x) - 0.9 * (x > 3.6), lambda x: step_of(0.9)(x) - 0.9 * (x > 3.1)),
         # The lower house has six tenths of the other's height.
         (step_of(1.6, low=2.6), step_of(1.6, low=2.2)),
