@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Callable, Optional
+from typing import Optional
 
 import numpy as np
-
-from ..packages import ndimage
 
 
 def open_surface(surface: np.ndarray, radius: int, absent: Optional[np.ndarray] = None) -> np.ndarray:
@@ -29,40 +27,42 @@ def open_surface(surface: np.ndarray, radius: int, absent: Optional[np.ndarray] 
     Notes
     -----
     An octagon is a square swept over a diamond, a diamond is one diagonal line swept over the other, so four
-    running minima and four running maxima do it.
+    running minima and four running maxima do it. Each takes the extremes of one cell and the next, of two and the next
+    two, of four and the next four: whole arrays at a time, and a step more for a line twice as long.
     """
     if absent is None:
         absent = np.zeros(surface.shape, bool)
-    eroded = _octagon(np.where(absent, np.inf, surface), radius, ndimage.minimum_filter1d, np.inf)
-    opened = _octagon(np.where(absent, -np.inf, eroded), radius, ndimage.maximum_filter1d, -np.inf)
+    eroded = _octagon(np.where(absent, np.inf, surface), radius, np.minimum, np.inf)
+    opened = _octagon(np.where(absent, -np.inf, eroded), radius, np.maximum, -np.inf)
     return np.where(absent, surface, opened)
 
 
-def _octagon(surface: np.ndarray, radius: int, running: Callable, outside: float) -> np.ndarray:
-    """Run minima or maxima over an octagon; ``outside`` counts beyond the border along diagonals."""
+def _octagon(surface: np.ndarray, radius: int, extreme: np.ufunc, outside: float) -> np.ndarray:
+    """Run minima or maxima over an octagon; ``outside`` counts beyond the border."""
     # A regular octagon of that radius: the diagonal half-length is 0.29 of it.
     diagonal = round(0.293 * radius)
     straight = radius - 2 * diagonal
     if straight:
-        for axis in (0, 1):
-            surface = running(surface, 2 * straight + 1, axis=axis, mode="nearest")
+        for down, right in ((1, 0), (0, 1)):
+            surface = _along_lines(surface, straight, down, right, extreme, outside)
     if diagonal:
-        for rising in (True, False):
-            surface = _along_diagonals(surface, 2 * diagonal + 1, rising, running, outside)
+        # Rising diagonals fall in the mirror image.
+        surface = _along_lines(surface[:, ::-1], diagonal, 1, 1, extreme, outside)[:, ::-1]
+        surface = _along_lines(surface, diagonal, 1, 1, extreme, outside)
     return surface
 
 
-def _along_diagonals(surface: np.ndarray, length: int, rising: bool, running: Callable, outside: float) -> np.ndarray:
-    """Run a one-dimensional filter along the diagonals: sheared, they are columns."""
+def _along_lines(
+    surface: np.ndarray, half: int, down: int, right: int, extreme: np.ufunc, outside: float
+) -> np.ndarray:
+    """Run minima or maxima over a line of ``half`` cells to both sides, a step of which is ``down`` and ``right``."""
     rows, columns = surface.shape
-    if rows > columns:
-        # Time grows with rows * (rows + columns): transposed there are fewer rows, and the same diagonals.
-        return _along_diagonals(surface.T, length, rising, running, outside).T
-    width = rows + columns - 1
-    # Written in rows of width + 1 and read in rows of width, each row is shifted one cell more: diagonals are columns.
-    sheared, filtered = np.full(rows * (width + 1), outside), np.empty(rows * (width + 1))
-    order = slice(None, None, 1 if rising else -1)
-    sheared.reshape(rows, width + 1)[:, :columns] = surface[order]
-    whole, out = (flat[: rows * width].reshape(rows, width) for flat in (sheared, filtered))
-    running(whole, length, axis=0, output=out, mode="constant", cval=outside)
-    return filtered.reshape(rows, width + 1)[order, :columns]
+    found = np.full((rows + 2 * half * down, columns + 2 * half * right), outside)
+    found[half * down :, half * right :][:rows, :columns] = surface
+    length, done = 2 * half + 1, 1
+    while done < length:
+        more = min(done, length - done)
+        rows, columns = found.shape
+        found = extreme(found[: rows - more * down, : columns - more * right], found[more * down :, more * right :])
+        done += more
+    return found

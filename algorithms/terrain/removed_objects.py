@@ -7,7 +7,7 @@ of removed cells come back if they go on into the terrain around without a step,
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -51,6 +51,7 @@ class ObjectRemoval:
     #: cell_size, spacing: Size of the cells, and spacing of the points where that is more, m
     cell_size: float
     spacing: float = 0.0
+    _lowered: list[tuple[int, np.ndarray, np.ndarray]] = field(default_factory=list, init=False, repr=False)
 
     @property
     def windows(self) -> list[int]:
@@ -76,15 +77,29 @@ class ObjectRemoval:
 
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return the radius (cells) of the first window that removes each cell, 0 where none does."""
-        removed_by = np.zeros(self.surface.shape, np.int32)
-        opened = self.surface
+        removed_by = np.zeros(self.surface.size, np.int32)
+        for radius, cells, fall in self._lowered_by(monitor):
+            reach = radius * self.cell_size
+            removed = cells[fall > REMOVAL.step + (REMOVAL.flat_slope + slope.ravel()[cells]) * reach]
+            removed_by[removed[removed_by[removed] == 0]] = radius
+        return removed_by.reshape(self.surface.shape)
+
+    def _lowered_by(self, monitor: Monitor) -> list[tuple[int, np.ndarray, np.ndarray]]:
+        """Return the radius of each window, the cells that it lowers by more than level terrain rises, and by how much.
+
+        Whatever the slope, these are the same: they are found once.
+        """
+        if self._lowered:
+            return self._lowered
+        opened, lowered = self.surface, []
         for done, radius in enumerate(self.windows, start=1):
             previous, opened = opened, open_surface(opened, radius, self.is_free_standing)
-            reach = radius * self.cell_size
-            is_removed = previous - opened > REMOVAL.step + (REMOVAL.flat_slope + slope) * reach
-            removed_by[is_removed & (removed_by == 0)] = radius
+            fall, reach = (previous - opened).ravel(), radius * self.cell_size
+            cells = np.flatnonzero(fall > REMOVAL.step + REMOVAL.flat_slope * reach)
+            lowered.append((radius, cells, fall[cells]))
             monitor.progress(done / len(self.windows))
-        return removed_by
+        self._lowered.extend(lowered)
+        return self._lowered
 
     def without_joined(self, removed_by: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """Return which cells are objects: free-standing ones, and removed ones but for regions that join the terrain.
