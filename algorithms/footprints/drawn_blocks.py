@@ -18,7 +18,7 @@ from ..packages import ndimage
 from ..threads import ROWS_AT_ONCE
 from .outline_pieces import Piece
 from .row_houses import Houses
-from .soft_shares import Lattice, Shares
+from .soft_shares import Lattice, Shares, spread_out
 
 # A corner costs as much as this many cubed spacings of squared distance along an outline: a bay of two spacings by four
 # is not drawn. With 10, corners of the map in Delft are 0.04 m farther off; with 6 there are more corners, no closer.
@@ -134,8 +134,7 @@ def _by_house(
             continue
         house = np.zeros(lattice.shape, np.int64)
         _copy_overlap(house, lattice, shares[number].lattice, houses[number].house)
-        nearest = ndimage.distance_transform_edt(house == 0, return_distances=False, return_indices=True)
-        house = house[tuple(nearest)]
+        house = spread_out(house)
         flat = house.ravel()
         for cell in np.flatnonzero(label == at):
             nodes = cells.members[cell]
@@ -147,9 +146,8 @@ def _by_house(
 
 def _at_middle(cells: Subdivision, cell: int, values: np.ndarray, lattice: Lattice) -> np.ndarray:
     """Return the value (1,) or (..., 1) at the node next to the middle of a cell."""
-    column, row = np.rint(lattice.nodes(np.mean([cells.vertices[v] for v in cells.loops[cell]], axis=0))).astype(int)
-    rows, columns = lattice.shape
-    return values[..., min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)][..., None]
+    row, column = lattice.nearest(np.mean([cells.vertices[v] for v in cells.loops[cell]], axis=0))
+    return values[..., row, column][..., None]
 
 
 def _shares_of(
@@ -181,8 +179,7 @@ def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:
     at = own.lattice.nodes(np.concatenate(rings)).astype(np.int64)
     beside = [part[at[:, 1] + row, at[:, 0] + column] for row in (0, 1) for column in (0, 1)]
     mine = np.setdiff1d(np.concatenate(beside), 0)
-    nearest = ndimage.distance_transform_edt(part == 0, return_distances=False, return_indices=True)
-    return np.isin(part[tuple(nearest)], mine)
+    return np.isin(spread_out(part), mine)
 
 
 def _copy_overlap(target: np.ndarray, lattice: Lattice, inner: Lattice, values: np.ndarray) -> None:

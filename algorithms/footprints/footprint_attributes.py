@@ -167,18 +167,13 @@ class _Owners:
         self.lattice = Lattice.around(np.concatenate([nodes, plan]), spacing)
         self.face = np.full(self.lattice.shape, -1, np.int32)
         for number, outlined in enumerate(outlines):
-            self.face[self._nodes(outlined.nodes)] = number
+            self.face[self.lattice.nearest(outlined.nodes)] = number
         # Row and column of the nearest node of an outline: distances of all nodes would take several times the memory.
         self.nearest = ndimage.distance_transform_edt(self.face < 0, return_distances=False, return_indices=True)
 
-    def _nodes(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        column, row = np.rint(self.lattice.nodes(positions)).astype(np.int64).T
-        rows, columns = self.lattice.shape
-        return row.clip(0, rows - 1), column.clip(0, columns - 1)
-
     def at(self, plan: np.ndarray) -> np.ndarray:
         """Return the outline (n,) that positions (n, 2) belong to, -1 of those far from all."""
-        own = self._nodes(plan)
+        own = self.lattice.nearest(plan)
         row, column = (nearest[own] for nearest in self.nearest)
         is_near = self.lattice.step * np.hypot(row - own[0], column - own[1]) <= APART * self.spacing
         return np.where(is_near, self.face[row, column], -1)
@@ -196,7 +191,7 @@ class _Owners:
                 np.tile(np.array([end[1] - start[1], start[0] - end[0]]) / max(length, 1e-9), (len(share), 1))
             )
         along, across = np.concatenate(positions), np.concatenate(outward)
-        beyond = self.face[self._nodes(along + self.spacing * across)]
+        beyond = self.face[self.lattice.nearest(along + self.spacing * across)]
         is_outer = (beyond < 0) | (beyond == face)
         return along, is_outer if is_outer.any() else np.ones(len(along), bool)
 
@@ -252,10 +247,8 @@ def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacin
     if not defined.any():
         return float("nan")
     lattice = Lattice.around(np.concatenate([plan[defined], nodes]), spacing)
-    column, row = np.rint(lattice.nodes(nodes)).astype(np.int64).T
-    weight, total = (
-        smoothed(lattice.spread(plan[defined], values), 1.0)[row, column] for values in (None, height[defined])
-    )
+    at = lattice.nearest(nodes)
+    weight, total = (smoothed(lattice.spread(plan[defined], values), 1.0)[at] for values in (None, height[defined]))
     is_near = weight > _COVERED
     return float(np.mean(total[is_near] / weight[is_near])) if is_near.any() else _mean(height, np.arange(len(height)))
 

@@ -9,9 +9,10 @@ import numpy as np
 from ..geometry.groups import components
 from ..geometry.level_lines import level_lines
 from ..geometry.line_segments import is_inside
+from ..geometry.ring_directions import direction_weights, main_directions
 from ..geometry.rings import perimeter, signed_area
 from ..packages import spatial
-from .soft_shares import Shares
+from .soft_shares import Shares, find_shares
 
 # Fewest samples of a ring.
 _FEWEST = 12
@@ -66,6 +67,18 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
             area = size + sum(map(signed_area, own))
             pieces.append(Piece(building, [sampled(one, spacing) for one in [ring, *own]], area))
     return pieces
+
+
+def pieces_alone(roof: np.ndarray, spacing: float, least_area: float) -> tuple[Shares, list[Piece], np.ndarray]:
+    """Return the shares, the pieces and the main directions (k,), °, of one building with the roof points (n, 2), m.
+
+    ``least_area`` (m²) is that of its pieces and holes.
+    """
+    shares = find_shares(roof, np.ones(len(roof)), np.ones(len(roof), np.int64), np.zeros((0, 2)), spacing)[1]
+    pieces = find_pieces(1, shares, spacing, least_area, least_area)
+    rings = [ring for piece in pieces for ring in piece.rings]
+    weights = np.sum([direction_weights(ring) for ring in rings], axis=0)
+    return shares, pieces, main_directions(weights, weights, sum(map(len, rings))) if rings else np.zeros(0)
 
 
 def sampled(ring: np.ndarray, step: float) -> np.ndarray:

@@ -166,10 +166,7 @@ def _inside(
 
     ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).
     """
-    positions = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1) @ turn.T
-    column, row = np.moveaxis(np.rint(lattice.nodes(positions)).astype(np.int64), -1, 0)
-    rows, columns = is_inside.shape
-    return is_inside[row.clip(0, rows - 1), column.clip(0, columns - 1)]
+    return is_inside[lattice.nearest(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1) @ turn.T)]
 
 
 def _averaged(

@@ -66,6 +66,11 @@ class Lattice:
         """Return column and row (n, 2) of positions (m), fractions of them included."""
         return plan / self.step - self.first
 
+    def nearest(self, plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return row and column (...) of the nodes nearest to positions (..., 2), m."""
+        column, row = np.moveaxis(np.rint(self.nodes(plan)).astype(np.int64), -1, 0)
+        return row.clip(0, self.shape[0] - 1), column.clip(0, self.shape[1] - 1)
+
     @property
     def positions(self) -> np.ndarray:
         """Easting and northing (rows * columns, 2), m, of all nodes, row by row."""
@@ -200,3 +205,9 @@ def _density(lattice: Lattice, plan: np.ndarray, width: float, weight: Optional[
 def smoothed(field: np.ndarray, width: float) -> np.ndarray:
     """Return a field on a lattice with weights of a standard deviation ``width`` (spacings)."""
     return ndimage.gaussian_filter(field, width * _NODES, mode="constant", truncate=_TRUNCATE)
+
+
+def spread_out(label: np.ndarray) -> np.ndarray:
+    """Return labels (rows, columns) in which each node without one, 0, has that of the nearest node with one."""
+    nearest = ndimage.distance_transform_edt(label == 0, return_distances=False, return_indices=True)
+    return label[tuple(nearest)]

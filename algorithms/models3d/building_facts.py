@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..stage import Field, LayerFeatures
+from ..stage import Field
 from .building_models import BuildingModel
 from .roof_points import RULES
 from .solids import ROOF, WALL, Solid
@@ -166,13 +166,6 @@ def faces_of(solids: Sequence[Solid], kind: str) -> list[tuple[Solid, int]]:
 def face_rings(solid: Solid, face: int) -> list[np.ndarray]:
     """Return the closed rings (k, 3) of a face, m."""
     return [solid.vertices[[*ring, ring[0]]] for ring in solid.faces[face]]
-
-
-def numbered_layer(geometries: list, rows: list[dict[str, Any]], fields: Sequence[Field]) -> LayerFeatures:
-    """Return a layer of features with the attributes of rows; its first field is their number, from 1."""
-    number, *others = (field.name for field in fields)
-    columns = {name: [row[name] for row in rows] for name in others}
-    return LayerFeatures(geometries, {number: list(range(1, len(rows) + 1)), **columns})
 
 
 def building_attributes(one: NamedModel) -> dict[str, Any]:

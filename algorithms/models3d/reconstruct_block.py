@@ -22,7 +22,6 @@ from .building_facts import (
     face_attributes,
     face_rings,
     faces_of,
-    numbered_layer,
 )
 from .reconstruct_roofs import reconstruct_roofs
 from .set_openings import DOOR, WINDOW, Opening, with_openings
@@ -209,12 +208,12 @@ def _inform(n_fitted: int, n_footprints: int, n_set: int, n_openings: int, monit
 
 def _walls(models: list[NamedModel], segments: PlanSegments) -> LayerFeatures:
     """Return the walls of models with the holes of their openings."""
-    geometries, rows = [], []
-    for one in models:
-        for solid, face in faces_of(one.model.solids[LEVEL_OF_OPENINGS], WALL):
-            geometries.append(face_rings(solid, face))
-            rows.append({**face_attributes(one, solid, face), "source": _wall_source(solid, face, segments)})
-    return numbered_layer(geometries, rows, BLOCK_WALL_FIELDS)
+    walls = [
+        (face_rings(solid, face), {**face_attributes(one, solid, face), "source": _wall_source(solid, face, segments)})
+        for one in models
+        for solid, face in faces_of(one.model.solids[LEVEL_OF_OPENINGS], WALL)
+    ]
+    return LayerFeatures.numbered(walls, BLOCK_WALL_FIELDS)
 
 
 def _wall_source(solid: Solid, face: int, segments: PlanSegments) -> str:
@@ -228,17 +227,15 @@ def _wall_source(solid: Solid, face: int, segments: PlanSegments) -> str:
 
 def _opening_layer(done: list[tuple]) -> LayerFeatures:
     """Return windows and doors as polygons."""
-    geometries, rows = [], []
+    features = []
     for one, opening in done:
         ring = opening.ring
-        geometries.append([np.concatenate([ring, ring[:1]])])
-        rows.append(
-            {
-                "building": one.name,
-                "kind": opening.kind,
-                "width": float(spatial.distance.pdist(ring[:, :2]).max()),
-                "height": float(np.ptp(ring[:, 2])),
-                "sill": float(ring[:, 2].min() - one.model.base),
-            }
-        )
-    return numbered_layer(geometries, rows, OPENING_FIELDS)
+        facts = {
+            "building": one.name,
+            "kind": opening.kind,
+            "width": float(spatial.distance.pdist(ring[:, :2]).max()),
+            "height": float(np.ptp(ring[:, 2])),
+            "sill": float(ring[:, 2].min() - one.model.base),
+        }
+        features.append(([np.concatenate([ring, ring[:1]])], facts))
+    return LayerFeatures.numbered(features, OPENING_FIELDS)

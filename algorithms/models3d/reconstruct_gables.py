@@ -303,8 +303,7 @@ def _features(houses: list[House]) -> LayerFeatures:
             size = float(np.linalg.norm(normal))
             slope = float(np.degrees(np.arccos(np.clip(abs(normal[2]) / size, 0, 1))))
             geometries.append([ring])
-            values: tuple = (number, k, kind, size, slope, *own[:6, :2].ravel().tolist())
-            values += (float(own[0, 2]), float(own[2, 2]), float(own[6, 2]), house.rms)
+            values = number, k, kind, size, slope, *own[:6, :2].ravel().tolist(), *own[[0, 2, 6], 2].tolist(), house.rms
             for name, value in zip(columns, values):
                 columns[name].append(value)
     return LayerFeatures(geometries, columns)

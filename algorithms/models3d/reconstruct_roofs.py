@@ -25,7 +25,6 @@ from .building_facts import (
     face_rings,
     faces_of,
     map_attributes,
-    numbered_layer,
 )
 from .building_models import LEVELS, Settings, model_building
 from .heights_around import RADIUS
@@ -360,9 +359,8 @@ def _along(ring: np.ndarray) -> np.ndarray:
 
 def _building_layer(models: list[NamedModel]) -> LayerFeatures:
     """Return the grounds of buildings."""
-    rows = [building_attributes(one) for one in models]
     rings = [[np.column_stack([ring, np.full(len(ring), one.model.base)]) for ring in one.rings] for one in models]
-    layer = numbered_layer(rings, rows, BUILDING_FIELDS)
+    layer = LayerFeatures.numbered(list(zip(rings, map(building_attributes, models))), BUILDING_FIELDS)
     of_map = [one.attributes or {} for one in models]
     names = dict.fromkeys(name for facts in of_map for name in facts)
     layer.columns.update({name: [facts.get(name) for facts in of_map] for name in names})
@@ -372,6 +370,5 @@ def _building_layer(models: list[NamedModel]) -> LayerFeatures:
 def _face_layer(models: list[NamedModel], kind: str) -> LayerFeatures:
     """Return the faces of one kind."""
     faces = [(one, solid, face) for one in models for solid, face in faces_of(one.model.best, kind)]
-    rings = [face_rings(solid, face) for _, solid, face in faces]
-    fields = ROOF_FIELDS if kind == ROOF else WALL_FIELDS
-    return numbered_layer(rings, [face_attributes(*face) for face in faces], fields)
+    features = [(face_rings(solid, face), face_attributes(one, solid, face)) for one, solid, face in faces]
+    return LayerFeatures.numbered(features, ROOF_FIELDS if kind == ROOF else WALL_FIELDS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Protocol
 
@@ -109,6 +109,13 @@ class LayerFeatures:
 
     def __len__(self) -> int:
         return len(self.geometries)
+
+    @classmethod
+    def numbered(cls, features: Sequence[tuple[Any, dict[str, Any]]], fields: Sequence[Field]) -> LayerFeatures:
+        """Return geometries with their attributes by ``fields``, the first of which is their number, from 1."""
+        number, *others = (field.name for field in fields)
+        columns = {name: [facts[name] for _, facts in features] for name in others}
+        return cls([geometry for geometry, _ in features], {number: list(range(1, len(features) + 1)), **columns})
 
 
 def feature_names(features: LayerFeatures, id_field: str = "") -> list[str]:

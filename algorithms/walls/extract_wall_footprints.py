@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Annotated, Optional
+from typing import Annotated, Any, Optional
 
 import numpy as np
 
@@ -28,6 +29,9 @@ from .wall_outline import WallOutline, outline_walls, share_seen
 from .wall_report import MEASURES, WALL, point_counts, wall_report
 
 ROOF = "roof"
+
+# A geometry and its attributes.
+_Feature = tuple[Any, dict[str, Any]]
 
 # Distance in plan within which points lie on a wall (times the roughness).
 _ON_WALL = 3.1
@@ -224,9 +228,9 @@ def extract_wall_footprints(
     >>> len(footprints)
     1
     """
-    footprints = LayerFeatures([], {field.name: [] for field in _FIELDS})
-    edges = LayerFeatures([], {field.name: [] for field in _EDGE_FIELDS})
-    corners = LayerFeatures([], {field.name: [] for field in _CORNER_FIELDS})
+    footprints: list[_Feature] = []
+    edges: list[_Feature] = []
+    corners: list[_Feature] = []
     sampling = sampling or CloudSampling.of(xyz)
     buildings = _buildings(xyz, cluster_id, wall_of, sampling)
     if tolerance is None:
@@ -245,16 +249,19 @@ def extract_wall_footprints(
             continue
         for house, outline, used, parts in houses:
             for rings in parts:
-                _add(footprints, edges, rings, house, used, height_above_ground)
+                footprints.append(_footprint(rings, house, used, height_above_ground))
+                edges += _edges(rings, len(footprints), house.origin)
             if outline is not None:
                 rejected = ROOF_OUTLINE if used is None else "" if parts else TOO_SMALL
                 kept = replace(outline, rings=[ring for rings in parts for ring in rings])
-                _add_corners(corners, candidate_corners(kept, rejected), house)
+                corners += _corners(candidate_corners(kept, rejected), house)
         part.progress(1.0)
     monitor.progress(1.0)
-    _tell_unseen(footprints, monitor)
+    layers = zip((footprints, edges, corners), (_FIELDS, _EDGE_FIELDS, _CORNER_FIELDS))
+    made = [LayerFeatures.numbered(features, fields) for features, fields in layers]
+    _tell_unseen(made[0], monitor)
     counts = point_counts(cluster_id, wall_of, classification, voxel_count)
-    return footprints, edges, corners, wall_report(counts, footprints.columns["source"], corners.columns["outcome"])
+    return *made, wall_report(counts, made[0].columns["source"], made[2].columns["outcome"])
 
 
 def _parts_of(
@@ -389,22 +396,15 @@ def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:
     return [[ring, *(hole for hole in holes if is_inside(hole[0].start, closed(ring)))] for ring in outer]
 
 
-def _add(
-    footprints: LayerFeatures,
-    edges: LayerFeatures,
-    rings: list[list[WallEdge]],
-    building: _Building,
-    outline: Optional[WallOutline],
-    height: Optional[np.ndarray],
-) -> None:
-    """Append a footprint, its rings as edges with the exterior first, and the edges themselves."""
+def _footprint(
+    rings: list[list[WallEdge]], building: _Building, outline: Optional[WallOutline], height: Optional[np.ndarray]
+) -> _Feature:
+    """Return a footprint of rings of edges, the exterior first."""
     corners = [closed(ring) for ring in rings]
-    footprints.geometries.append([ring + building.origin for ring in corners])
     own_edges = [edge for ring in rings for edge in ring]
     quality = np.array([edge.quality for edge in own_edges])
     points = np.array([edge.points for edge in own_edges])
-    described = {
-        "id": len(footprints.geometries),
+    facts = {
         "cluster_id": building.number,
         "source": ROOF if outline is None else WALL,
         "area": sum(map(signed_area, corners)),
@@ -418,9 +418,7 @@ def _add(
         "height": float("nan") if height is None else float(np.median(height[building.roof_rows])),
         "points": int(points.sum()),
     }
-    for name, value in described.items():
-        footprints.columns[name].append(value)
-    _add_edges(edges, rings, len(footprints), building.origin)
+    return [ring + building.origin for ring in corners], facts
 
 
 def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
@@ -429,13 +427,11 @@ def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
     return float(np.sqrt(np.average(deviation[seen] ** 2, weights=points[seen]))) if seen.any() else float("nan")
 
 
-def _add_edges(edges: LayerFeatures, rings: list[list[WallEdge]], footprint: int, origin: np.ndarray) -> None:
-    """Append the edges of a footprint, ring by ring, numbered from 1."""
+def _edges(rings: list[list[WallEdge]], footprint: int, origin: np.ndarray) -> Iterator[_Feature]:
+    """Yield the edges of a footprint, ring by ring, numbered from 1."""
     pairs = [pair for ring in rings for pair in zip([ring[-1], *ring], ring)]
     for number, (before, edge) in enumerate(pairs, start=1):
-        edges.geometries.append(np.array([edge.start, edge.end]) + origin)
-        described = {
-            "id": len(edges.geometries),
+        facts = {
             "footprint": footprint,
             "edge": number,
             "source": WALL if edge.quality >= _SEEN else ROOF,
@@ -446,24 +442,14 @@ def _add_edges(edges: LayerFeatures, rings: list[list[WallEdge]], footprint: int
             "deviation": edge.deviation,
             "precision": edge.precision,
         }
-        for name, value in described.items():
-            edges.columns[name].append(value)
+        yield np.array([edge.start, edge.end]) + origin, facts
 
 
-def _add_corners(layer: LayerFeatures, corners: CandidateCorners, building: _Building) -> None:
-    """Append the candidate corners of a building."""
-    first = len(layer) + 1
-    layer.geometries.extend(corners.position + building.origin)
-    described = {
-        "id": range(first, first + len(corners.outcome)),
-        "cluster_id": [building.number] * len(corners.outcome),
-        "outcome": corners.outcome,
-        "walls_seen": corners.n_seen.tolist(),
-        "angle": corners.angle.tolist(),
-        "gap": corners.gap.tolist(),
-    }
-    for name, values in described.items():
-        layer.columns[name].extend(values)
+def _corners(corners: CandidateCorners, building: _Building) -> Iterator[_Feature]:
+    """Yield the candidate corners of a building."""
+    facts = zip(corners.outcome, corners.n_seen.tolist(), corners.angle.tolist(), corners.gap.tolist())
+    for position, values in zip(corners.position + building.origin, facts):
+        yield position, dict(zip(("cluster_id", "outcome", "walls_seen", "angle", "gap"), (building.number, *values)))
 
 
 def _inner_angle(before: WallEdge, edge: WallEdge) -> float:

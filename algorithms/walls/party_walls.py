@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..footprints.outline_pieces import find_pieces
+from ..footprints.outline_pieces import pieces_alone
 from ..footprints.row_houses import split_row
-from ..footprints.soft_shares import find_shares
-from ..geometry.ring_directions import direction_weights, main_directions
-from ..packages import ndimage
+from ..footprints.soft_shares import spread_out
 from ..segmentation.top_surface import highest_of_cells
 from ..stage import Monitor
 
@@ -65,17 +63,11 @@ def split_blocks(
 
 def _houses_at(plan: np.ndarray, height: np.ndarray, positions: np.ndarray, spacing: float) -> np.ndarray:
     """Return the house (k,), from 1, at positions (k, 2) of a building with these roof points and heights."""
-    shares = find_shares(plan, np.ones(len(plan)), np.ones(len(plan), np.int64), np.zeros((0, 2)), spacing)[1]
-    rings = [ring for piece in find_pieces(1, shares, spacing, 0.0, 0.0) for ring in piece.rings]
-    if not rings:
+    shares, pieces, directions = pieces_alone(plan, spacing, 0.0)
+    if not pieces:
         return np.ones(len(positions), np.int64)
-    weights = np.sum([direction_weights(ring) for ring in rings], axis=0)
-    angles = main_directions(weights, weights, sum(map(len, rings)))
-    house = split_row(shares.lattice, shares.share > shares.rest, plan, height, angles, spacing).house
-    nearest = ndimage.distance_transform_edt(house == 0, return_distances=False, return_indices=True)
-    column, row = np.rint(shares.lattice.nodes(positions)).astype(np.int64).T
-    rows, columns = house.shape
-    return house[tuple(nearest)][row.clip(0, rows - 1), column.clip(0, columns - 1)]
+    houses = split_row(shares.lattice, shares.share > shares.rest, plan, height, directions, spacing)
+    return spread_out(houses.house)[shares.lattice.nearest(positions)]
 
 
 def from_west_to_east(x: np.ndarray, building: np.ndarray) -> np.ndarray:

@@ -9,14 +9,10 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..footprints.drawn_blocks import Drawing, draw_block
-from ..footprints.outline_pieces import blocks_of, find_pieces
-from ..footprints.soft_shares import find_shares
-from ..geometry.ring_directions import direction_weights, main_directions
+from ..footprints.outline_pieces import blocks_of, pieces_alone
+from ..footprints.soft_shares import LEAST_SPACING
 from ..geometry.rings import signed_area
 from .surroundings import without_nested
-
-# Least spacing (m) that roofs are drawn with: noise and the overhang hide smaller detail.
-_LEAST_SPACING = 0.25
 
 # Area of the smallest part and of the smallest courtyard (square spacings).
 _LEAST_AREA = 16.0
@@ -50,18 +46,14 @@ def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
     spacing : float
         Mean distance between them, m.
     """
-    spacing = max(spacing, _LEAST_SPACING)
+    spacing = max(spacing, LEAST_SPACING)
     area = _LEAST_AREA * spacing**2
-    shares = find_shares(roof, np.ones(len(roof)), np.ones(len(roof), np.int64), np.zeros((0, 2)), spacing)
-    pieces = find_pieces(1, shares[1], spacing, area, area)
+    shares, pieces, directions = pieces_alone(roof, spacing, area)
     blocks = blocks_of(pieces, spacing)
-    rings = [ring for piece in pieces for ring in piece.rings]
-    weights = np.sum([direction_weights(ring) for ring in rings], axis=0)
-    directions = {1: main_directions(weights, weights, sum(map(len, rings)))} if rings else {}
 
     def drawn(scale: float) -> list[list[np.ndarray]]:
         how = Drawing(spacing, scale * spacing, area, area)
-        found = [one.rings for block in blocks for one in draw_block(block, shares, directions, {}, how)]
+        found = [one.rings for block in blocks for one in draw_block(block, {1: shares}, {1: directions}, {}, how)]
         return without_nested(sorted(found, key=lambda part: -sum(map(signed_area, part))))
 
     parts = drawn(1.0)

@@ -15,29 +15,22 @@ from .candidate_corners import CORNER
 # Source of a footprint that is an outline of walls.
 WALL = "wall"
 
-MEASURES = (
-    Measure("original_points", "Points before thinning"),
-    Measure("points", "Points"),
-    Measure("points_above_ground", "Points above ground"),
-    Measure("roof_points", "Points of roofs"),
-    Measure("wall_points", "Points of walls"),
-    Measure("all_outlines", "Footprints"),
-    Measure("wall_outlines", "Footprints that are outlines of walls"),
-    Measure("candidates", "Candidate corners"),
-    Measure("kept_corners", "Candidate corners that are corners of footprints"),
-)
-
-_MEANINGS = {
-    "original_points": "Of which the points of the cloud were made.",
-    "points": "In the cloud that footprints were made of.",
-    "points_above_ground": "Neither ground nor noise.",
-    "roof_points": "In a building.",
-    "wall_points": "Below the roof of a building.",
-    "all_outlines": "Of buildings that are large enough.",
-    "wall_outlines": "The others are outlines of roofs.",
-    "candidates": "Intersections of two walls of a building, seen or derived from its roof.",
-    "kept_corners": "The others lie on edges, off the outline, or on walls that no footprint has.",
+# What each number is, and what it means.
+_ROWS = {
+    "original_points": ("Points before thinning", "Of which the points of the cloud were made."),
+    "points": ("Points", "In the cloud that footprints were made of."),
+    "points_above_ground": ("Points above ground", "Neither ground nor noise."),
+    "roof_points": ("Points of roofs", "In a building."),
+    "wall_points": ("Points of walls", "Below the roof of a building."),
+    "all_outlines": ("Footprints", "Of buildings that are large enough."),
+    "wall_outlines": ("Footprints that are outlines of walls", "The others are outlines of roofs."),
+    "candidates": ("Candidate corners", "Intersections of two walls of a building, seen or derived from its roof."),
+    "kept_corners": (
+        "Candidate corners that are corners of footprints",
+        "The others lie on edges, off the outline, or on walls that no footprint has.",
+    ),
 }
+MEASURES = tuple(Measure(name, title) for name, (title, _) in _ROWS.items())
 
 
 def point_counts(
@@ -90,7 +83,7 @@ def wall_report(counts: dict[str, float], sources: list[str], outcomes: list[str
         "kept_corners": outcomes.count(CORNER),
     }
     whole = counts["points"] if math.isnan(counts["original_points"]) else counts["original_points"]
-    rows = {measure.name: _row(measure, values[measure.name], whole) for measure in MEASURES}
+    rows = {name: _row(name, values[name], whole) for name in _ROWS}
     points = [row for name, row in rows.items() if name in counts]
     made = [row for name, row in rows.items() if name not in counts]
     lead = (
@@ -100,9 +93,10 @@ def wall_report(counts: dict[str, float], sources: list[str], outcomes: list[str
     return Report(values, build_page("From points to walls", lead, {"Points": points, "Footprints": made}, ""))
 
 
-def _row(measure: Measure, value: float, whole: float) -> Row:
+def _row(name: str, value: float, whole: float) -> Row:
     """Return the row of a number; points are also given as a share of the ``whole`` cloud."""
+    title, meaning = _ROWS[name]
     if math.isnan(value):
-        return Row(measure.title, "unknown", "The cloud has no value of it.")
-    share = f" {value / whole:.1%} of all points." if "points" in measure.name and whole else ""
-    return Row(measure.title, f"{value:,}", _MEANINGS[measure.name] + share)
+        return Row(title, "unknown", "The cloud has no value of it.")
+    share = f" {value / whole:.1%} of all points." if "points" in name and whole else ""
+    return Row(title, f"{value:,}", meaning + share)
