@@ -68,6 +68,15 @@ class Echoes:
         """Return some of them, by index or mask."""
         return Echoes(*(getattr(self, field.name)[which] for field in fields(self)))
 
+    def in_order(self) -> Echoes:
+        """Return them by pulse, then by range."""
+        return self.take(np.lexsort((self.range, self.pulse)))
+
+    def first(self) -> Echoes:
+        """Return the nearest of each pulse."""
+        echoes = self.in_order()
+        return echoes.take(rank(echoes.pulse) == 0)
+
 
 def join(parts: Sequence[Echoes]) -> Echoes:
     """Return echoes of several kinds as one."""
@@ -80,7 +89,7 @@ class World:
     def __init__(self, scene: Scene) -> None:
         self.relief: Relief = scene.relief
         self.solids: SolidArrays = stack(scene.solids)
-        self.crowns: np.ndarray = scene.crowns.array
+        self.crowns: np.ndarray = np.array(scene.crowns, float).reshape(-1, 7)
         self.wires: np.ndarray = np.array(scene.wires, float).reshape(-1, 7)
 
     def boxes(self, kind: str) -> tuple[np.ndarray, np.ndarray]:

@@ -82,21 +82,14 @@ class Lot:
         """Return which positions (m) lie on the lot."""
         return (np.abs(x - self.x) < LOT / 2) & (np.abs(y - self.y) < LOT / 2)
 
-    def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:
-        """Return positions (m) across and along the obstacle."""
-        return self._frame.local(x, y)
-
-    def rect(self, across: float, along: float, length: float, width: float, turn: float = 0.0) -> Rect:
-        """Return a rectangle by its middle in the lot, its length across the obstacle but for a further turn (rad)."""
-        return self._frame.part(across, along, length, width, turn)
-
     @property
-    def _frame(self) -> Rect:
+    def frame(self) -> Rect:
+        """The directions across the obstacle, as the length of a rectangle, and along it."""
         return Rect(self.x, self.y, 1.0, 1.0, self.turn)
 
     def height(self, x, y) -> np.ndarray:
         """Return the elevation (m) of the land, of the bottom under water."""
-        u, v = self.local(x, y)
+        u, v = self.frame.local(x, y)
         made = KINDS[self.kind]
         if self.kind == "fly-over":
             return self._embankment(u, v)
@@ -191,7 +184,7 @@ def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     for lot in scene.relief.lots if isinstance(scene.relief, BridgeRelief) else ():
         kind = KINDS[lot.kind]
         if kind.behind:
-            on_quay = lot.contains(x, y) & (np.abs(lot.local(x, y)[0]) >= kind.half_width)
+            on_quay = lot.contains(x, y) & (np.abs(lot.frame.local(x, y)[0]) >= kind.half_width)
             z[on_quay] = np.maximum(z[on_quay], 0.0)
     return z
 
@@ -241,7 +234,7 @@ def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
     total = sum(made.decks) + 1.5 * (len(made.decks) - 1)
     decks, at = [], -total / 2
     for width in made.decks:
-        frame = lot.rect(0.0, 0.0, 1.0, 1.0, lot.skew)
+        frame = lot.frame.part(0.0, 0.0, 1.0, 1.0, lot.skew)
         rect = frame.part(0.0, at + width / 2, lot.span + 2 * _SEAT, width)
         at += width + 1.5
         number = scene.new_id()
@@ -289,10 +282,10 @@ def _quays(scene: Scene, lot: Lot) -> None:
     made = KINDS[lot.kind]
     long = LOT - 2 * (_MARGIN + _FADE)
     for side in (-1, 1):
-        quay = lot.rect(side * (made.half_width + 1.5), 0.0, 3.0, long)
+        quay = lot.frame.part(side * (made.half_width + 1.5), 0.0, 3.0, long)
         scene.add_box(quay, -made.depth - 1, 0.0, PointClass.GROUND, 0)
     if not made.decks:
-        jetty = lot.rect(-made.half_width / 2, 0.0, made.half_width + 2, 6.0)
+        jetty = lot.frame.part(-made.half_width / 2, 0.0, made.half_width + 2, 6.0)
         scene.add_box(jetty, -made.depth - 1, 0.0, PointClass.GROUND, 0)
 
 
@@ -300,11 +293,10 @@ def _trees(scene: Scene, lot: Lot, rng: np.random.Generator) -> None:
     """Plant trees on the land at some distance from decks."""
     made = KINDS[lot.kind]
     for u, v in rng.uniform(-LOT / 2 + 8, LOT / 2 - 8, (24, 2)):
-        cos, sin = np.cos(lot.turn), np.sin(lot.turn)
-        x, y = lot.x + u * cos - v * sin, lot.y + u * sin + v * cos
+        x, y = lot.frame.at(u, v)
         across = abs(v * np.cos(lot.skew) - u * np.sin(lot.skew))
         is_free = abs(u) > made.half_width + 4 and across > sum(made.decks) / 2 + 12
         if is_free and max(abs(x - lot.x), abs(y - lot.y)) < LOT / 2 - 6:
             radius = float(rng.uniform(2, 4))
             z = float(scene.relief.ground(x, y))
-            scene.crowns.add(float(x), float(y), z + 2 + radius, radius, radius, 1.2, scene.new_id())
+            scene.crowns.append((float(x), float(y), z + 2 + radius, radius, radius, 1.2, scene.new_id()))

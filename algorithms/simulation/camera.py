@@ -10,7 +10,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .beams import Beams, Echoes, World, join
-from .pairs import in_boxes, rank
+from .pairs import in_boxes
 from .relief import Relief
 from .scene import Scene
 
@@ -83,9 +83,7 @@ def _rays(relief: Relief, aim: np.ndarray, tilt: float, heading: float) -> Beams
 def _first_met(world: World, rays: Beams, rng: np.random.Generator) -> Echoes:
     """Return what each ray meets first, in the order of the rays."""
     solids, crowns = (_met(world, kind, rays) for kind in _SEEN)
-    met = join([world.surfaces(rays, *solids), world.leaves(rays, *crowns, rng)])
-    met = met.take(np.lexsort((met.range, met.pulse)))
-    return met.take(rank(met.pulse) == 0)
+    return join([world.surfaces(rays, *solids), world.leaves(rays, *crowns, rng)]).first()
 
 
 def _met(world: World, kind: str, rays: Beams) -> tuple[np.ndarray, np.ndarray]:

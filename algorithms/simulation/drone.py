@@ -9,7 +9,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .beams import Beams, Echoes, World, join
-from .pairs import in_boxes, rank
+from .pairs import in_boxes
 from .scanner import brightness
 from .scene import Scene
 from .solids import dot
@@ -247,9 +247,7 @@ def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Ec
     ends = world.surfaces(beams, *world.met("solids", beams))
     leaves = world.leaves(beams, *world.met("crowns", beams), rng)
     echoes = join([ends, leaves])
-    echoes = echoes.take((echoes.range > _NEAREST) & (echoes.range < world.reach))
-    echoes = echoes.take(np.lexsort((echoes.range, echoes.pulse)))
-    return echoes.take(rank(echoes.pulse) == 0)
+    return echoes.take((echoes.range > _NEAREST) & (echoes.range < world.reach)).first()
 
 
 def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:

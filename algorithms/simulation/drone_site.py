@@ -76,8 +76,7 @@ def _free_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Gener
 
 def _clear(scene: Scene, rect: Rect) -> None:
     """Take away what grows or parks where a building is put."""
-    kept = [row for row in scene.crowns.rows if not rect.contains(row[0], row[1], row[3] + 0.5)]
-    scene.crowns.rows[:] = kept
+    scene.crowns[:] = [row for row in scene.crowns if not rect.contains(row[0], row[1], row[3] + 0.5)]
     scene.solids[:] = [
         solid
         for solid in scene.solids
@@ -94,21 +93,18 @@ def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
     if rect is None:
         return
     _clear(scene, rect)
-    height = rng.uniform(*_HALL_HEIGHTS)
-    site = Site(scene, rect, height)
-    top = site.floor + height
-    solids = [site.solid(rect, flat(rect, top)), *_parapets(site, rect, top)]
-    scene.add_building("hall", rect.corners(), solids)
+    site = Site(scene, rect, rng.uniform(*_HALL_HEIGHTS))
+    scene.add_building("hall", rect.corners(), [site.solid(rect, flat(rect, site.eave)), *_parapets(site, rect)])
 
 
-def _parapets(site: Site, rect: Rect, top: float) -> list[Solid]:
+def _parapets(site: Site, rect: Rect) -> list[Solid]:
     sides: list[tuple[float, float, float, float]] = [(side, 0.0, _PARAPET_WIDTH, rect.width) for side in (-1, 1)]
     sides += [(0.0, side, rect.length, _PARAPET_WIDTH) for side in (-1, 1)]
     parts = [
         rect.part(along * (rect.length - _PARAPET_WIDTH) / 2, across * (rect.width - _PARAPET_WIDTH) / 2, long, wide)
         for along, across, long, wide in sides
     ]
-    return [site.solid(part, flat(part, top + _PARAPET_HEIGHT)) for part in parts]
+    return [site.solid(part, flat(part, site.eave + _PARAPET_HEIGHT)) for part in parts]
 
 
 def _add_block(scene: Scene, rng: np.random.Generator) -> None:
@@ -122,7 +118,7 @@ def _add_block(scene: Scene, rng: np.random.Generator) -> None:
     for k in range(_BLOCK_ROOFS):
         part = rect.part((k - (_BLOCK_ROOFS - 1) / 2) * wide, 0.0, wide, _BLOCK_DEPTH)
         site = Site(scene, part, height)
-        top = site.floor + height + _BLOCK_STEP * float(rng.uniform(-1.0, 1.0))
+        top = site.eave + _BLOCK_STEP * float(rng.uniform(-1.0, 1.0))
         scene.add_building("flat", part.corners(), [site.solid(part, flat(part, top))])
 
 

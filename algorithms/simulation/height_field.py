@@ -59,7 +59,7 @@ def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) ->
         ground, ground.copy(), np.full(x.shape, PointClass.GROUND, np.uint8), np.zeros(x.shape, np.int32)
     )
     lumps = sum(height * smooth_noise(x.shape, width, rng) for width, height in _LUMPS)
-    for crown in scene.crowns.array:
+    for crown in scene.crowns:
         _add_crown(field, crown, lumps)
     for solid in scene.solids:
         _add_solid(field, solid)
@@ -103,7 +103,7 @@ def _add_solid(field: HeightField, solid: Solid) -> None:
     _raise_cells(field, where, higher, z, solid.classification, solid.object_id)
 
 
-def _add_crown(field: HeightField, crown: np.ndarray, lumps: np.ndarray) -> None:
+def _add_crown(field: HeightField, crown: tuple, lumps: np.ndarray) -> None:
     x0, y0, z0, radius, half, _, number = crown
     reach = 1.2 * radius
     where, x, y = _window(field, np.array([x0 - reach, y0 - reach]), np.array([x0 + reach, y0 + reach]))

@@ -123,26 +123,26 @@ def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rn
 def _plant_bush(scene: Scene, foot: tuple[float, float, float], rng: np.random.Generator) -> None:
     x, y, ground = foot
     radius = rng.uniform(0.4, 1.0)
-    scene.crowns.add(x, y, ground + 0.6 * radius, radius, radius, 0.8, scene.new_id())
+    scene.crowns.append((x, y, ground + 0.6 * radius, radius, radius, 0.8, scene.new_id()))
 
 
 def _conifer(scene: Scene, foot: tuple, height: float, number: int, rng: np.random.Generator) -> None:
     x, y, ground = foot
     radius = height * rng.uniform(0.14, 0.19)
     for level in (0.28, 0.47, 0.65, 0.82):
-        scene.crowns.add(x, y, ground + level * height, 1.25 * radius * (1.05 - level), 0.18 * height, 0.9, number)
+        scene.crowns.append((x, y, ground + level * height, 1.25 * radius * (1.05 - level), 0.18 * height, 0.9, number))
 
 
 def _broadleaf(scene: Scene, foot: tuple, height: float, number: int, rng: np.random.Generator) -> None:
     """Plant a round crown of one large and some small ellipsoids, which make it lumpy."""
     x, y, ground = foot
     radius, middle = height * rng.uniform(0.22, 0.32), ground + 0.64 * height
-    scene.crowns.add(x, y, middle, 0.8 * radius, 0.3 * height, 1.7, number)
+    scene.crowns.append((x, y, middle, 0.8 * radius, 0.3 * height, 1.7, number))
     for _ in range(5):
         turn, up = rng.uniform(0.0, 2 * np.pi), rng.uniform(-0.15, 0.22) * height
         out = 0.6 * radius
-        scene.crowns.add(
-            x + out * np.cos(turn), y + out * np.sin(turn), middle + up, 0.45 * radius, 0.14 * height, 1.1, number
+        scene.crowns.append(
+            (x + out * np.cos(turn), y + out * np.sin(turn), middle + up, 0.45 * radius, 0.14 * height, 1.1, number)
         )
 
 
@@ -151,4 +151,4 @@ def plant_hedge(scene: Scene, line: Rect, height: float) -> None:
     number = scene.new_id()
     line_of_bushes = np.column_stack(line.at(np.arange(-line.length / 2, line.length / 2, 0.5), 0.0))
     for x, y, ground in _feet(scene, line_of_bushes):
-        scene.crowns.add(x, y, ground + height / 2, line.width / 2, height / 2, 0.25, number)
+        scene.crowns.append((x, y, ground + height / 2, line.width / 2, height / 2, 0.25, number))

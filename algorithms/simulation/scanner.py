@@ -70,25 +70,6 @@ _REFLECTANCE[[PointClass.LOW_NOISE, PointClass.HIGH_NOISE, PointClass.WIRE_CONDU
 
 
 @dataclass(frozen=True)
-class Scan:
-    """The points of a scan, in the order of time, then of return.
-
-    ``pulse`` is the number of the pulse; the other arrays are dimensions as in ``dimensions.py``.
-    """
-
-    xyz: np.ndarray
-    classification: np.ndarray
-    return_number: np.ndarray
-    number_of_returns: np.ndarray
-    intensity: np.ndarray
-    scan_angle: np.ndarray
-    point_source_id: np.ndarray
-    gps_time: np.ndarray
-    segment_id: np.ndarray
-    pulse: np.ndarray
-
-
-@dataclass(frozen=True)
 class _Strip:
     """One flight line: its number, where it runs (m north), and the part of the town that it scans."""
 
@@ -127,8 +108,20 @@ class Survey:
     seed: int = 1  #: The same seed makes the same points
 
 
-def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> Scan:
-    """Return the points of a scene scanned from the air, the same for the same scene and survey."""
+def refuse_many_pulses(count: float, what: str, remedy: str) -> None:
+    """Refuse to simulate more pulses than fit into memory, with a sentence of what has them and what to do."""
+    if count > MAX_PULSES:
+        raise ValueError(
+            f"{what} has {count / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} million; {remedy}."
+        )
+
+
+def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> dict[str, np.ndarray]:
+    """Return the dimensions of a scene scanned from the air by name, in the order of time, then of return.
+
+    Beside those that scanners record there is ``pulse``, the number of the pulse. The same scene and survey give the
+    same points.
+    """
     monitor = monitor or Monitor()
     rng = np.random.default_rng([survey.seed, 1])
     world = World(scene)
@@ -148,7 +141,7 @@ def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> Sca
         part["pulse"] += firsts[i]
         parts.append(part)
         monitor.progress((i + 1) / len(blocks))
-    return Scan(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def _strips(relief: Relief, max_scan_angle: float, overlap: float) -> list[_Strip]:
@@ -246,8 +239,7 @@ def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, 
     beside = _beside(world.relief, pulses.take(np.unique(beam)), rng)
     others = world.surfaces(beside, *_met(world, "solids", beside, strip))
     others = others.take(np.abs(others.range - ends.range[others.pulse]) > _DEAD_ZONE)
-    echoes = join([porous, ends, others])
-    echoes = echoes.take(np.lexsort((echoes.range, echoes.pulse)))
+    echoes = join([porous, ends, others]).in_order()
     kept = _separate(echoes, len(pulses), rng) if returns else rank(echoes.pulse) == 0
     # Water mirrors: what doesn't come from below is lost.
     slant = np.arccos(-echoes.direction[:, 2])

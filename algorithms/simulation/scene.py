@@ -42,23 +42,6 @@ class Building:
 
 
 @dataclass
-class Crowns:
-    """Ellipsoids that a beam gets through in part: leaves and twigs."""
-
-    #: x, y, z of the center, horizontal and vertical radius (m), mean way of a beam to the next leaf (m), object id
-    rows: list[tuple] = field(default_factory=list)
-
-    def add(self, x: float, y: float, z: float, radius: float, half_height: float, path: float, object_id: int) -> None:
-        """Add one ellipsoid."""
-        self.rows.append((x, y, z, radius, half_height, path, object_id))
-
-    @property
-    def array(self) -> np.ndarray:
-        """The rows, (m, 7)."""
-        return np.array(self.rows, float).reshape(-1, 7)
-
-
-@dataclass
 class Scene:
     """Everything that a scanner can see, with its truth."""
 
@@ -66,7 +49,9 @@ class Scene:
     #: The buildings; their object ids are unique among all objects
     buildings: list[Building] = field(default_factory=list)
     solids: list[Solid] = field(default_factory=list)  #: All solids, those of the buildings too
-    crowns: Crowns = field(default_factory=Crowns)  #: Trees, bushes, hedges
+    #: Ellipsoids that a beam gets through in part. Each has x, y, z of its center, horizontal and vertical radius (m),
+    #: mean way of a beam to the next leaf (m) and object id
+    crowns: list[tuple] = field(default_factory=list)
     wires: list[tuple] = field(default_factory=list)  #: Straight pieces: start and end (x, y, z each, m) and object id
     objects: int = 0  #: Number of objects, which is the greatest object id
 

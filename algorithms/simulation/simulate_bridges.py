@@ -8,7 +8,7 @@ from ..cloud.asprs import PointClass
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .bridge_site import KINDS, Deck, build_site, land
-from .scanner import MAX_PULSES, RECORDED, Survey, scan
+from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
 
 _ALL = "all"
 
@@ -51,9 +51,7 @@ def simulate_bridges(
     ] = 8.0,
     cars: Annotated[bool, Param("Cars", "Cars on the decks.")] = True,
     trees: Annotated[bool, Param("Trees", "Trees on the land.")] = True,
-    range_noise: Annotated[
-        float, Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2)
-    ] = 0.02,
+    range_noise: RangeNoise = 0.02,
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,
 ):
@@ -93,16 +91,13 @@ def simulate_bridges(
     """
     kinds = tuple(KINDS) if kind == _ALL else (kind,)
     scene, decks = build_site(kinds, angle, cars, trees, seed)
-    if density * scene.size**2 > MAX_PULSES:
-        raise ValueError(
-            f"The site of {scene.size:g} m with {density:g} pulses per m² has {density * scene.size**2 / 1e6:.0f} "
-            f"million pulses, more than {MAX_PULSES / 1e6:.0f} million; lower the density."
-        )
+    site = f"The site of {scene.size:g} m with {density:g} pulses per m²"
+    refuse_many_pulses(density * scene.size**2, site, "lower the density")
     made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
-    x, y, z = made.xyz.T
+    x, y, z = made["xyz"].T
     lies_on_land = land(scene, x, y) >= z - _ON_LAND
-    made.classification[(made.classification == PointClass.BRIDGE_DECK) & lies_on_land] = PointClass.GROUND
-    return (*(getattr(made, name) for name in RECORDED), _layer(decks))
+    made["classification"][(made["classification"] == PointClass.BRIDGE_DECK) & lies_on_land] = PointClass.GROUND
+    return (*(made[name] for name in RECORDED), _layer(decks))
 
 
 def _layer(decks: list[Deck]) -> LayerFeatures:

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 from ..params import Seed
 from ..stage import Monitor, Param, stage
 from .drone import SCANNERS, LineScan, fly, plan_flight, pulses_per_line
-from .scanner import MAX_PULSES, RECORDED, RangeNoise
+from .scanner import RECORDED, RangeNoise, refuse_many_pulses
 from .street_site import build_site
 
 
@@ -117,11 +117,8 @@ def simulate_flight(
     monitor = monitor or Monitor()
     wanted = tuple(SCANNERS) if scanners == "both" else (scanners,)
     pulses = len(wanted) * duration * line_rate * pulses_per_line(angular_step)
-    if pulses > MAX_PULSES:
-        raise ValueError(
-            f"A flight of {duration:g} s has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
-            "million; lower the duration or the line rate, or take a larger angular step."
-        )
+    remedy = "lower the duration or the line rate, or take a larger angular step"
+    refuse_many_pulses(pulses, f"A flight of {duration:g} s", remedy)
     scene, settings = build_site(trees, slope, seed), LineScan(line_rate, angular_step, max_range, range_noise, seed)
     made = fly(scene, plan_flight(scene, height, duration, seed), wanted, settings, monitor)
     if not len(made["xyz"]):

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 from ..params import Seed
 from ..stage import Monitor, Param, stage
 from .line_site import build_line_site
-from .scanner import MAX_PULSES, RECORDED, Survey, scan
+from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
 
 
 @stage(
@@ -32,9 +32,7 @@ def simulate_power_line(
     forest: Annotated[
         float, Param("Share of forest", "Share of the site that is forest, also under the lines.", low=0, high=1)
     ] = 0.15,
-    range_noise: Annotated[
-        float, Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2)
-    ] = 0.02,
+    range_noise: RangeNoise = 0.02,
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,
 ):
@@ -69,11 +67,8 @@ def simulate_power_line(
     >>> bool((classification == 14).any() and (classification == 15).any())
     True
     """
-    if density * size**2 > MAX_PULSES:
-        raise ValueError(
-            f"The site of {size:g} m with {density:g} pulses per m² has {density * size**2 / 1e6:.0f} million pulses, "
-            f"more than {MAX_PULSES / 1e6:.0f} million; lower the density or the size."
-        )
+    site = f"The site of {size:g} m with {density:g} pulses per m²"
+    refuse_many_pulses(density * size**2, site, "lower the density or the size")
     scene = build_line_site(size, span, angle, trees, forest, seed)
     made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
-    return tuple(getattr(made, name) for name in RECORDED)
+    return tuple(made[name] for name in RECORDED)

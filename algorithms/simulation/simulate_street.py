@@ -9,7 +9,7 @@ import numpy as np
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .drone import LineScan
-from .scanner import MAX_PULSES, RECORDED, RangeNoise, Survey, scan
+from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
 from .scene import Scene
 from .solids import Rect
 from .street_fronts import Truth
@@ -187,16 +187,12 @@ def simulate_street(
     """
     monitor = monitor or Monitor()
     settings = LineScan(line_rate, angular_step, max_range, range_noise, seed)
-    pulses = pulses_of(length, speed, settings)
-    if pulses > MAX_PULSES:
-        raise ValueError(
-            f"A street of {length:g} m has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
-            "million; shorten it, lower the line rate, or take a larger speed or angular step."
-        )
+    remedy = "shorten it, lower the line rate, or take a larger speed or angular step"
+    refuse_many_pulses(pulses_of(length, speed, settings), f"A street of {length:g} m", remedy)
     plan = StreetPlan(length, width, slope, clutter, stoops, unevenness, houses, seed)
     scene, truth, street = build_street(plan)
     if view == "airplane":
-        made = dict(vars(scan(scene, Survey(density, range_noise=range_noise, seed=seed), monitor)))
+        made = scan(scene, Survey(density, range_noise=range_noise, seed=seed), monitor)
     else:
         made = drive_along(scene, _drive(scene, street, speed), settings, monitor)
     made = _with_numbers(_through_glass(made, truth, glass, seed), truth, range_noise)

@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 
 from ..params import Seed
 from ..stage import Monitor, Param, stage
-from .scanner import MAX_PULSES, PATTERNS, RECORDED, RangeNoise, Survey, scan
+from .scanner import PATTERNS, RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
 from .town_layout import MAX_BUILDINGS, TownPlan, build_town
 
 _MaxScanAngle = Annotated[
@@ -177,12 +177,9 @@ def simulate_town(
     True
     """
     monitor = monitor or Monitor()
-    if density * size**2 > MAX_PULSES:
-        raise ValueError(
-            f"A town of {size:g} m with {density:g} pulses per m² has {density * size**2 / 1e6:.0f} million pulses, "
-            f"more than {MAX_PULSES / 1e6:.0f} million; lower size or density."
-        )
+    town = f"A town of {size:g} m with {density:g} pulses per m²"
+    refuse_many_pulses(density * size**2, town, "lower size or density")
     plan = TownPlan(size, slope, relief, terrace_height, buildings, trees, forest, river, clutter, seed)
     survey = Survey(density, pattern, max_scan_angle, overlap, range_noise, returns, noise_points, seed)
     made = scan(build_town(plan, monitor.part(0.0, 0.15)), survey, monitor.part(0.15, 1.0))
-    return tuple(getattr(made, name) for name in RECORDED)
+    return tuple(made[name] for name in RECORDED)

@@ -10,7 +10,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from .relief import Relief
 from .scene import Building, Scene
 from .solids import Rect, Solid, flat, gable, hip, inclined, lean_to
 
@@ -22,22 +21,19 @@ _LEAST_EAVE = 1.5
 
 
 class Site:
-    """Elevations (m) of the floor and of the underground bottom of one building, and the id of its parts."""
+    """Elevations (m) of floor, eaves and underground bottom of one building, and the id of its parts."""
 
     def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
         self.object_id = scene.new_id()
-        self.floor, self.bottom = _levels(scene.relief, rect, eave)
+        x, y = np.concatenate([rect.corners(1.0), [(rect.x, rect.y)]]).T
+        ground = scene.relief.ground(x, y)
+        self.floor = float(max(ground.mean(), ground.max() + _LEAST_EAVE - eave))
+        self.eave = self.floor + eave
+        self.bottom = float(ground.min()) - 1.0
 
     def solid(self, rect: Rect, tops: np.ndarray) -> Solid:
         """Return a part of the building under the planes ``tops``, whose heights are elevations (m)."""
         return Solid(rect, tops, self.bottom, PointClass.BUILDING, self.object_id)
-
-
-def _levels(relief: Relief, rect: Rect, eave: float) -> tuple[float, float]:
-    """Return the floor, and a bottom that is underground everywhere."""
-    x, y = np.concatenate([rect.corners(1.0), [(rect.x, rect.y)]]).T
-    z = relief.ground(x, y)
-    return float(max(z.mean(), z.max() + _LEAST_EAVE - eave)), float(z.min()) - 1.0
 
 
 def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
@@ -56,51 +52,49 @@ def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple)
     return plot.part(rng.uniform(-0.5, 0.5), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-4.0, 4.0)))
 
 
+def _pitched(scene: Scene, rect: Rect, pitches: tuple[float, float], rng: np.random.Generator) -> tuple[Site, float]:
+    """Return a site of one or two storeys, and a pitch (a tangent) between two angles (°)."""
+    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(*pitches)))
+    return Site(scene, rect, eave), pitch
+
+
 def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     rect = _detached(plot, rng, (9.0, 12.0), (7.0, 9.0))
-    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(28.0, 48.0)))
-    site = Site(scene, rect, eave)
-    eave += site.floor
-    solids = [site.solid(rect, gable(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
+    site, pitch = _pitched(scene, rect, (28.0, 48.0), rng)
+    solids = [site.solid(rect, gable(rect, site.eave, pitch)), _chimney(site, rect, pitch, rng)]
     # Under roofs steeper than 35°, attics have dormers.
     if pitch > 0.7:
         positions = rng.choice([-0.25, 0.0, 0.25], int(rng.integers(0, 3)), replace=False) * rect.length
-        solids += [_dormer(site, rect, eave, pitch, position, side) for position in positions for side in (-1, 1)]
+        solids += [_dormer(site, rect, pitch, position, side) for position in positions for side in (-1, 1)]
     scene.add_building("gable", rect.corners(), solids)
 
 
 def _hip_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     rect = _detached(plot, rng, (9.5, 12.0), (7.5, 9.5))
-    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(22.0, 38.0)))
-    site = Site(scene, rect, eave)
-    eave += site.floor
-    solids = [site.solid(rect, hip(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
+    site, pitch = _pitched(scene, rect, (22.0, 38.0), rng)
+    solids = [site.solid(rect, hip(rect, site.eave, pitch)), _chimney(site, rect, pitch, rng)]
     scene.add_building("hip", rect.corners(), solids)
 
 
 def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     rect = _detached(plot, rng, (9.0, 12.5), (8.0, 10.5))
-    eave = rng.choice((3.2, 6.2, 9.2))
-    site = Site(scene, rect, eave)
-    eave += site.floor
+    site = Site(scene, rect, rng.choice((3.2, 6.2, 9.2)))
     lift = rect.part(0.2 * rect.length, 0.1 * rect.width, 3.0, 2.5)
-    solids = [site.solid(rect, flat(rect, eave)), site.solid(lift, flat(lift, eave + 2.2))]
+    solids = [site.solid(rect, flat(rect, site.eave)), site.solid(lift, flat(lift, site.eave + 2.2))]
     scene.add_building("flat", rect.corners(), solids)
 
 
 def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     """Build an L: a wing whose lower ridge runs into the roof of the main house."""
     main = _detached(plot, rng, (11.0, 12.5), (6.5, 7.0))
-    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(30.0, 45.0)))
-    site = Site(scene, main, eave)
-    eave += site.floor
+    site, pitch = _pitched(scene, main, (30.0, 45.0), rng)
     wide, reach = rng.uniform(4.8, 6.0), rng.uniform(3.0, 4.0)
     # The wing starts under the main ridge, flush with one gable, and ends behind the house.
     side = rng.choice((-1.0, 1.0))
     long = main.width / 2 + reach
     wing = main.part(side * (main.length - wide) / 2, long / 2, long, wide, np.pi / 2)
-    solids = [site.solid(main, gable(main, eave, pitch)), site.solid(wing, gable(wing, eave, pitch))]
-    solids.append(_chimney(site, main, eave + pitch * main.width / 2, rng))
+    solids = [site.solid(rect, gable(rect, site.eave, pitch)) for rect in (main, wing)]
+    solids.append(_chimney(site, main, pitch, rng))
     scene.add_building("L", l_outline(main, (wide, reach), side), solids)
 
 
@@ -121,8 +115,7 @@ def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
         rect = plot.part(side * plot.length, -plot.width / 2 + 2.0 + depth / 2, plot.length / 2, depth)
         eave, pitch = rng.choice((5.4, 6.0, 8.4)), np.tan(np.deg2rad(rng.uniform(25.0, 45.0)))
         site = Site(scene, rect, eave)
-        eave += site.floor
-        tops = flat(rect, eave + 1.0) if rng.random() < 0.15 else gable(rect, eave, pitch)
+        tops = flat(rect, site.eave + 1.0) if rng.random() < 0.15 else gable(rect, site.eave, pitch)
         scene.add_building("row", rect.corners(), [site.solid(rect, tops)])
 
 
@@ -133,32 +126,31 @@ def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: np.random.Gener
     if any(house.contains(*rect.corners(0.5).T).any() for house in houses):
         return
     site = Site(scene, rect, height)
-    scene.add_building("shed", rect.corners(), [site.solid(rect, lean_to(rect, site.floor + height, pitch))])
+    scene.add_building("shed", rect.corners(), [site.solid(rect, lean_to(rect, site.eave, pitch))])
 
 
 def build_hall(scene: Scene, rect: Rect) -> None:
     """Put a large hall with a slight gable and bands of skylights."""
-    eave, pitch = 8.0, np.tan(np.deg2rad(4.0))
-    site = Site(scene, rect, eave)
-    eave += site.floor
-    solids = [site.solid(rect, gable(rect, eave, pitch))]
-    ridge = eave + pitch * rect.width / 2
+    site, pitch = Site(scene, rect, 8.0), np.tan(np.deg2rad(4.0))
+    solids = [site.solid(rect, gable(rect, site.eave, pitch))]
+    ridge = site.eave + pitch * rect.width / 2
     for position in (-0.3, 0.0, 0.3):
         light = rect.part(position * rect.length, 0.0, 3.0, 0.7 * rect.width)
         solids.append(site.solid(light, flat(light, ridge + 0.8)))
     scene.add_building("hall", rect.corners(), solids)
 
 
-def _chimney(site: Site, rect: Rect, ridge: float, rng: np.random.Generator) -> Solid:
+def _chimney(site: Site, rect: Rect, pitch: float, rng: np.random.Generator) -> Solid:
+    ridge = site.eave + pitch * rect.width / 2
     stack = rect.part(rng.uniform(-0.12, 0.12) * rect.length, rng.uniform(-1.0, 1.0), 0.7, 0.7)
     return site.solid(stack, flat(stack, ridge + 0.8))
 
 
-def _dormer(site: Site, rect: Rect, eave: float, pitch: float, along: float, side: int) -> Solid:
+def _dormer(site: Site, rect: Rect, pitch: float, along: float, side: int) -> Solid:
     """Return a dormer whose nearly flat roof runs from over the front into the roof plane behind it."""
     depth, back = 2.4, rect.width / 2 - 3.0
     box = rect.part(along, side * (back + depth / 2), 1.9, depth)
-    behind = eave + pitch * (rect.width / 2 - back)
+    behind = site.eave + pitch * (rect.width / 2 - back)
     return site.solid(box, inclined(box, 0.0, side * -depth / 2, behind, 0.0, side * -0.08)[None])
 
 

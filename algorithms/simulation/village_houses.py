@@ -6,7 +6,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from .scene import Scene
-from .solids import Rect, Solid, flat, gable, inclined, lean_to
+from .solids import Rect, Solid, flat, gable, hip, inclined, lean_to
 from .town_houses import Site, l_outline
 
 # Roofs are this thick (m); walls end in the middle of them.
@@ -41,8 +41,8 @@ class Home(Site):
         return solids
 
 
-def build_home(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Put a house on the front of a plot and return the object id of its roof.
+def build_homes(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> list[int]:
+    """Put a house on the front of a plot, and a shed behind two of three; return the object ids of their roofs.
 
     Parameters
     ----------
@@ -54,27 +54,19 @@ def build_home(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
         Source of random numbers.
     """
     build = (_rectangle, _rectangle, _hip, _angle, _bend)[int(rng.integers(5))]
-    return build(scene, plot, overhang, rng)
+    roofs = [build(scene, plot, overhang, rng)]
+    if rng.random() < 2 / 3:
+        roofs.append(_shed(scene, plot, overhang, rng))
+    return roofs
 
 
-def build_shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Put a shed or garage with a single slope into a back corner of a plot and return the object id of its roof.
-
-    Parameters
-    ----------
-    scene, plot : Scene, Rect
-        Receives the objects; the plot.
-    overhang : float
-        Overhang of the eaves, m.
-    rng : numpy.random.Generator
-        Source of random numbers.
-    """
+def _shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
+    """Build a shed or garage with a single slope in a back corner."""
     long, wide = rng.uniform(3.0, 6.0), rng.uniform(2.6, 4.0)
     along, across = rng.choice((-1, 1)) * (plot.length - long - 3.0) / 2, (plot.width - wide - 3.0) / 2
     rect = plot.part(float(along), across, long, wide, np.deg2rad(rng.uniform(-6.0, 6.0)))
-    eave, pitch = 2.75, float(np.tan(np.deg2rad(rng.uniform(2.0, 9.0))))
-    home, over = Home(scene, rect, eave), overhang / 2
-    walls = lean_to(rect, home.floor + eave, pitch)
+    home, over = Home(scene, rect, 2.75), overhang / 2
+    walls = lean_to(rect, home.eave, float(np.tan(np.deg2rad(rng.uniform(2.0, 9.0)))))
     top = walls[0]
     slab = home.slab(rect.part(0.0, 0.0, long + 2 * over, wide + 2 * over), walls, top - [0.0, 0.0, _THICKNESS])
     solids = [home.solid(rect, walls - [0.0, 0.0, _THICKNESS / 2]), slab]
@@ -100,10 +92,10 @@ _WHOLE = np.zeros((0, 3))
 def _rectangle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
     rect, (eave, pitch) = _placed(plot, rng, (9.0, 13.0), (6.5, 8.5)), _roof(rng)
     home = Home(scene, rect, eave)
-    ridge = home.floor + eave + pitch * rect.width / 2
+    ridge = home.eave + pitch * rect.width / 2
     stack = rect.part(rng.uniform(-0.25, 0.25) * rect.length, 0.8, 0.6, 0.6)
     chimney = Solid(stack, flat(stack, ridge + 0.6), home.bottom, PointClass.BUILDING, home.roof_id)
-    solids = home.wing(rect, home.floor + eave, pitch, overhang, _WHOLE)
+    solids = home.wing(rect, home.eave, pitch, overhang, _WHOLE)
     scene.add_building("rectangle", rect.corners(), [*solids, chimney])
     return home.roof_id
 
@@ -112,10 +104,9 @@ def _hip(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) ->
     """Build a hip roof: a convex block with a level underside, as eaves with soffits have."""
     rect, (eave, pitch) = _placed(plot, rng, (9.5, 13.0), (7.0, 9.0)), _roof(rng)
     home = Home(scene, rect, eave)
-    level = home.floor + eave - pitch * overhang
+    level = home.eave - pitch * overhang
     roof = rect.part(0.0, 0.0, rect.length + 2 * overhang, rect.width + 2 * overhang)
-    ends = [inclined(roof, side * roof.length / 2, 0.0, level, -side * pitch, 0.0) for side in (-1, 1)]
-    tops = np.concatenate([gable(roof, level, pitch), ends])
+    tops = hip(roof, level, pitch)
     # A vertical fascia as high as the roof is thick.
     slab = home.slab(roof, tops + [0.0, 0.0, _THICKNESS], np.array([0.0, 0.0, level]))
     scene.add_building("hip", rect.corners(), [home.solid(rect, flat(rect, level)), slab])
@@ -131,8 +122,7 @@ def _angle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) 
     # From beside the middle of the house, so that no end of the wing's roof comes out in front.
     start = min(2 * overhang, c)
     wing = main.part(side * (a - wide / 2), (start + c + reach) / 2, c + reach - start, wide, np.pi / 2)
-    level = home.floor + eave
-    solids = home.wing(main, level, pitch, overhang, _WHOLE) + home.wing(wing, level, pitch, overhang, _WHOLE)
+    solids = [part for rect in (main, wing) for part in home.wing(rect, home.eave, pitch, overhang, _WHOLE)]
     scene.add_building("L", l_outline(main, (wide, reach), side), solids)
     return home.roof_id
 
@@ -148,7 +138,7 @@ def _bend(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -
     joint = first.part(first.length / 2, 0.0, 0.0, first.width)
     bent = Rect(joint.x, joint.y, 0.0, first.width, first.angle + turn)
     home = Home(scene, bent.part(0.0, 0.0, first.length + long, first.width), eave)
-    level = home.floor + eave
+    level = home.eave
     outer = [inclined(rect, 0.0, -half, level, 0.0, pitch)[None] for rect in (first, bent)]
     one = first.part(past / 2, 0.0, first.length + past, first.width)
     other = bent.part((long - past) / 2, 0.0, long + past, first.width)

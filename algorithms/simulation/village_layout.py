@@ -13,7 +13,7 @@ from .relief import make_relief
 from .scene import Building, Scene
 from .solids import Rect
 from .town_layout import park_car
-from .village_houses import build_home, build_shed
+from .village_houses import build_homes
 
 # Distance (m) between the axes of neighboring streets, with two rows of plots between these.
 _STREETS = 60.0
@@ -62,11 +62,7 @@ def build_village(plan: VillagePlan) -> Village:
     count = min(len(plots), round(len(plots) * plan.buildings / MAX_HOMES))
     order = rng.permutation(len(plots))
     built, free = [plots[i] for i in np.sort(order[:count])], [plots[i] for i in order[count:]]
-    roofs = []
-    for plot in built:
-        roofs.append(build_home(scene, plot, plan.overhang, rng))
-        if rng.random() < 2 / 3:
-            roofs.append(build_shed(scene, plot, plan.overhang, rng))
+    roofs = [roof for plot in built for roof in build_homes(scene, plot, plan.overhang, rng)]
     if plan.clutter:
         _clutter(scene, built, rng)
     plant_trees(scene, plan.trees, 0.0, rng, Monitor())
@@ -116,4 +112,4 @@ def _plant_against_walls(scene: Scene, building: Building, rng: np.random.Genera
         radius = rng.uniform(0.4, 0.8)
         x, y = ring[k] + rng.random() * step + rng.uniform(0.3, 0.7) * radius * outward
         ground = float(scene.relief.ground(x, y))
-        scene.crowns.add(float(x), float(y), ground + 0.9 * radius, radius, radius, 0.15, scene.new_id())
+        scene.crowns.append((float(x), float(y), ground + 0.9 * radius, radius, radius, 0.15, scene.new_id()))

@@ -196,8 +196,8 @@ def _cloud_and_classes(name: str) -> tuple[Cloud, np.ndarray]:
     """Return a cloud and its true classes."""
     if name == "halls":
         made = scanned(estate, False, 8.0)
-        returns = {name: getattr(made, name) for name in ("return_number", "number_of_returns")}
-        return create_cloud({"xyz": made.xyz, **returns}), made.classification
+        returns = {name: made[name] for name in ("return_number", "number_of_returns")}
+        return create_cloud({"xyz": made["xyz"], **returns}), made["classification"]
     has_truth = path_of(name).with_suffix(".truth.npz").exists()
     return read_cloud(path_of(name)), truth(name) if has_truth else detected(name).classification
 
@@ -425,10 +425,10 @@ def scenes() -> list[Table]:
     for name, make, misfit in SCENES:
         for density in (4.0, 12.0):
             made = scanned(make, misfit, density)
-            returns = {name: getattr(made, name) for name in ("return_number", "number_of_returns")}
-            cloud = create_cloud({"xyz": made.xyz, **returns})
-            rates = _found(cloud, made.classification)
-            missed = cloud.get("classification")[made.classification == PointClass.GROUND] != PointClass.GROUND
+            returns = {name: made[name] for name in ("return_number", "number_of_returns")}
+            cloud = create_cloud({"xyz": made["xyz"], **returns})
+            rates = _found(cloud, made["classification"])
+            missed = cloud.get("classification")[made["classification"] == PointClass.GROUND] != PointClass.GROUND
             table.add(name, int(density), *rates, 100 * float(missed.mean()))
     return [table]
 

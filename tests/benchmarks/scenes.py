@@ -10,7 +10,7 @@ import numpy as np
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.simulation.plants import plant_hedge, plant_tree, plant_trees
 from lidar_buildings.algorithms.simulation.relief import Relief
-from lidar_buildings.algorithms.simulation.scanner import Scan, Survey, scan
+from lidar_buildings.algorithms.simulation.scanner import Survey, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gable, hip, lean_to
 from lidar_buildings.algorithms.simulation.town_houses import Site
@@ -196,26 +196,26 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
 )
 
 
-def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
+def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> dict[str, np.ndarray]:
     """Return the points of a scene at ``density`` pulses per m²."""
     scene = make()
     made = scan(scene, Survey(density))
-    made.xyz[:, 2] += MISFIT * (misfit & (made.point_source_id % 2 == 0))
+    made["xyz"][:, 2] += MISFIT * (misfit & (made["point_source_id"] % 2 == 0))
     if isinstance(scene, Farmland):
         _grow_maize(scene.fields, made)
     return made
 
 
-def _grow_maize(fields: tuple[Rect, ...], made: Scan) -> None:
+def _grow_maize(fields: tuple[Rect, ...], made: dict[str, np.ndarray]) -> None:
     """Let maize grow in the fields."""
     rng = np.random.default_rng(0)
-    in_field = np.any([field.contains(*made.xyz[:, :2].T) for field in fields], axis=0)
-    in_field &= made.classification == PointClass.GROUND
+    in_field = np.any([field.contains(*made["xyz"][:, :2].T) for field in fields], axis=0)
+    in_field &= made["classification"] == PointClass.GROUND
     leaves = np.flatnonzero(in_field & (rng.random(len(in_field)) >= THROUGH_MAIZE))
     below = np.abs(rng.normal(0, LEAVES, len(leaves)))
     below += (rng.random(len(leaves)) < 0.2) * rng.uniform(0, 2, len(leaves))
-    made.xyz[leaves, 2] += np.maximum(MAIZE - below, 0.3)
-    made.classification[leaves] = PointClass.MEDIUM_VEGETATION
+    made["xyz"][leaves, 2] += np.maximum(MAIZE - below, 0.3)
+    made["classification"][leaves] = PointClass.MEDIUM_VEGETATION
 
 
 def _house(scene: Scene, rect: Rect, eave: float, pitch: float = 0.0, kind: str = "house") -> None:

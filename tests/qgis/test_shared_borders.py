@@ -164,8 +164,8 @@ def test_houses_of_a_simulated_town():
     """Every house of a town on a slope, with shadows, trees over eaves and rows of different heights."""
     scene = build_town(TownPlan(size=120.0, slope=5.0, forest=0.0, river=False, seed=4))
     made = scan(scene, Survey(seed=4))
-    cluster = np.where(made.classification == 6, made.segment_id, 0)
-    found = extract_footprints(made.xyz, made.classification, cluster)
+    cluster = np.where(made["classification"] == 6, made["segment_id"], 0)
+    found = extract_footprints(made["xyz"], made["classification"], cluster)
     polygons = dict(zip(found.columns["cluster_id"], found.geometries))
     houses = [house for house in scene.buildings if house.kind != "shed"]
     assert {house.object_id for house in houses} <= set(polygons)

@@ -73,7 +73,7 @@ def test_points_lie_on_ground_and_solids_and_in_crowns():
         depth = np.min([beside, over, under], axis=0)
         found |= mine & (np.abs(depth) < 1e-6)
     leaves = of(made, *VEGETATION) & ~found
-    crowns = scene.crowns.array
+    crowns = np.array(scene.crowns)
     for row in np.unique(crowns[:, 6]):
         own = crowns[crowns[:, 6] == row]
         mine = np.flatnonzero(leaves & (made["segment_id"] == row))
@@ -177,7 +177,8 @@ def test_things_are_not_in_each_other_or_in_the_way():
         assert not any(house.contains(*feet.T, 0.5).any() for house in houses)
         path = plan_flight(scene, 25.0, 60.0, seed).positions(np.linspace(0, 60, 500))
         assert not any(inside(solid, path, -0.5).any() for solid in scene.solids)
-        parts = (path[:, None] - scene.crowns.array[:, :3]) / scene.crowns.array[:, [3, 3, 4]]
+        crowns = np.array(scene.crowns)
+        parts = (path[:, None] - crowns[:, :3]) / crowns[:, [3, 3, 4]]
         assert ((parts**2).sum(axis=-1) > 1).all()
 
 

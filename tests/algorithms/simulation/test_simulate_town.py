@@ -9,7 +9,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
 from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.simulation.scanner import Scan, Survey, scan
+from lidar_buildings.algorithms.simulation.scanner import Survey, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
@@ -21,7 +21,7 @@ NAMES = simulate_town.stage.creates
 
 
 @lru_cache(maxsize=2)
-def exact_town(slope: float = 3.0) -> tuple[Scene, Scan]:
+def exact_town(slope: float = 3.0) -> tuple[Scene, dict[str, np.ndarray]]:
     """A town of 150 m scanned without range noise."""
     scene = build_town(TownPlan(size=150.0, slope=slope, buildings=30.0))
     return scene, scan(scene, Survey(density=6.0, range_noise=0.0))
@@ -32,8 +32,8 @@ def small(**tunables) -> dict[str, np.ndarray]:
     return dict(zip(NAMES, simulate_town(**{"size": 100.0, "density": 3.0, **tunables})))
 
 
-def of(scanned: Scan, *classes: int) -> np.ndarray:
-    return np.isin(scanned.classification, classes)
+def of(scanned: dict[str, np.ndarray], *classes: int) -> np.ndarray:
+    return np.isin(scanned["classification"], classes)
 
 
 # --- Truth
@@ -42,10 +42,10 @@ def of(scanned: Scan, *classes: int) -> np.ndarray:
 @pytest.mark.parametrize("slope", [3.0, 35.0])
 def test_ground_points_lie_on_the_ground_and_water_is_level(slope):
     scene, made = exact_town(slope)
-    x, y, z = made.xyz[of(made, PointClass.GROUND)].T
+    x, y, z = made["xyz"][of(made, PointClass.GROUND)].T
     assert len(x) > 50_000
     np.testing.assert_allclose(z, scene.relief.ground(x, y), atol=1e-4)
-    water = made.xyz[of(made, PointClass.WATER)]
+    water = made["xyz"][of(made, PointClass.WATER)]
     assert len(water) > 50
     np.testing.assert_allclose(water[:, 2], scene.relief.water_level, atol=1e-4)
     assert (scene.relief.ground(*water[:, :2].T) <= scene.relief.water_level + 1e-4).all()
@@ -57,7 +57,7 @@ def test_building_points_lie_on_roofs_or_on_walls(slope):
     found = of(made, PointClass.BUILDING)
     n_roof = n_wall = 0
     for building in scene.buildings:
-        x, y, z = made.xyz[found & (made.segment_id == building.object_id)].T
+        x, y, z = made["xyz"][found & (made["segment_id"] == building.object_id)].T
         on_roof, on_wall = np.zeros((2, len(x)), bool)
         for solid in building.solids:
             along, across = solid.rect.local(x, y)
@@ -74,7 +74,7 @@ def test_building_points_lie_on_roofs_or_on_walls(slope):
 
 def test_nothing_is_seen_inside_a_building():
     scene, made = exact_town()
-    x, y, z = made.xyz[~of(made, *NOISE, *VEGETATION)].T
+    x, y, z = made["xyz"][~of(made, *NOISE, *VEGETATION)].T
     for building in scene.buildings:
         for solid in building.solids:
             assert not (solid.rect.contains(x, y, -1e-6) & (z < solid.top(x, y) - 1e-6)).any()
@@ -83,12 +83,12 @@ def test_nothing_is_seen_inside_a_building():
 def test_range_noise_moves_points_along_the_beam_only():
     scene = build_town(TownPlan(size=100.0))
     exact, rough = (scan(scene, Survey(density=4.0, range_noise=sigma)) for sigma in (0.0, 0.05))
-    shift = rough.xyz - exact.xyz
+    shift = rough["xyz"] - exact["xyz"]
     assert np.linalg.norm(shift, axis=1).std(ddof=0) > 0.02
     assert np.sqrt((shift**2).sum(axis=1).mean()) == pytest.approx(0.05, rel=0.02)
     # The strips are flown from west to east: beams lean to the north and south only, by the scan angle.
     lean = np.rad2deg(np.arctan2(np.hypot(shift[:, 0], shift[:, 1]), np.abs(shift[:, 2])))
-    np.testing.assert_allclose(lean, np.abs(exact.scan_angle), atol=0.05)
+    np.testing.assert_allclose(lean, np.abs(exact["scan_angle"]), atol=0.05)
 
 
 def test_outlines_are_closed_counterclockwise_and_as_large_as_the_roofs():
@@ -164,7 +164,7 @@ def test_wider_strips_show_more_of_walls():
     seen = []
     for angle in (5.0, 30.0):
         made = scan(scene, Survey(max_scan_angle=angle, range_noise=0.0))
-        x, y, z = made.xyz[of(made, PointClass.BUILDING)].T
+        x, y, z = made["xyz"][of(made, PointClass.BUILDING)].T
         height = np.full(len(x), -np.inf)
         for building in scene.buildings:
             height = np.fmax(height, building.roof(x, y))
@@ -174,28 +174,28 @@ def test_wider_strips_show_more_of_walls():
 
 def test_returns_of_a_pulse_are_complete_and_in_order():
     _, made = exact_town()
-    pulse, first, count = np.unique(made.pulse, return_index=True, return_counts=True)
-    assert (np.diff(made.pulse) >= 0).all()
-    np.testing.assert_array_equal(made.number_of_returns, np.repeat(count, count))
-    np.testing.assert_array_equal(made.return_number, np.arange(len(made.pulse)) - np.repeat(first, count) + 1)
-    assert made.number_of_returns.max() == 5
-    inner = np.flatnonzero(np.diff(made.pulse) == 0)
-    gap = np.linalg.norm(made.xyz[inner + 1] - made.xyz[inner], axis=1)
+    pulse, first, count = np.unique(made["pulse"], return_index=True, return_counts=True)
+    assert (np.diff(made["pulse"]) >= 0).all()
+    np.testing.assert_array_equal(made["number_of_returns"], np.repeat(count, count))
+    np.testing.assert_array_equal(made["return_number"], np.arange(len(made["pulse"])) - np.repeat(first, count) + 1)
+    assert made["number_of_returns"].max() == 5
+    inner = np.flatnonzero(np.diff(made["pulse"]) == 0)
+    gap = np.linalg.norm(made["xyz"][inner + 1] - made["xyz"][inner], axis=1)
     # Echoes of a pulse are further apart than the range resolution of the scanner, and never in the wrong order.
     assert gap.min() > 0.65
-    assert (made.xyz[inner + 1, 2] < made.xyz[inner, 2]).all()
-    assert (np.diff(made.gps_time) >= 0).all()
-    assert (made.gps_time[inner + 1] == made.gps_time[inner]).all()
+    assert (made["xyz"][inner + 1, 2] < made["xyz"][inner, 2]).all()
+    assert (np.diff(made["gps_time"]) >= 0).all()
+    assert (made["gps_time"][inner + 1] == made["gps_time"][inner]).all()
 
 
 def test_trees_have_several_returns_and_let_pulses_through_and_open_ground_has_one():
     _, made = exact_town()
-    several = made.number_of_returns > 1
+    several = made["number_of_returns"] > 1
     assert several[of(made, *VEGETATION)].mean() > 0.5
     assert several[of(made, PointClass.GROUND)].mean() < 0.2
     under = of(made, PointClass.GROUND) & several
     assert under.sum() > 500
-    assert (made.return_number[under] >= 1).all()
+    assert (made["return_number"][under] >= 1).all()
     # The edges of roofs give a return of the roof and one of what lies below.
     assert 0 < several[of(made, PointClass.BUILDING)].mean() < 0.2
 
@@ -218,16 +218,16 @@ def test_without_returns_only_first_surfaces_are_seen_and_numbers_are_unknown():
 
 def test_all_promised_classes_are_there():
     _, made = exact_town()
-    assert set(np.unique(made.classification)) == {1, 2, 3, 4, 5, 6, 7, 9, 14, 15, 17, 18}
+    assert set(np.unique(made["classification"])) == {1, 2, 3, 4, 5, 6, 7, 9, 14, 15, 17, 18}
 
 
 def test_vegetation_is_classified_by_height_and_stems_are_high():
     scene, made = exact_town()
-    on_stem = np.zeros(len(made.xyz), bool)
+    on_stem = np.zeros(len(made["xyz"]), bool)
     for solid in scene.solids:
         if solid.classification == PointClass.HIGH_VEGETATION:
-            on_stem |= (made.segment_id == solid.object_id) & solid.rect.contains(*made.xyz[:, :2].T, 1e-6)
-    height = made.xyz[:, 2] - scene.relief.ground(*made.xyz[:, :2].T)
+            on_stem |= (made["segment_id"] == solid.object_id) & solid.rect.contains(*made["xyz"][:, :2].T, 1e-6)
+    height = made["xyz"][:, 2] - scene.relief.ground(*made["xyz"][:, :2].T)
     for classification, low, high in zip(VEGETATION, (-0.1, 0.5, 2.0), (0.5, 2.0, 30.0)):
         found = height[of(made, classification) & ~on_stem]
         assert len(found) > 20
@@ -242,7 +242,7 @@ def test_noise_points_are_as_many_as_asked_and_lie_far_off():
         assert counts == [per_hectare / 2, per_hectare / 2]
     scene = build_town(TownPlan(size=100.0))
     made = scan(scene, Survey(density=3.0, noise_points=200.0))
-    height = made.xyz[:, 2] - scene.relief.ground(*made.xyz[:, :2].T)
+    height = made["xyz"][:, 2] - scene.relief.ground(*made["xyz"][:, :2].T)
     low, high = (height[of(made, noise)] for noise in (PointClass.LOW_NOISE, PointClass.HIGH_NOISE))
     # Heights lie along the beam; where the ground is steep that is a little less straight down.
     assert -20 < low.min() < low.max() < -0.5
@@ -273,9 +273,9 @@ def test_the_ground_slopes_as_asked(slope):
 def test_ids_are_those_of_the_buildings():
     scene, made = exact_town()
     ids = {building.object_id for building in scene.buildings}
-    assert set(np.unique(made.segment_id[of(made, PointClass.BUILDING)])) <= ids
-    assert not set(np.unique(made.segment_id[~of(made, PointClass.BUILDING)])) & ids
-    assert not made.segment_id[of(made, PointClass.GROUND, PointClass.WATER, *NOISE)].any()
+    assert set(np.unique(made["segment_id"][of(made, PointClass.BUILDING)])) <= ids
+    assert not set(np.unique(made["segment_id"][~of(made, PointClass.BUILDING)])) & ids
+    assert not made["segment_id"][of(made, PointClass.GROUND, PointClass.WATER, *NOISE)].any()
 
 
 # --- The stage
