@@ -103,7 +103,7 @@ BridgeHeight = Annotated[
     float,
     Param(
         "Minimum height",
-        "Height above their surroundings from which parts of the bare earth are bridges, and segments objects.",
+        "Least height of a bridge above its surroundings; in 'Classify ground segments' that of an object, too.",
         unit="m",
         low=0.1,
         high=100,

@@ -84,8 +84,8 @@ def refine_buildings(
 
     The classes at hand are the labels of a logistic regression. On one half of the scene it learns how points of
     buildings differ from all others in shape, height, returns and intensity. It then gives a probability to each point
-    of the other half, and the reverse. Points up to 2 m from the edge of a building change their class where that
-    strongly contradicts it. Nothing comes from outside the cloud.
+    of the other half, and the reverse. Points up to ``_RULES.edge`` m from the edge of a building change their class
+    where that strongly contradicts it. Nothing comes from outside the cloud.
 
     Parameters
     ----------

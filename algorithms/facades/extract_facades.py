@@ -80,8 +80,8 @@ def extract_facades(
         str,
         Param(
             "Search in",
-            "All points, or those of the facade lines of a vehicle's scan: steep lines that are the farthest on their "
-            "side, which cars, trees and people are not. Facade lines need the GPS time of the points.",
+            "All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from "
+            "the scanner, behind cars, trees and people. Facade lines need the GPS time of the points.",
             choices=(ALL_POINTS, FACADE_LINES),
         ),
     ] = ALL_POINTS,
@@ -95,7 +95,8 @@ def extract_facades(
             low=0,
             high=1,
             open_low=True,
-            automatic="three standard deviations of the measured surface noise with 0.01 m of relief.",
+            automatic=f"{_ON_PLANE:g} times the root of the sum of the squares of the surface noise and of "
+            f"{_RELIEF:g} m, the relief of walls.",
         ),
     ] = None,
     max_tilt: FacadeTilt = 10.0,

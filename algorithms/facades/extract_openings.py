@@ -111,10 +111,10 @@ def extract_openings(
     where these lie within 0.3 m of the points. It is a rectangle unless the convex hull of its points fills less than
     three quarters of it, as that of a triangular window. Panes with at most 0.15 m between them are one window.
 
-    A door is 1.8 m high at least, and ground, a landing or steps up to 1.5 m before the wall rise to within 0.4 m of
-    its sill, with no wall seen further down. Where nothing is seen before the wall, its foot is taken for the ground.
-    Openings that two walls share are drawn in the one that encloses them more. An opening that another wall hides, up
-    to the maximum depth before it, is not drawn.
+    A door is 1.8 m high at least, and ground, a landing or steps up to ``BEFORE`` m before the wall rise to within 0.4
+    m of its sill, with no wall seen further down. Where nothing is seen before the wall, its foot is taken for the
+    ground. Openings that two walls share are drawn in the one that encloses them more. An opening that another wall
+    hides, up to the maximum depth before it, is not drawn.
 
     References
     ----------

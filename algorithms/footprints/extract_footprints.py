@@ -143,16 +143,17 @@ def extract_footprints(
 
     The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared
     distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The
-    walls of neighbors within 30 m count, too. Rings with many walls off these directions, and round ones, are drawn
-    as chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a
-    building or to the ground. Clusters whose points lie on one line have no area and give no polygon.
+    walls of neighbors within ``_NEIGHBORS`` m count, too. Rings with many walls off these directions, and round ones,
+    are drawn as chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each
+    cell to a building or to the ground. Clusters whose points lie on one line have no area and give no polygon.
 
     Houses of a row are parted along straight lines from one side of a building to the other, in its main directions.
-    Along such a line both roofs slope up from it, parallel roofs step by 0.2 m, any by 1 m, or a wall rises 0.2 m
-    above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length
-    without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. One
-    line is not enough, as two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower
-    house must have six tenths of the height of the higher one. Houses keep the number of their cluster.
+    Along such a line both roofs slope up from it, parallel roofs step by ``ROWS.least_height`` m, any by
+    ``ROWS.large_step`` m, or a wall rises ``ROWS.least_height`` m above both. A row has at least two such lines side by
+    side, ``ROWS.narrowest`` to ``ROWS.largest`` m apart, each seen on half of its length without low parts; 30 % are
+    enough for a further one. Houses are searched again for walls that end at these. One line is not enough, as two
+    roofs may be one house. Low parts and pieces under ``ROWS.least_area`` m² join one. At a step the lower house must
+    have six tenths of the height of the higher one. Houses keep the number of their cluster.
 
     References
     ----------

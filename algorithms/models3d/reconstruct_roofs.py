@@ -178,7 +178,7 @@ def reconstruct_roofs(
     where more than two walls would meet in an edge, the smallest piece of roof there joins a neighbor. A part of a roof
     with a fault takes the plane of a neighbor or becomes level. Parts of a footprint that touch in a point only are
     solids of their own. A level that is farther from the points than a simpler one is left out. The ground is level,
-    at the 5th percentile of the ground points nearest to the outline. Curved roofs become strips.
+    at the ``_GROUND_PERCENTILE``th percentile of the ground points nearest to the outline. Curved roofs become strips.
 
     Unlike in the publications, lines cut only the cells along which planes adjoin, so that the cost
     grows with the border of planes and not with the square of their number. A border costs its length and the

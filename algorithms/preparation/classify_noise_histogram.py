@@ -114,10 +114,10 @@ def classify_noise_histogram(
     stay. Parts adjoining the scene stay too (chimneys, masts, treetops, slopes), and so do three high points close
     together (a lamp, a wire). A cell whose surroundings have no full bin gets the range of the nearest one that has.
 
-    Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the
-    surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three
-    that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow yards
-    points just below the ground are left alone.
+    Isolated points under the ground are found without histograms: single points or a few, ``UNDER_GROUND.depth`` m or
+    more below the surface on all sides. They are not near others of the same height, as ground seen between leaves is.
+    More than three that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in
+    narrow yards points just below the ground are left alone.
 
     The filter of the paper (T_f) has no gap, no groups, no pooled cells and no isolated points; see 'Classify noise by
     height histogram (as published 2019)'.

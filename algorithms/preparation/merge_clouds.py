@@ -99,13 +99,13 @@ def merge_clouds(
     -----
     A point x goes to R x + t, with the rotation R about the zero of the coordinates: the three angles are three
     rotations about fixed axes, one after the other, R = Rz Ry Rx. A matrix must be rigid, that is turn and move only.
-    Its upper left part times its own transpose may differ from the identity by 0.0002, as with four decimals; the
+    Its upper left part times its own transpose may differ from the identity by ``_RIGID``, as with four decimals; the
     nearest rotation is taken. A warning is given if that moves points by more than a millimeter. With coordinates of
     millions of meters, give nine decimals or more.
 
-    Clouds that lie apart are merged all the same; a warning names a cloud whose bounding box is more than 1 m away
-    from those of all the others. Ids of segments and clusters stay as they are, so that two clouds may have the same
-    ones. The order of points is kept; withheld points are left out.
+    Clouds that lie apart are merged all the same; a warning names a cloud whose bounding box is more than ``_APART`` m
+    away from those of all the others. Ids of segments and clusters stay as they are, so that two clouds may have the
+    same ones. The order of points is kept; withheld points are left out.
 
     References
     ----------

@@ -158,11 +158,10 @@ def assess_models(
 
     Notes
     -----
-    Distances are differences in height; those above 5 m count as 5 m. A point lies on a face within the tolerance
-    across its plane. Points more than a meter below both
-    the model and others of class 6 beside them are of walls and are not counted. A face without points is unseen,
-    neither matched nor invented. The volume is that of prisms between the faces and the lowest point of class 6 or 2 in
-    the building's box.
+    Distances are differences in height; those above ``RULES.farthest`` m count as ``RULES.farthest`` m. A point lies on
+    a face within the tolerance across its plane. Points more than a meter below both the model and others of class 6
+    beside them are of walls and are not counted. A face without points is unseen, neither matched nor invented. The
+    volume is that of prisms between the faces and the lowest point of class 6 or 2 in the building's box.
 
     References
     ----------

@@ -60,7 +60,7 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
     """Write a page on the buildings found: number, areas, heights, volumes, a map, and the doubtful ones.
 
     The map shows footprints colored by their confidence over a hillshade of the points. The ten buildings of the least
-    confidence below 0.7 are shown one by one, from above and from the side.
+    confidence below ``SURE`` are shown one by one, from above and from the side.
 
     Parameters
     ----------

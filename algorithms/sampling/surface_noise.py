@@ -126,9 +126,10 @@ class SurfaceSample:
         Notes
         -----
         It is that across the plane of the 12 nearest points, at the smoothest fifth of the cloud, which vegetation,
-        edges and walls don't reach. But no more than 2.4 times that at the smoothest twentieth, which they don't reach
-        in a closed forest. Of equally rough planes the smoothest seem smoother than they are, by chance. Each quantile
-        is divided by its expected share of the true deviation, so that a cloud of planes has its true noise.
+        edges and walls don't reach. But no more than ``SURFACES.most_rougher`` times that at the smoothest twentieth,
+        which they don't reach in a closed forest. Of equally rough planes the smoothest seem smoother than they are, by
+        chance. Each quantile is divided by its expected share of the true deviation, so that a cloud of planes has its
+        true noise.
         """
         count = min(SURFACES.neighbors, len(self))
         # Residuals of k points over their plane have k - 3 degrees of freedom.

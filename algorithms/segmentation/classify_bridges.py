@@ -61,8 +61,8 @@ def classify_bridges(
     On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become
     bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the
     cloud, and embankments, are not found. A run in tiles reads twice the maximum width around each block, or half
-    the maximum width where bridges are looked for at gaps only. Bridges that go farther beyond its border are not found
-    there. For long ones set a larger block or maximum width.
+    the maximum width where bridges are looked for at gaps only. Bridges of which an end lies farther out are not found
+    in that block. For long ones set a larger block or maximum width.
 
     Parameters
     ----------

@@ -93,7 +93,8 @@ def segment_scan_lines(
         Param(
             "Widest obstacle",
             "A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without "
-            "points. Its ends there must meet the criteria of slope and height. 0: it ends.",
+            "points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every "
+            "obstacle.",
             unit="m",
             low=0,
             high=1000,

@@ -176,14 +176,14 @@ def segment_surfaces(
     planes of one another are one surface. A point that several surfaces could take joins that of its nearest neighbor.
     Where it does not fit the plane there, the next neighbor is tried, even if that belongs to the same surface. A point
     that joins gets the least squares plane of the surface around it, as the paper asks for. The paper accepts seeds by
-    the sum of squared distances. Here the limit is a root mean square distance of 1.55 standard deviations, corrected
-    for the degrees of freedom. The local Hough transform votes for 128 directions of planes through each point. In
-    *global* mode planes start from the smoothest seed of each neighborhood and are joined in mutually best pairs where
-    they meet.
+    the sum of squared distances. Here the limit is a root mean square distance of ``_SMOOTH`` standard deviations,
+    corrected for the degrees of freedom. The local Hough transform votes for 128 directions of planes through each
+    point. In *global* mode planes start from the smoothest seed of each neighborhood and are joined in mutually best
+    pairs where they meet.
 
     The neighbors and the plane of each point are kept; links between seeds are not, only the sets that they join. The
-    memory beyond the cloud is 100 bytes for each point, 120 in *global* mode, with 12 neighbors; each further neighbor
-    takes 4 bytes, and a copy without noise 30.
+    memory beyond the cloud is 100 bytes for each point, 120 in *global* mode, with ``_NEIGHBORS`` neighbors; each
+    further neighbor takes 4 bytes, and a copy without noise 30.
 
     References
     ----------

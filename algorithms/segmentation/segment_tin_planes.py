@@ -41,12 +41,13 @@ def segment_tin_planes(
         Optional[float],
         Param(
             "Tolerance",
-            "Two surfaces merge if the points of either lie no farther from the common plane (root mean square).",
+            "Two surfaces merge if neither lies farther than this from their common plane (root mean square).",
             unit="m",
             low=0,
             high=100,
             open_low=True,
-            automatic="2 times the root of the sum of the squares of the surface noise and 0.05 point spacings.",
+            automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} "
+            "point spacings.",
         ),
     ] = None,
     max_edge: Annotated[

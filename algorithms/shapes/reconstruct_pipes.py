@@ -55,8 +55,8 @@ def reconstruct_pipes(
 ):
     """Draw cylinders around their axes and spheres around their centers, as polygons in space.
 
-    Three-dimensional views draw lines with one width for all of them. Here each pipe is a prism of 16 sides, without
-    ends, and each sphere a solid of 16 by 8 faces.
+    Three-dimensional views draw lines with one width for all of them. Here each pipe is a prism of ``_SIDES`` sides,
+    without ends, and each sphere a solid of ``_SIDES`` by 8 faces.
 
     Parameters
     ----------

@@ -131,13 +131,13 @@ def segment_tree(
     Deviation from the paper: it thins the voxels to a skeleton and finds paths on that. Scanned stems are hollow and
     have holes, and their skeleton is a net; slices by the length of the path have their middle inside the stem. The
     ground below a tree is the lowest point within 1 to 2 m. Gaps up to the maximum are crossed at three times their
-    length: shadows part stems and branches in every scan. Points farther from the middle line than 2.5 times the median
-    of their piece of 0.5 m are leaves. The radius of a piece is the median distance of its points from the line. That
-    must be at least half a voxel and at most 3 times the estimated one, and the distances scatter by less than 0.2 of
-    it, as those of a circle do. The estimate is a cone: stem and branches grow thinner toward their tips as the stem
-    does from its diameter at breast height. It counts where points show no circle, unless they lie closer to the line.
-    A stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if its chord
-    is shorter than 0.6 of its length.
+    length: shadows part stems and branches in every scan. Points farther from the middle line than ``_WITHIN`` times
+    the median of their piece of ``_PIECE`` m are leaves. The radius of a piece is the median distance of its points
+    from the line. That must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances
+    scatter by less than ``_ROUND`` of it, as those of a circle do. The estimate is a cone: stem and branches grow
+    thinner toward their tips as the stem does from its diameter at breast height. It counts where points show no
+    circle, unless they lie closer to the line. A stem too slender to carry itself belongs to the thicker one that it
+    grows from. A branch is crooked if its chord is shorter than 0.6 of its length.
 
     References
     ----------

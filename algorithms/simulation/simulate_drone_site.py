@@ -119,7 +119,7 @@ def simulate_drone_site(
     The scene is a surface of cells of 0.1 m, and so are the errors: matching turns it into a smoother surface with
     errors that neighbors share, on which points are drawn. Steps are smeared by normal distributions whose width
     changes over the site from half to one and a half times the mean. Points that are smeared beyond the edge of an
-    object, 0.3 m above the ground or more, are of the object.
+    object, ``_SMEARED`` m above the ground or more, are of the object.
 
     Unevenness of the ground, waves and the roughness of crowns are those of two real clouds, a suburb and a beach. Open
     ground deviates from planes by 1 to 1.3 cm over 1 m and by 3 to 5 cm over 4 m.

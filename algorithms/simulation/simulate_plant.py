@@ -121,10 +121,10 @@ def simulate_plant(
 
     Notes
     -----
-    A station sees one point of each cell of directions, the nearest. The cells are as large as the density at 6 m
-    asks for; farther surfaces have fewer points. Surfaces that are met at less than 8° give none. Noise lies along the
-    beam. The default of 200 pipes makes 3.6 million points in about two minutes.
-    Not simulated: points between two surfaces at edges, reflections, errors of the registration.
+    A station sees one point of each cell of directions, the nearest. The cells are as large as the density at
+    ``_FULL_DENSITY`` m asks for; farther surfaces have fewer points. Surfaces that are met at less than
+    ``_LEAST_INCIDENCE``° give none. Noise lies along the beam. The default of 200 pipes makes 3.6 million points in
+    about two minutes. Not simulated: points between two surfaces at edges, reflections, errors of the registration.
 
     Examples
     --------

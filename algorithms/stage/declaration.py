@@ -11,7 +11,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from .arguments import REFERENCE_PREFIX, check_arrays
-from .docstrings import before_first_section, sections, with_tunables
+from .docstrings import before_first_section, sections, with_tunables, with_values
 from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
 from .tunables import Tunable
@@ -213,7 +213,7 @@ def _declared(function: Callable, title: str, group: str, tags: str, made: dict[
                 tunables[name] = _tunable(name, hints[name], parameter.default)
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
-    doc = inspect.cleandoc(function.__doc__ or "")
+    doc = with_values(inspect.cleandoc(function.__doc__ or ""), function.__globals__)
     return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **made)
 
 

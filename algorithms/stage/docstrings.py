@@ -2,12 +2,33 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Collection
+from operator import attrgetter
+from typing import Any
 
 from .tunables import Tunable
 
 _HEADINGS = ("Parameters", "Returns", "Raises", "Other Parameters", "Notes", "References", "Examples", "See Also")
+
+
+# A constant of a module, or a field of one, as docstrings name it.
+_CONSTANT = re.compile(r"``(_?[A-Z][A-Z_]+)((?:\.\w+)?)``")
+
+
+def with_values(doc: str, names: dict[str, Any]) -> str:
+    """Return a docstring with the values of the constants that it names, so that the help shows numbers.
+
+    ``names`` are those of the module: a docstring repeats no digits that a change of the constant would make wrong.
+    """
+
+    def value(found: re.Match) -> str:
+        owner = names.get(found[1])
+        constant = attrgetter(found[2][1:])(owner) if found[2] else owner
+        return f"{constant:,g}" if isinstance(constant, (int, float)) else found[0]
+
+    return _CONSTANT.sub(value, doc)
 
 
 def sections(doc: str) -> dict[str, str]:

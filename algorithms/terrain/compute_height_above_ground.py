@@ -45,10 +45,10 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     -----
     Ground points are 0 m high. Points outside the hull of the ground points are measured from the nearest ground point;
     the log says how many. The paper subtracts a terrain raster; here heights are those over a triangulation, so that
-    nothing is lost to cells on slopes. Its nodes are the means of the ground points in cells of 0.5 m, so that the
-    noise of single points does not affect heights. The filter of heights above 0.3 m is a step of its own, 'Filter
-    points'. Bridge decks are measured from the ground below them, and objects on them, such as cars and parapets, from
-    the decks.
+    nothing is lost to cells on slopes. Its nodes are the means of the ground points in cells of ``SCENE.least_cell`` m,
+    so that the noise of single points does not affect heights. The filter of heights above 0.3 m is a step of its own,
+    'Filter points'. Bridge decks are measured from the ground below them, and objects on them, such as cars and
+    parapets, from the decks.
 
     References
     ----------

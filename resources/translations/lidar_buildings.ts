@@ -1008,11 +1008,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Height above their surroundings from which parts of the bare earth are bridges, and segments objects. &lt;i&gt;(at least 0.1 m and at most 100 m; default 1 m)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Keep points at least this high above the ground: 0.3 m removes ground and grass. Empty: no limit; the log gives the range of the cloud. &lt;i&gt;(at least -10,000 m and at most 10,000 m; default none)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Keep points at least this high above the ground: 0.3 m removes ground and grass. Empty: no limit; the log gives the range of the cloud. &lt;i&gt;(at least -10,000 m and at most 10,000 m; default none)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Least height of a bridge above its surroundings; in 'Classify ground segments' that of an object, too. &lt;i&gt;(at least 0.1 m and at most 100 m; default 1 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1812,7 +1812,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Search in&lt;/b&gt;: All points, or those of the facade lines of a vehicle's scan: steep lines that are the farthest on their side, which cars, trees and people are not. Facade lines need the GPS time of the points. &lt;i&gt;(one of all points, facade lines; default all points)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Search in&lt;/b&gt;: All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from the scanner, behind cars, trees and people. Facade lines need the GPS time of the points. &lt;i&gt;(one of all points, facade lines; default all points)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2104,7 +2104,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more strips and separates shallower recesses. Automatic: three standard deviations of the measured surface noise with 0.01 m of relief. &lt;i&gt;(greater than 0 m and at most 1 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more strips and separates shallower recesses. Automatic: 3 times the root of the sum of the squares of the surface noise and of 0.01 m, the relief of walls. &lt;i&gt;(greater than 0 m and at most 1 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2124,7 +2124,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Two surfaces merge if the points of either lie no farther from the common plane (root mean square). Automatic: 2 times the root of the sum of the squares of the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Two surfaces merge if neither lies farther than this from their common plane (root mean square). Automatic: 2 times the root of the sum of the squares of the surface noise and 0.05 point spacings. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2252,7 +2252,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Widest obstacle (m)&lt;/b&gt;: A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without points. Its ends there must meet the criteria of slope and height. 0: it ends. &lt;i&gt;(at least 0 m and at most 1,000 m; default 0 m)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Widest obstacle (m)&lt;/b&gt;: A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every obstacle. &lt;i&gt;(at least 0 m and at most 1,000 m; default 0 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3380,7 +3380,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without points. Its ends there must meet the criteria of slope and height. 0: it ends.</source>
+        <source>A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every obstacle.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3536,7 +3536,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>All points, or those of the facade lines of a vehicle's scan: steep lines that are the farthest on their side, which cars, trees and people are not. Facade lines need the GPS time of the points.</source>
+        <source>All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from the scanner, behind cars, trees and people. Facade lines need the GPS time of the points.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3776,6 +3776,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Automatic: 3 times the root of the sum of the squares of the surface noise and of 0.01 m, the relief of walls.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Automatic: 3 times the roughness of surfaces, which is the root of the sum of the squares of the noise of the scan and of 0.065 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3933,10 +3937,6 @@
     </message>
     <message>
         <source>Automatic: the tolerance: two bins side by side then hold a plane with its noise.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Automatic: three standard deviations of the measured surface noise with 0.01 m of relief.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5308,10 +5308,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Height above their surroundings from which parts of the bare earth are bridges, and segments objects.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Height difference</source>
         <translation type="unfinished"></translation>
     </message>
@@ -5773,6 +5769,10 @@
     </message>
     <message>
         <source>Learn what buildings of this cloud look like, and correct points near their edges that look otherwise. Without it nothing is changed.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Least height of a bridge above its surroundings; in 'Classify ground segments' that of an object, too.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6492,7 +6492,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the cloud, and embankments, are not found. A run in tiles reads twice the maximum width around each block, or half the maximum width where bridges are looked for at gaps only. Bridges that go farther beyond its border are not found there. For long ones set a larger block or maximum width.</source>
+        <source>On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the cloud, and embankments, are not found. A run in tiles reads twice the maximum width around each block, or half the maximum width where bridges are looked for at gaps only. Bridges of which an end lies farther out are not found in that block. For long ones set a larger block or maximum width.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8520,7 +8520,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Two surfaces merge if the points of either lie no farther from the common plane (root mean square).</source>
+        <source>Two surfaces merge if neither lies farther than this from their common plane (root mean square).</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -77,3 +77,14 @@ def test_words_and_lines_within_a_section_are_its_text():
     assert words.section("Notes") == notes
     assert words.section("References") == "Nobody."
     assert words.section("Returns") == ""
+
+
+_WIDTH = 1250.5
+
+
+def test_constants_that_a_docstring_names_become_their_values():
+    def toy(xyz, *, monitor=None):
+        """Cut strips of ``_WIDTH`` m, not ``width``; ``Optional`` is no number."""
+
+    words = stage("Toy", group="Toys", writes=("cluster_id",))(toy).stage
+    assert words.summary == "Cut strips of 1,250.5 m, not ``width``; ``Optional`` is no number."
