@@ -67,8 +67,9 @@ PointSource = Annotated[
     Param(
         "Source of the points",
         "Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by "
-        "planarity over meters and by color, and low buildings are looked for. 'automatic' takes a cloud for matched "
-        "images that has no second returns, at least 8 points per m² and no points beneath crowns.",
+        "planarity within half a meter of each point and by color, and low buildings are looked for. 'automatic' "
+        "takes a cloud for matched images that has no second returns, at least 8 points per m² and no points beneath "
+        "crowns.",
         choices=("automatic", "laser scanner", "matched images"),
     ),
 ]
@@ -123,7 +124,7 @@ MinClusterHeight = Annotated[
     float,
     Param(
         "Minimum height",
-        "Only points at least this high above the ground are clustered, where heights are known.",
+        "Only points at least this high above the ground are used, where heights are known.",
         unit="m",
         low=0,
         high=100,

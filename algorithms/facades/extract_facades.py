@@ -127,10 +127,9 @@ def extract_facades(
 ):
     """Find the facades of buildings and draw each as a vertical polygon with its common borders.
 
-    Steep planes are found and fitted by least squares. Each gets a boundary in its own plane: the convex hull of a
-    triangulation without its long edges, reduced to its corners and pushed out until it holds all points. Where
-    two facades meet, their border is the intersection line of the planes. A curved, recessed or protruding front
-    is several planes.
+    Steep planes are found and fitted by least squares. Each gets a boundary in its own plane: that of a triangulation
+    without its long edges, drawn in straight edges and pushed out to hold its points. Where two facades meet, their
+    border is the intersection line of the planes. A curved, recessed or protruding front is several planes.
 
     Parameters
     ----------

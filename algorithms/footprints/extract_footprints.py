@@ -91,8 +91,9 @@ def extract_footprints(
         bool,
         Param(
             "Merge touching buildings",
-            "Outline buildings that touch as one block. Otherwise each has its own footprint, and so have three houses "
-            "of a row or more where valleys between their roofs, steps or walls above them show which is which.",
+            "Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house "
+            "of a row of three or more, where valleys between the roofs, steps or walls above them show the party "
+            "walls.",
         ),
     ] = False,
     sampling: Optional[CloudSampling] = None,

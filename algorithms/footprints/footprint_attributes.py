@@ -30,7 +30,7 @@ FIELDS = (
     Field("max_height", float, "greatest height above ground", "m"),
     Field("volume", float, "space between roof and ground: mean height of the roof's surface times area", "m³"),
     Field("points", int, "points of the building, walls among them"),
-    Field("entropy", float, "mean entropy of the building's points' clusters"),
+    Field("entropy", float, "mean entropy of the clusters that its points are of"),
     Field("confidence", float, "0 unsure to 1 sure of being a building"),
     Field("reason", str, "why most of its roofs are called building"),
     Field("regularized", int, "1 straightened along main directions, 0 outline as traced or in chords of it"),

@@ -54,7 +54,7 @@ def recode_classes(
         Param(
             "Own codes",
             "Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges "
-            "before the sign, entries separated by semicolons; empty for none.",
+            "before the equals sign, entries separated by semicolons; empty for none.",
         ),
     ] = "",
     monitor=None,

@@ -86,9 +86,9 @@ def assess_segments(
     Notes
     -----
     Points in segments of the reference are counted by the outcome of their segment; of a correct one, those that both
-    have. Points in noise segments are those of no segment of the reference or a missed one, per point that has a
-    segment in the input. Where a segment could be counted as correct or as a part of a set, the paper takes what
-    overlaps more on average; here it counts as correct.
+    have. Points in noise segments are counted as a share of the points that have a segment in the input, all others of
+    those that have one in the reference. Where a segment could be counted as correct or as a part of a set, the paper
+    takes what overlaps more on average; here it counts as correct.
 
     References
     ----------

@@ -112,7 +112,8 @@ def compare_corners(
             low=0,
             high=100,
             open_low=True,
-            automatic="three times the median distance of nearest corners that are not so by chance, 1 to 3 m.",
+            automatic="three times the median distance of a corner from the nearest one of the other map, pairs by "
+            "chance left out, 1 to 3 m.",
         ),
     ] = None,
     monitor=None,

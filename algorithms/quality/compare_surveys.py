@@ -121,7 +121,7 @@ def compare_surveys(
         Optional[float],
         Param(
             "Outline tolerance",
-            "An outline has changed if it is farther off somewhere.",
+            "An outline has changed if it is farther than this from the earlier one somewhere.",
             unit="m",
             low=0,
             high=100,

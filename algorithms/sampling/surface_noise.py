@@ -48,8 +48,8 @@ ROUGHNESS_OF_SPACING = SURFACES.roughness_of_spacing
 
 # The roughness of surfaces, for the help of parameters that follow it.
 ROUGHNESS = (
-    f"the measured surface noise, at least {SURFACES.least_roughness:g} m, and {SURFACES.roughness_of_spacing:g} point "
-    "spacings on top"
+    f"the root of the sum of the squares of the surface noise, at least {SURFACES.least_roughness:g} m, and of "
+    f"{SURFACES.roughness_of_spacing:g} point spacings"
 )
 
 

@@ -87,8 +87,8 @@ _MaxGap = Annotated[
     Optional[float],
     Param(
         "Maximum gap",
-        "Points of a plane at most this far apart are of one surface; wider gaps, and gaps wider than a window, "
-        "part coplanar surfaces.",
+        "Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part "
+        "coplanar surfaces.",
         unit="m",
         low=0,
         high=1000,
@@ -116,8 +116,8 @@ def segment_planes_hough(
         str,
         Param(
             "Method",
-            "With points, each point votes for all planes through it. With normals, the normal of a point votes for a "
-            "direction first, the point for a distance then, which needs surfaces smooth enough for normals.",
+            "With points, each point votes for all planes through it. With normals, the normal of each point votes "
+            "for a direction, then the point for a distance, which needs surfaces smooth enough for normals.",
             choices=METHODS,
         ),
     ] = "points",
@@ -162,7 +162,7 @@ def segment_planes_hough(
     enough become segments.
 
     The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that
-    are nearly the same. But noise scatters the points of one plane over all bins that are smaller than it, until its
+    are nearly the same. But in bins smaller than the noise the points of one plane scatter over several, until its
     maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since
     the parameters are determined by a least-squares fit to the points afterwards, and the automatic bins are as wide.
 

@@ -189,11 +189,11 @@ def extract_wall_footprints(
     Notes
     -----
     Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is
-    covered where the pieces of it that should hold three points hold any. An edge of the outline is judged by its
-    points between the corners, which are left out. The paper takes every pair of corners for a candidate edge. Here the
-    whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where they aren't
-    square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is tried whether the
-    outline is better off without.
+    cut into pieces that should hold three points each, and is covered where they hold any. An edge of the outline is
+    judged by its points between the corners, which are left out. The paper takes every pair of corners for a candidate
+    edge. Here the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more
+    where they aren't square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is
+    tried whether the outline is better off without.
 
     Gaps of a roof, and bites at its edge up to 4 m wide, are roof where no point is seen in them, as long as surfaces
     are seen all around. Gaps with points a meter and more below the eaves are courtyards. Sides beside which another
@@ -201,7 +201,7 @@ def extract_wall_footprints(
     Parts of a roof inside of others are left out.
 
     Houses whose roofs nearly touch are one building by the distance between roofs. They are outlined one by one where
-    two walls face each other across the whole building, no farther apart than two overhangs of the largest kind. At
+    two walls face each other across the whole building, no farther apart than twice the maximum overhang. At
     least half of each must be seen, and the smallest building or more lie behind both. The line halfway between the
     walls parts the roof. Passages under one roof are parted in the same way.
 

@@ -852,7 +852,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Maximum gap (m)&lt;/b&gt;: Points of a plane at most this far apart are of one surface; wider gaps, and gaps wider than a window, part coplanar surfaces. Automatic: 3 times the point spacing on surfaces. &lt;i&gt;(greater than 0 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Maximum gap (m)&lt;/b&gt;: Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part coplanar surfaces. Automatic: 3 times the point spacing on surfaces. &lt;i&gt;(greater than 0 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -940,7 +940,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Merge touching buildings&lt;/b&gt;: Outline buildings that touch as one block. Otherwise each has its own footprint, and so have three houses of a row or more where valleys between their roofs, steps or walls above them show which is which. &lt;i&gt;(default no)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Merge touching buildings&lt;/b&gt;: Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house of a row of three or more, where valleys between the roofs, steps or walls above them show the party walls. &lt;i&gt;(default no)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -956,11 +956,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Method&lt;/b&gt;: With points, each point votes for all planes through it. With normals, the normal of a point votes for a direction first, the point for a distance then, which needs surfaces smooth enough for normals. &lt;i&gt;(one of points, normals; default normals)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Method&lt;/b&gt;: With points, each point votes for all planes through it. With normals, the normal of each point votes for a direction, then the point for a distance, which needs surfaces smooth enough for normals. &lt;i&gt;(one of points, normals; default normals)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Method&lt;/b&gt;: With points, each point votes for all planes through it. With normals, the normal of a point votes for a direction first, the point for a distance then, which needs surfaces smooth enough for normals. &lt;i&gt;(one of points, normals; default points)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Method&lt;/b&gt;: With points, each point votes for all planes through it. With normals, the normal of each point votes for a direction, then the point for a distance, which needs surfaces smooth enough for normals. &lt;i&gt;(one of points, normals; default points)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1024,11 +1024,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Only points at least this high above the ground are clustered, where heights are known. &lt;i&gt;(at least 0 m and at most 100 m; default 0 m)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Only points at least this high above the ground are used, where heights are known. &lt;i&gt;(at least 0 m and at most 100 m; default 0 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Only points at least this high above the ground are clustered, where heights are known. &lt;i&gt;(at least 0 m and at most 100 m; default 1.5 m)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Only points at least this high above the ground are used, where heights are known. &lt;i&gt;(at least 0 m and at most 100 m; default 1.5 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1504,7 +1504,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Outline tolerance (m)&lt;/b&gt;: An outline has changed if it is farther off somewhere. Automatic: three times the median distance between the outlines of both surveys, 1 to 4 m. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Outline tolerance (m)&lt;/b&gt;: An outline has changed if it is farther than this from the earlier one somewhere. Automatic: three times the median distance between the outlines of both surveys, 1 to 4 m. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1512,11 +1512,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Own codes&lt;/b&gt;: Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges before the sign, entries separated by semicolons; empty for none. &lt;i&gt;(default 3-5, 9, 14-15, 17=1)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Own codes&lt;/b&gt;: Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges before the equals sign, entries separated by semicolons; empty for none. &lt;i&gt;(default 3-5, 9, 14-15, 17=1)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Own codes&lt;/b&gt;: Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges before the sign, entries separated by semicolons; empty for none. &lt;i&gt;(default empty)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Own codes&lt;/b&gt;: Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges before the equals sign, entries separated by semicolons; empty for none. &lt;i&gt;(default empty)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1936,7 +1936,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Source of the points&lt;/b&gt;: Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by planarity over meters and by color, and low buildings are looked for. 'automatic' takes a cloud for matched images that has no second returns, at least 8 points per m² and no points beneath crowns. &lt;i&gt;(one of automatic, laser scanner, matched images; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Source of the points&lt;/b&gt;: Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by planarity within half a meter of each point and by color, and low buildings are looked for. 'automatic' takes a cloud for matched images that has no second returns, at least 8 points per m² and no points beneath crowns. &lt;i&gt;(one of automatic, laser scanner, matched images; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2076,7 +2076,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Corners farther apart, after the shift between the maps is removed, are not the same corner. Automatic: three times the median distance of nearest corners that are not so by chance, 1 to 3 m. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Corners farther apart, after the shift between the maps is removed, are not the same corner. Automatic: three times the median distance of a corner from the nearest one of the other map, pairs by chance left out, 1 to 3 m. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2100,7 +2100,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance within which a point lies on a plane. Automatic: 2.3 times the roughness: the measured surface noise, at least 0.025 m, and 0.065 point spacings on top. &lt;i&gt;(greater than 0 m and at most 10 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance within which a point lies on a plane. Automatic: 2.3 times the roughness: the root of the sum of the squares of the surface noise, at least 0.025 m, and of 0.065 point spacings. &lt;i&gt;(greater than 0 m and at most 10 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2116,7 +2116,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance within which points lie on a wall. Automatic: 3.1 times the roughness: the measured surface noise, at least 0.025 m, and 0.065 point spacings on top. &lt;i&gt;(at least 0.01 m and at most 2 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Distance within which points lie on a wall. Automatic: 3.1 times the roughness: the root of the sum of the squares of the surface noise, at least 0.025 m, and of 0.065 point spacings. &lt;i&gt;(at least 0.01 m and at most 2 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2548,7 +2548,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;entropy&lt;/i&gt;: mean entropy of the building&amp;#x27;s points&amp;#x27; clusters</source>
+        <source>&lt;i&gt;entropy&lt;/i&gt;: mean entropy of the clusters that its points are of</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2604,7 +2604,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;ground (m)&lt;/i&gt;: elevation of its base, the lowest ground beside it</source>
+        <source>&lt;i&gt;ground (m)&lt;/i&gt;: elevation of its base, near that of the lowest ground beside it</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3556,7 +3556,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>An outline has changed if it is farther off somewhere.</source>
+        <source>An outline has changed if it is farther than this from the earlier one somewhere.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3744,7 +3744,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 2.3 times the roughness: the measured surface noise, at least 0.025 m, and 0.065 point spacings on top.</source>
+        <source>Automatic: 2.3 times the roughness: the root of the sum of the squares of the surface noise, at least 0.025 m, and of 0.065 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3788,7 +3788,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 3.1 times the roughness: the measured surface noise, at least 0.025 m, and 0.065 point spacings on top.</source>
+        <source>Automatic: 3.1 times the roughness: the root of the sum of the squares of the surface noise, at least 0.025 m, and of 0.065 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3945,6 +3945,10 @@
     </message>
     <message>
         <source>Automatic: three times the median distance between the outlines of both surveys, 1 to 4 m.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Automatic: three times the median distance of a corner from the nearest one of the other map, pairs by chance left out, 1 to 3 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4280,7 +4284,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges before the sign, entries separated by semicolons; empty for none.</source>
+        <source>Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges before the equals sign, entries separated by semicolons; empty for none.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5400,7 +5404,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Houses whose roofs nearly touch are one building by the distance between roofs. They are outlined one by one where two walls face each other across the whole building, no farther apart than two overhangs of the largest kind. At least half of each must be seen, and the smallest building or more lie behind both. The line halfway between the walls parts the roof. Passages under one roof are parted in the same way.</source>
+        <source>Houses whose roofs nearly touch are one building by the distance between roofs. They are outlined one by one where two walls face each other across the whole building, no farther apart than twice the maximum overhang. At least half of each must be seen, and the smallest building or more lie behind both. The line halfway between the walls parts the roof. Passages under one roof are parted in the same way.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5932,7 +5936,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by planarity over meters and by color, and low buildings are looked for. 'automatic' takes a cloud for matched images that has no second returns, at least 8 points per m² and no points beneath crowns.</source>
+        <source>Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by planarity within half a meter of each point and by color, and low buildings are looked for. 'automatic' takes a cloud for matched images that has no second returns, at least 8 points per m² and no points beneath crowns.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6344,7 +6348,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does. They do not where other pulses reach the ground between them, where they are closer together than pulses are, or where they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
+        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does: other pulses reach the ground between them, they are closer together than pulses are, or they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6512,7 +6516,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Only points at least this high above the ground are clustered, where heights are known.</source>
+        <source>Only points at least this high above the ground are used, where heights are known.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6540,7 +6544,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Outline buildings that touch as one block. Otherwise each has its own footprint, and so have three houses of a row or more where valleys between their roofs, steps or walls above them show which is which.</source>
+        <source>Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house of a row of three or more, where valleys between the roofs, steps or walls above them show the party walls.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6952,7 +6956,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points in segments of the reference are counted by the outcome of their segment; of a correct one, those that both have. Points in noise segments are those of no segment of the reference or a missed one, per point that has a segment in the input. Where a segment could be counted as correct or as a part of a set, the paper takes what overlaps more on average; here it counts as correct.</source>
+        <source>Points in segments of the reference are counted by the outcome of their segment; of a correct one, those that both have. Points in noise segments are counted as a share of the points that have a segment in the input, all others of those that have one in the reference. Where a segment could be counted as correct or as a part of a set, the paper takes what overlaps more on average; here it counts as correct.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6972,7 +6976,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points of a plane at most this far apart are of one surface; wider gaps, and gaps wider than a window, part coplanar surfaces.</source>
+        <source>Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part coplanar surfaces.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7932,7 +7936,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Steep planes are found and fitted by least squares. Each gets a boundary in its own plane: the convex hull of a triangulation without its long edges, reduced to its corners and pushed out until it holds all points. Where two facades meet, their border is the intersection line of the planes. A curved, recessed or protruding front is several planes.</source>
+        <source>Steep planes are found and fitted by least squares. Each gets a boundary in its own plane: that of a triangulation without its long edges, drawn in straight edges and pushed out to hold its points. Where two facades meet, their border is the intersection line of the planes. A curved, recessed or protruding front is several planes.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8072,7 +8076,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that are nearly the same. But noise scatters the points of one plane over all bins that are smaller than it, until its maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since the parameters are determined by a least-squares fit to the points afterwards, and the automatic bins are as wide.</source>
+        <source>The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that are nearly the same. But in bins smaller than the noise the points of one plane scatter over several, until its maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since the parameters are determined by a least-squares fit to the points afterwards, and the automatic bins are as wide.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8376,7 +8380,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is covered where the pieces of it that should hold three points hold any. An edge of the outline is judged by its points between the corners, which are left out. The paper takes every pair of corners for a candidate edge. Here the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where they aren't square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is tried whether the outline is better off without.</source>
+        <source>Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is cut into pieces that should hold three points each, and is covered where they hold any. An edge of the outline is judged by its points between the corners, which are left out. The paper takes every pair of corners for a candidate edge. Here the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where they aren't square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is tried whether the outline is better off without.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8860,7 +8864,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>With points, each point votes for all planes through it. With normals, the normal of a point votes for a direction first, the point for a distance then, which needs surfaces smooth enough for normals.</source>
+        <source>With points, each point votes for all planes through it. With normals, the normal of each point votes for a direction, then the point for a distance, which needs surfaces smooth enough for normals.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
