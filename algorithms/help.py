@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import html
 import re
-import sys
 from typing import Callable, Optional
 
 from .captions import captions
 from .cloud.dimensions import DIMENSIONS
 from .pipeline import Output, Pipeline, Step
-from .rules import rules_of
 from .stage import REFERENCE_PREFIX, VALUES, Field, InputLayer, Layer, Raster, Stage, TextFile, Tunable
 
 
@@ -317,13 +315,3 @@ def inline(text: str) -> str:
     text = re.sub(r":\w+:`~?\.*([\w.]+)`", r"<code>\1</code>", text)
     text = re.sub(r"``(.+?)``", r"<code>\1</code>", text)
     return re.sub(r"(?<![\w*])\*(\S(?:.*?\S)?)\*(?![\w*])", r"<i>\1</i>", text)
-
-
-def rules_table(package: str = __package__) -> str:
-    """Return all rules of the methods as a table in Markdown: module, name, value, unit, and why it is so large."""
-    rows = ["| module | rule | value | unit | why |", "| --- | --- | ---: | --- | --- |"]
-    for name in sorted(name for name in sys.modules if name.startswith(f"{package}.")):
-        for rule, value, field in rules_of(sys.modules[name]):
-            cells = (f"{value:g}", field.metadata["unit"], field.metadata["why"])
-            rows.append(f"| {name[len(package) + 1 :]} | {rule} | {' | '.join(cells)} |")
-    return "\n".join(rows)

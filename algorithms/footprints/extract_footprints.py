@@ -135,11 +135,11 @@ def extract_footprints(
     -----
     A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does
     a point that a later step added to the building, if another one is more than a meter (or three spacings) higher.
-    Points on walls belong to the building but don't widen its outline. One point counts for each cell of half a square
-    spacing.
+    Points on walls belong to the building but don't widen its outline. One point counts for each cell with an area of
+    half a spacing squared.
 
     Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the
-    other points around them, and against the density that is missing to that of the roofs around. Gaps with roofs all
+    other points around them, and against what is missing to the density of the roofs around. Gaps with roofs all
     around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
 
     The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared

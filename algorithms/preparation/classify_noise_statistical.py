@@ -93,10 +93,10 @@ def classify_noise_statistical(
     With *Isolated points*, both are found. A point must then be farther than 4.8 m (7 point spacings on sparse clouds)
     from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of points half
     as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the air' and
-    the height histogram's stage find these in the same way; their notes name the objects that stay. Only points with
-    nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few
-    points, and of the others of large clouds for a sample of ``_SAMPLE``, which gives mean and standard deviation of
-    all.
+    'Classify noise by height histogram' find these in the same way; their notes name the objects that stay. Only points
+    with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with
+    few points, and of the others of large clouds for a sample of ``_SAMPLE``, which gives mean and standard deviation
+    of all.
 
     References
     ----------

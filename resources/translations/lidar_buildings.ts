@@ -3392,7 +3392,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does a point that a later step added to the building, if another one is more than a meter (or three spacings) higher. Points on walls belong to the building but don't widen its outline. One point counts for each cell of half a square spacing.</source>
+        <source>A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does a point that a later step added to the building, if another one is more than a meter (or three spacings) higher. Points on walls belong to the building but don't widen its outline. One point counts for each cell with an area of half a spacing squared.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7648,7 +7648,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the other points around them, and against the density that is missing to that of the roofs around. Gaps with roofs all around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.</source>
+        <source>Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the other points around them, and against what is missing to the density of the roofs around. Gaps with roofs all around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8856,7 +8856,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>With &lt;i&gt;Isolated points&lt;/i&gt;, both are found. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of points half as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the air' and the height histogram's stage find these in the same way; their notes name the objects that stay. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
+        <source>With &lt;i&gt;Isolated points&lt;/i&gt;, both are found. A point must then be farther than 4.8 m (7 point spacings on sparse clouds) from its nearest one, too, so that facades and crowns keep their sparse parts. Points that no chain of points half as far apart ties to the scene are noise too, and so are points under the ground. 'Classify noise in the air' and 'Classify noise by height histogram' find these in the same way; their notes name the objects that stay. Only points with nothing around them can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -1,10 +1,9 @@
-"""Every rule of a method has a unit and a reason, and is listed in one table."""
+"""Every rule of a method has a unit and a reason."""
 
 from __future__ import annotations
 
 import sys
 
-from lidar_buildings.algorithms.help import rules_table
 from lidar_buildings.algorithms.rules import rules_of
 from lidar_buildings.algorithms.sampling import kinds
 from lidar_buildings.algorithms.stages import STAGES
@@ -35,9 +34,3 @@ def test_every_rule_has_a_reason_and_a_unit_which_is_empty_for_plain_numbers():
         assert isinstance(field.metadata["unit"], str), name
         assert field.metadata["why"], name
         assert "|" not in field.metadata["why"], name
-
-
-def test_the_table_has_a_row_for_each():
-    assert "| terrain.free_standing | FREE.step | 1 | m | physics: least height of a step, lower than any eave |" in (
-        rules_table().splitlines()
-    )

@@ -42,7 +42,6 @@ from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan  # noqa: E402
-from lidar_buildings.algorithms.help import rules_table  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, ROOT, Table  # noqa: E402
@@ -531,7 +530,6 @@ def page(rows: list[dict[str, Any]]) -> str:
         least_mean=LEAST_MEAN,
         least=LEAST_ANYWHERE,
         chance=CHANCE,
-        rules=rules_table(),
         table=_in_markdown(("rule", mean, *others), [[row[one] for one in ("rule", mean, *others)] for row in whole]),
         moved=_moved_table(of_rule, mean, others) if moved else "",
     )
@@ -582,11 +580,17 @@ _PAGE = """# What each rule is worth
 truth. The figures are the change of F (%) of the points of buildings; in clouds without buildings that of the share (%)
 of points that are not called building; in the samples of the ISPRS filter test that of the share (%) of points with the
 right class. A rule whose removal costs less than {least_mean} in the mean and less than {least} on every cloud is
-deleted, unless it keeps what no cloud with truth shows: large halls, the edge of a tile, scan lines far apart. The
-mean is that of the clouds that a rule has a part in: seven with buildings, two without, two of matched images, and for
-the ground eight samples. Seven more are changed: Amsterdam with a quarter and a tenth of its points, with 5 cm of
-noise, and without return numbers; Amsterdam, thinned St Barth and the chalet turned by 30°. Rules of matched images
-have a part in two. Differences below about {chance:g} are chance: they also appear when a cloud is turned or moved.
+deleted, unless it keeps what no cloud with truth shows: large halls, the edge of a tile, scan lines far apart. The mean
+is that of the clouds that a rule has a part in: seven with buildings, two without, two of matched images, and for the
+ground eight samples. Seven more are changed: Amsterdam with a quarter and a tenth of its points, with 5 cm of noise,
+and without return numbers; Amsterdam, thinned St Barth and the chalet turned by 30°. Rules of matched images have a
+part in two. Differences below about {chance:g} are chance: they also appear when a cloud is turned or moved. All
+constants, with their values and reasons, are [on a page of their own](methods/generated/detect_buildings_constants.md).
+
+Clouds are named by their files, the number behind some is points per m². Of [Accuracy and speed](accuracy.md),
+*ahn3-delft* is the old town of Delft, *ahn-amsterdam-1* and *amsterdam-centre-10* are the blocks and the canals of
+Amsterdam, *ign-stbarth* the villas on a hillside, *ign-chalet* the house in a forest, *uk-photo-100* and
+*brighton-beach* the suburb and the beach of a drone, and *samp11* to *samp61* samples of the filter test.
 
 `python tests/benchmarks/worth.py` measures the tables, `--page docs/measured/rules.json docs/measured/rules_moved.json`
 writes this page.
@@ -607,14 +611,7 @@ Rules of little worth on these clouds stay for what the clouds do not show:
 - *Bushes*: hedges at walls become houses on 14 of 18 clouds, by up to 0.39. *Structures on roofs*: turrets and lift
   houses. *Last returns only*: first returns of crowns can't be the ground.
 - *Crowns at walls*: trees that touch a flat roof. *Smeared walls*: the walls of a town in matched images.
-{moved}
-## The constants
-
-Each constant of the methods whose module holds its rules in one table, with the reason for its value: physics,
-statistics, a paper, or fitted on what.
-
-{rules}
-"""
+{moved}"""
 
 
 def _counted() -> list[str]:
