@@ -27,9 +27,9 @@ def restore_classes(
 ):
     """Put back the classes that 'Keep classes' remembered.
 
-    Where the cloud came with ground or buildings, points that steps in between classified so become unclassified (1).
-    Kept buildings are numbered anew, those whose points are close to one another in plan as one. Without remembered
-    classes nothing changes.
+    Where the cloud came with ground or buildings, points that steps in between called ground or building become
+    unclassified (1). Kept buildings are numbered anew, those whose points are close to one another in plan as one.
+    Without remembered classes nothing changes.
 
     Parameters
     ----------

@@ -8752,7 +8752,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Where the cloud came with ground or buildings, points that steps in between classified so become unclassified (1). Kept buildings are numbered anew, those whose points are close to one another in plan as one. Without remembered classes nothing changes.</source>
+        <source>Where the cloud came with ground or buildings, points that steps in between called ground or building become unclassified (1). Kept buildings are numbered anew, those whose points are close to one another in plan as one. Without remembered classes nothing changes.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
