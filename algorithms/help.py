@@ -72,7 +72,13 @@ def output_text(pipeline: Pipeline, output: Output) -> str:
 
 def written_by(pipeline: Pipeline) -> str:
     """Return the dimensions that the steps of a composite write, by their names in files."""
-    return _disk_names(dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes))
+    return _disk_names(dict.fromkeys(name for step in pipeline.steps for name in _written(step)))
+
+
+def _written(step: Step) -> tuple[str, ...]:
+    """Return the dimensions that a step writes with nothing set, where the user chooses among those of its stage."""
+    chosen = _chosen(step.stage)
+    return step.stage.writes if chosen is None else step.tunables.get(chosen.name, chosen.default)
 
 
 def step_title(step: Step) -> str:

@@ -1376,7 +1376,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with X, Y, Z, Classification, VoxelCount, Linearity, Planarity, Scattering, Entropy, Omnivariance, Anisotropy, Eigenentropy, EigenvalueSum, SurfaceVariation, Verticality, NormalX, NormalY, NormalZ, HeightRange, HeightDeviation, PlanRadius, PlanDensity, PlanEigenvalueRatio, OptimalKNN, Dimensionality, and a virtual point cloud over all of them.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with X, Y, Z, Classification, VoxelCount, Linearity, Planarity, Scattering, Verticality, OptimalKNN, Dimensionality, and a virtual point cloud over all of them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1484,7 +1484,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with X, Y, Z, PointSourceId, PreviousSourceId, Classification, VoxelCount, Linearity, Planarity, Scattering, Entropy, Omnivariance, Anisotropy, Eigenentropy, EigenvalueSum, SurfaceVariation, Verticality, NormalX, NormalY, NormalZ, HeightRange, HeightDeviation, PlanRadius, PlanDensity, PlanEigenvalueRatio, OptimalKNN, Dimensionality.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with X, Y, Z, PointSourceId, PreviousSourceId, Classification, VoxelCount, Linearity, Planarity, Scattering, Verticality, OptimalKNN, Dimensionality.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
