@@ -56,10 +56,10 @@ def classify_wires(
 ):
     """Classify the wires of power lines (14), of high and low voltage, and the masts and poles at their ends (15).
 
-    A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is: ``RULES.least_length`` m of it
-    at least, bent upward, with free space below and no building beside it. Spans are found by RANSAC among points that
-    lie on lines; parallel ones one by one. Where spans end, the slender upright object that reaches up to them is a
-    mast. Clouds of matched images are left as they are: wires are thinner than their pixels.
+    A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is ``RULES.least_length`` m
+    long at least and bent upward, with free space below and no building beside it. Spans are found by RANSAC among
+    points that lie on lines; parallel ones one by one. Where spans end, the slender upright object that reaches up to
+    them is a mast. Clouds of matched images are left as they are: wires are thinner than their pixels.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ def recode_classes(
     ] = "",
     monitor=None,
 ):
-    """Write the class codes of an agency, or codes of one's own.
+    """Replace class codes by those of an agency, or by one's own.
 
     The last step of a chain: every other step reads the codes of ASPRS.
 

@@ -115,7 +115,8 @@ def assess_footprints(
             low=0,
             high=100,
             open_low=True,
-            automatic="three times the median distance of nearest corners that are not so by chance, 1 to 3 m.",
+            automatic="three times the median distance of a corner from the nearest one of the other layer, pairs by "
+            "chance left out, 1 to 3 m.",
             advanced=True,
         ),
     ] = None,

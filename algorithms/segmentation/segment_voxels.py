@@ -163,7 +163,7 @@ def segment_voxels(
     -----
     Only voxels that are occupied are held in memory, never the box around the cloud. The space around the cloud
     counts as empty, so that objects are not cut off at its border. Voxels start at the least coordinates of the
-    points used. The skeleton is thinned by simple points, see :mod:`.voxel_skeleton`, and keeps tunnels and cavities.
+    points used. Thinning to the skeleton takes off simple points, whose removal changes no component, tunnel or cavity.
     Where voxels inside an object are empty by chance, apply a closing first.
 
     References

@@ -188,7 +188,7 @@ def extract_wall_footprints(
 
     Notes
     -----
-    Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is
+    Thresholds follow the data of each building. The distance of points to their line is that of the noise. A wall is
     cut into pieces that should hold three points each, and is covered where they hold any. An edge of the outline is
     judged by its points between the corners, which are left out. The paper takes every pair of corners for a candidate
     edge. Here the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more

@@ -2,7 +2,8 @@
 Regions, as published
 =====================
 
-Points closer than a distance in plan and one in height form a region :cite:p:`santos2019,sampath2007`.
+Points form a region that are closer than one distance in plan and another one in height
+:cite:p:`santos2019,sampath2007`.
 """
 
 from scenes import group_colors, plan, step, town

@@ -240,7 +240,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Codes&lt;/b&gt; (Recode classes): Write the class codes of an agency, or codes of one's own.</source>
+        <source>&lt;b&gt;Codes&lt;/b&gt; (Recode classes): Replace class codes by those of an agency, or by one's own.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -316,7 +316,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Earlier&lt;/b&gt; (Recode classes): Write the class codes of an agency, or codes of one's own.</source>
+        <source>&lt;b&gt;Earlier&lt;/b&gt; (Recode classes): Replace class codes by those of an agency, or by one's own.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2072,7 +2072,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Corners farther apart are not the same corner. Automatic: three times the median distance of nearest corners that are not so by chance, 1 to 3 m. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Corners farther apart are not the same corner. Automatic: three times the median distance of a corner from the nearest one of the other layer, pairs by chance left out, 1 to 3 m. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3492,7 +3492,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is: 10 m of it at least, bent upward, with free space below and no building beside it. Spans are found by RANSAC among points that lie on lines; parallel ones one by one. Where spans end, the slender upright object that reaches up to them is a mast. Clouds of matched images are left as they are: wires are thinner than their pixels.</source>
+        <source>A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is 10 m long at least and bent upward, with free space below and no building beside it. Spans are found by RANSAC among points that lie on lines; parallel ones one by one. Where spans end, the slender upright object that reaches up to them is a mast. Clouds of matched images are left as they are: wires are thinner than their pixels.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3948,11 +3948,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: three times the median distance of a corner from the nearest one of the other map, pairs by chance left out, 1 to 3 m.</source>
+        <source>Automatic: three times the median distance of a corner from the nearest one of the other layer, pairs by chance left out, 1 to 3 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: three times the median distance of nearest corners that are not so by chance, 1 to 3 m.</source>
+        <source>Automatic: three times the median distance of a corner from the nearest one of the other map, pairs by chance left out, 1 to 3 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6348,7 +6348,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does: other pulses reach the ground between them, they are closer together than pulses are, or they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
+        <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does. Either other pulses reach the ground between them, or they are closer together than pulses are, or they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6524,7 +6524,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Only voxels that are occupied are held in memory, never the box around the cloud. The space around the cloud counts as empty, so that objects are not cut off at its border. Voxels start at the least coordinates of the points used. The skeleton is thinned by simple points, see &lt;code&gt;voxel_skeleton&lt;/code&gt;, and keeps tunnels and cavities. Where voxels inside an object are empty by chance, apply a closing first.</source>
+        <source>Only voxels that are occupied are held in memory, never the box around the cloud. The space around the cloud counts as empty, so that objects are not cut off at its border. Voxels start at the least coordinates of the points used. Thinning to the skeleton takes off simple points, whose removal changes no component, tunnel or cavity. Where voxels inside an object are empty by chance, apply a closing first.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7300,6 +7300,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Replace class codes by those of an agency, or by one's own.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Report</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7412,7 +7416,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".</source>
+        <source>Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007. Building boundary tracing and regularization from airborne LiDAR point clouds. Photogrammetric Engineering and Remote Sensing 73 (7), 805-812.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8380,7 +8384,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is cut into pieces that should hold three points each, and is covered where they hold any. An edge of the outline is judged by its points between the corners, which are left out. The paper takes every pair of corners for a candidate edge. Here the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where they aren't square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is tried whether the outline is better off without.</source>
+        <source>Thresholds follow the data of each building. The distance of points to their line is that of the noise. A wall is cut into pieces that should hold three points each, and is covered where they hold any. An edge of the outline is judged by its points between the corners, which are left out. The paper takes every pair of corners for a candidate edge. Here the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where they aren't square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is tried whether the outline is better off without.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8881,10 +8885,6 @@
     </message>
     <message>
         <source>Write normals</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Write the class codes of an agency, or codes of one's own.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
