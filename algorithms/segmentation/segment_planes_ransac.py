@@ -85,7 +85,11 @@ def segment_planes_ransac(
         ),
     ] = 100,
     normals: Annotated[
-        bool, Param("Write normals", "Give each point the normal of its plane (NormalX, NormalY, NormalZ).")
+        bool,
+        Param(
+            "Write normals",
+            "Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written.",
+        ),
     ] = False,
     seed: Seed = 1,
     sampling: Optional[CloudSampling] = None,

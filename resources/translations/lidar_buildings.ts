@@ -2272,7 +2272,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Write normals&lt;/b&gt;: Give each point the normal of its plane (NormalX, NormalY, NormalZ). &lt;i&gt;(default no)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Write normals&lt;/b&gt;: Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written. &lt;i&gt;(default no)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5216,7 +5216,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Give each point the normal of its plane (NormalX, NormalY, NormalZ).</source>
+        <source>Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
