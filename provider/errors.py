@@ -11,7 +11,7 @@ from qgis.core import QgsProcessingException, QgsProcessingFeedback
 from ..algorithms.stage import Cancelled
 from ..algorithms.stages import less_memory
 from .declared import on_command_line
-from .feedback import is_step
+from .feedback import ProgressBar, is_step
 
 _CANCELLED = "Cancelled; nothing was written."
 
@@ -27,7 +27,8 @@ def as_processing_errors(
     traceback.
     """
     try:
-        yield
+        with _on_its_own_line(feedback):
+            yield
     except Cancelled:
         if feedback is None or not feedback.isCanceled() or on_command_line():
             raise QgsProcessingException(cancelled) from None
@@ -40,3 +41,14 @@ def as_processing_errors(
     except OSError as error:
         where = f" ({error.filename})" if error.filename else ""
         raise QgsProcessingException(f"A file can't be read or written{where}: {error.strerror or error}.") from error
+
+
+@contextmanager
+def _on_its_own_line(feedback: Optional[QgsProcessingFeedback]) -> Iterator[None]:
+    """End the line of progress on the command line where an error leaves it unfinished."""
+    try:
+        yield
+    except Exception:
+        if feedback is not None:
+            ProgressBar(feedback).end_line()
+        raise

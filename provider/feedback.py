@@ -5,10 +5,31 @@ from __future__ import annotations
 import time
 from typing import Any, Optional
 
-from qgis.core import QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
+from qgis.core import QgsApplication, QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
 
 from ..algorithms.stage import Cancelled, Monitor, Param, Stage
+from .declared import on_command_line
 from .run_log import current_log
+
+
+class ProgressBar:
+    """The line of numbers and dots that ``qgis_process`` draws; it has to end where a sentence begins."""
+
+    def __init__(self, feedback: QgsProcessingFeedback) -> None:
+        # What a step says is put on a line by its chain; with --json nothing is drawn.
+        is_drawn = on_command_line() and not is_step(feedback) and "--json" not in QgsApplication.arguments()
+        self._feedback = feedback if is_drawn else None
+        self._drawn = 0
+
+    def end_line(self) -> None:
+        """Begin a new line if something was drawn since the last one."""
+        if self._feedback is None:
+            return
+        # A dot or number stands for 2.5 %; after the last one QGIS ends the line itself.
+        drawn = int(self._feedback.progress() / 2.5)
+        if self._drawn < drawn < 40:
+            self._feedback.pushInfo("")
+        self._drawn = drawn
 
 
 class FeedbackMonitor(Monitor):
@@ -29,6 +50,7 @@ class FeedbackMonitor(Monitor):
     ) -> None:
         super().__init__()
         self._feedback, self._stage, self._given = feedback, stage, given or {}
+        self._bar = ProgressBar(feedback)
 
     def progress(self, fraction: float) -> None:
         """Move the progress bar, or raise :class:`Cancelled`."""
@@ -44,18 +66,21 @@ class FeedbackMonitor(Monitor):
             log.resolved(values)
         for name, value in values.items():
             if self._given.get(name) is None:
+                self._bar.end_line()
                 self._feedback.pushInfo(self._sentence(name, value))
 
     def warn(self, sentence: str) -> None:
         """Log and keep a warning."""
         super().warn(sentence)
         self._note(sentence)
+        self._bar.end_line()
         self._feedback.pushWarning(sentence)
 
     def inform(self, sentence: str) -> None:
         """Log and keep a sentence."""
         super().inform(sentence)
         self._note(sentence)
+        self._bar.end_line()
         self._feedback.pushInfo(sentence)
 
     def _note(self, sentence: str) -> None:
@@ -91,18 +116,21 @@ class ChainFeedback(QgsProcessingMultiStepFeedback):
 
     def __init__(self, feedback: QgsProcessingFeedback) -> None:
         super().__init__(1, feedback)
+        self._bar = ProgressBar(feedback)
         self._shown: set[str] = set()
         self._began: Optional[float] = None
 
     def setProgressText(self, text: str) -> None:  # noqa: N802 - QGIS asks for these names
         """Log the title of a step, after the seconds of the one before it."""
         self.end_step()
+        self._bar.end_line()
         self._began = time.monotonic()
         super().setProgressText(text)
 
     def end_step(self) -> None:
         """Log the seconds of the step that runs."""
         if self._began is not None:
+            self._bar.end_line()
             super().pushInfo(f"{time.monotonic() - self._began:.1f} s")
             self._began = None
 
@@ -113,12 +141,14 @@ class ChainFeedback(QgsProcessingMultiStepFeedback):
         new = [fact for fact in facts if fact not in self._shown]
         self._shown.update(new)
         if new:
+            self._bar.end_line()
             super().pushInfo((_SAMPLING if is_sampling else "") + _BETWEEN.join(new))
 
     def pushWarning(self, warning: str) -> None:  # noqa: N802 - QGIS asks for this name
         """Log a warning that was not shown yet."""
         if warning not in self._shown:
             self._shown.add(warning)
+            self._bar.end_line()
             super().pushWarning(warning)
 
 

@@ -60,7 +60,7 @@ from .run_log import RunLog, about_run, complete_page, run_log
 from .styles import cloud_style, layer_style, show_on_load
 from .text_files import file_parameter, write_text
 from .texts import tr
-from .vectors import SOURCE_TYPES, plain
+from .vectors import SOURCE_TYPES, number
 
 # Progress when clouds are read, when the stage is done, and when the cloud is written, 0 to 1.
 _READ, _RUN, _WRITTEN = 0.15, 0.8, 0.97
@@ -231,6 +231,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         cloud = clouds if self.stage.merges else clouds[0] if clouds else None
         tunables = self.job.tunables
         outcome = run_stage(self.stage, cloud, reference, monitor.part(_READ, _RUN), input_layers, **tunables)
+        self._warn_if_nothing_was_selected(clouds, outcome, monitor)
         if self.stage.creates and outcome.cloud is not None:
             outcome.cloud = named(outcome.cloud, self.job.crs)
         place = place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
@@ -240,6 +241,14 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def _points(self) -> int:
         return sum(count_points(path, self.job.box) for path in self.job.paths)
+
+    def _warn_if_nothing_was_selected(self, clouds: list[Cloud], outcome: Outcome, monitor: Monitor) -> None:
+        """Warn where a selection by the user is the whole cloud: an area or a limit was forgotten."""
+        is_whole = self.stage.selects and self.job.box is None and len(outcome.cloud) == len(clouds[0])
+        if self._alone and is_whole:
+            monitor.warn(
+                f"All {len(clouds[0]):,} points stay: no extent is set, nor anything else that leaves points out."
+            )
 
     def _log_earlier_dimensions(self, clouds: list[Cloud], monitor: Monitor) -> None:
         """Log which dimensions of earlier runs are read; of a chain they are those of its own steps."""
@@ -253,10 +262,10 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         numbers = {}
         for tunable in automatic_numbers(self.stage):
             given = self.job.tunables[tunable.name]
-            numbers[used_name(tunable)] = plain(monitor.values.get(tunable.name) if given is None else given)
+            numbers[used_name(tunable)] = number(monitor.values.get(tunable.name) if given is None else given)
         if outcome.report is not None:
             for measure in self.stage.measures:
-                numbers[measure.name.upper()] = plain(outcome.report.values[measure.name])
+                numbers[measure.name.upper()] = number(outcome.report.values[measure.name])
         return numbers
 
     def _write_cloud(self, cloud: Cloud, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> str:

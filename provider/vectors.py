@@ -117,6 +117,12 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
+def number(value: Any) -> Any:
+    """Return a number of a run as QGIS lists it at the end of the log: with the seven digits that 32 bits hold."""
+    value = plain(value)
+    return float(f"{value:.7g}") if isinstance(value, float) else value
+
+
 def _line(coordinates: np.ndarray, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsLineString:
     return QgsLineString(*(column.tolist() for column in np.asarray(to_map(np.asarray(coordinates))).T))
 

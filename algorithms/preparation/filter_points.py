@@ -141,8 +141,6 @@ def filter_points(
             "Minimum and maximum value are limits of a dimension; name it (Intensity, NormalZ) or set none."
         )
     kept &= _within(values, low, high, ("low", "high"), monitor)
-    if not len(numbers) and not invert and {min_height, max_height, low, high} == {None}:
-        monitor.warn("No limit is set (no classes, heights or values of a dimension), so all points stay.")
     monitor.progress(1.0)
     return np.flatnonzero(~kept if invert else kept)
 

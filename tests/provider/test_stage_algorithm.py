@@ -54,13 +54,30 @@ def test_the_log_has_what_is_taken_of_an_earlier_run(provider, context, log, tow
     assert "The cloud has HeightAboveGround of an earlier run; they are taken as they are." in log.infos
 
 
-def test_the_log_rounds_what_the_results_have_in_full(provider, context, log, out):
-    xyz = np.column_stack([np.arange(9.0), np.arange(9.0), np.full(9, 12.345678)])
+@pytest.mark.parametrize(
+    ("name", "given", "whole"),
+    [
+        ("clipcloud", {}, True),
+        ("filterpoints", {}, True),
+        ("filterpoints", {"DIMENSION": "Z"}, True),
+        ("filterpoints", {"DIMENSION": "Z", "LOW": -1.0}, True),
+        ("filterpoints", {"CLASSES": "6"}, False),
+        ("clipcloud", {"EXTENT": "0,1e6,0,1e6"}, False),
+        ("toylift", {}, False),
+    ],
+)
+def test_a_selection_of_everything_is_reported(provider, context, log, town_file, out, name, given, whole):
+    run(name, {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), **given}, context, log)
+    sentence = "All 400 points stay: no extent is set, nor anything else that leaves points out."
+    assert log.warnings == [sentence] * whole
+
+
+def test_the_log_has_four_digits_and_the_results_seven(provider, context, log, out):
+    xyz = np.column_stack([np.arange(9.0), np.arange(9.0), np.full(9, 12345.678)])
     write_cloud(create_cloud({"xyz": xyz, "classification": np.full(9, 2)}, "EPSG:28992"), out / "in.las")
     result = run("toylift", {"INPUT": str(out / "in.las"), "OUTPUT": str(out / "a.las")}, context, log)
-    assert "Base, automatic: 12.35 m" in log.infos
-    assert result["BASE_USED"] == pytest.approx(12.345678, abs=1e-3)
-    assert result["BASE_USED"] != 12.35
+    assert "Base, automatic: 12350 m" in log.infos
+    assert result["BASE_USED"] == 12345.68
 
 
 def test_a_given_value_is_returned_and_not_called_automatic(provider, context, log, town_file, out):

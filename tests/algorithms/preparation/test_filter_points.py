@@ -67,16 +67,6 @@ def test_log_shows_the_range_of_what_is_not_limited():
     assert monitor.values == {"max_height": 2.6, "low": 0.0}
 
 
-def test_a_filter_without_limits_says_that_it_filters_nothing():
-    reported = []
-    for limits in ({}, {"dimension": "Z"}, {"classes": "2"}, {"dimension": "Z", "low": 0.0}, {"max_height": 9.0}):
-        monitor = Monitor()
-        filter_points(XYZ, CLASSES, HEIGHTS, np.arange(6), monitor=monitor, **limits)
-        reported.append(monitor.warnings)
-    sentence = "No limit is set (no classes, heights or values of a dimension), so all points stay."
-    assert reported == [[sentence], [sentence], [], [], []]
-
-
 def test_limits_may_be_as_large_as_values_are():
     """Times of some scanners count from 1970 and are past 10^9."""
     times = 1.7e9 + np.arange(6.0)
