@@ -76,7 +76,7 @@ def test_the_log_has_four_digits_and_the_results_seven(provider, context, log, o
     xyz = np.column_stack([np.arange(9.0), np.arange(9.0), np.full(9, 12345.678)])
     write_cloud(create_cloud({"xyz": xyz, "classification": np.full(9, 2)}, "EPSG:28992"), out / "in.las")
     result = run("toylift", {"INPUT": str(out / "in.las"), "OUTPUT": str(out / "a.las")}, context, log)
-    assert "Base, automatic: 12350 m" in log.infos
+    assert "Base, automatic: 12,350 m" in log.infos
     assert result["BASE_USED"] == 12345.68
 
 
