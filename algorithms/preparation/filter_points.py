@@ -120,7 +120,8 @@ def filter_points(
 
     References
     ----------
-    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2 (heights of 0.3 and 2.5 m). [hrutka2022]
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.2
+    (heights of 0.3 and 2.5 m). [hrutka2022]
 
     Examples
     --------

@@ -52,7 +52,8 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
 
     References
     ----------
-    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2. [hrutka2022]
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.2.
+    [hrutka2022]
 
     Examples
     --------

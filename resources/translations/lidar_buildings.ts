@@ -4864,7 +4864,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Ester, M., Kriegel, H.-P., Sander, J., Xu, X., 1996. A density-based algorithm for discovering clusters in large spatial databases with noise. KDD-96, 226-231. Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.3.</source>
+        <source>Ester, M., Kriegel, H.-P., Sander, J., Xu, X., 1996. A density-based algorithm for discovering clusters in large spatial databases with noise. KDD-96, 226-231. Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.3.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5476,15 +5476,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2 (heights of 0.3 and 2.5 m).</source>
+        <source>Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.2 (heights of 0.3 and 2.5 m).</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2.</source>
+        <source>Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.2.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.3. Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting. Communications of the ACM 24 (6), 381-395. Moisan, L., Stival, B., 2004. A probabilistic criterion to detect rigid point matches. International Journal of Computer Vision 57 (3), 201-218.</source>
+        <source>Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.3. Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting. Communications of the ACM 24 (6), 381-395. Moisan, L., Stival, B., 2004. A probabilistic criterion to detect rigid point matches. International Journal of Computer Vision 57 (3), 201-218.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8900,7 +8900,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Zhang, W., Qi, J., Wan, P., Wang, H., Xie, D., Wang, X., Yan, G., 2016. An easy-to-use airborne LiDAR data filtering method based on cloth simulation. Remote Sensing 8 (6), 501. Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2.</source>
+        <source>Zhang, W., Qi, J., Wan, P., Wang, H., Xie, D., Wang, X., Yan, G., 2016. An easy-to-use airborne LiDAR data filtering method based on cloth simulation. Remote Sensing 8 (6), 501. Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.2.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
