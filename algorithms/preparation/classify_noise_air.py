@@ -50,8 +50,8 @@ def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling]
 
     References
     ----------
-    Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data. [carrilho2018] The stage is
-    this project's.
+    Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data. [carrilho2018]
+    The stage is this project's.
 
     Examples
     --------

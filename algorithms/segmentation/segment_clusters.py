@@ -90,8 +90,9 @@ def segment_clusters(
     References
     ----------
     Ester, M., Kriegel, H.-P., Sander, J., Xu, X., 1996. A density-based algorithm for discovering clusters in large
-    spatial databases with noise. KDD-96, 226-231. [ester1996] Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based
-    point cloud segmentation and building detection, section 2.3. [hrutka2022]
+    spatial databases with noise. KDD-96, 226-231. [ester1996]
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.3.
+    [hrutka2022]
 
     Examples
     --------

@@ -133,9 +133,11 @@ def segment_planes_ransac(
     References
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.3.
-    [hrutka2022] Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting.
-    Communications of the ACM 24 (6), 381-395. [fischler1981] Moisan, L., Stival, B., 2004. A probabilistic criterion to
-    detect rigid point matches. International Journal of Computer Vision 57 (3), 201-218. [moisan2004]
+    [hrutka2022]
+    Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting. Communications of the
+    ACM 24 (6), 381-395. [fischler1981]
+    Moisan, L., Stival, B., 2004. A probabilistic criterion to detect rigid point matches. International Journal of
+    Computer Vision 57 (3), 201-218. [moisan2004]
 
     Examples
     --------

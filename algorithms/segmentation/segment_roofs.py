@@ -131,9 +131,9 @@ def segment_roofs(
     References
     ----------
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
-    and the k-means concept, section 4. [santos2019] Sampath, A., Shan, J., 2007. Building boundary tracing and
-    regularization from airborne LiDAR point clouds. Photogrammetric Engineering and Remote Sensing 73 (7), 805-812.
-    [sampath2007]
+    and the k-means concept, section 4. [santos2019]
+    Sampath, A., Shan, J., 2007. Building boundary tracing and regularization from airborne LiDAR point clouds.
+    Photogrammetric Engineering and Remote Sensing 73 (7), 805-812. [sampath2007]
 
     Examples
     --------

@@ -129,8 +129,9 @@ def classify_ground_cloth(
     References
     ----------
     Zhang, W., Qi, J., Wan, P., Wang, H., Xie, D., Wang, X., Yan, G., 2016. An easy-to-use airborne LiDAR data filtering
-    method based on cloth simulation. Remote Sensing 8 (6), 501. [zhang2016] Hrutka, B. P., Siki, Z., Takács, B., 2022.
-    Voxel-based point cloud segmentation and building detection, section 2.2. [hrutka2022]
+    method based on cloth simulation. Remote Sensing 8 (6), 501. [zhang2016]
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 2.2.
+    [hrutka2022]
 
     Examples
     --------

@@ -75,7 +75,8 @@ def classify_multipath(
     References
     ----------
     Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
-    Photogrammetry and Remote Sensing 33 (B4), 110-117. [axelsson2000] The search for multipath is this project's.
+    Photogrammetry and Remote Sensing 33 (B4), 110-117. [axelsson2000]
+    The search for multipath is this project's.
 
     Examples
     --------
