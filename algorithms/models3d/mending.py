@@ -17,8 +17,12 @@ from .solid_levels import Levels, turns_around
 from .solids import DECIMALS, ROOF, Solid
 
 # Rounds in which positions where too many walls meet are cleared, in which small parts and high cells get another
-# plane, and in which those with faults do.
+# plane and parts with faults are lowered, and in which parts with faults get another plane.
 _CLEARINGS, _ROUNDS, _MENDINGS = 60, 10, 40
+
+# How far (m) a part with a fault is lowered first: more than corners may be apart, and less than heights of points are
+# off. Where roofs cross, corners move along, and no longer meet an edge by chance.
+_LOWERED = 0.02
 
 # Parts of a footprint with less than this share of its area are not modelled.
 _SLIVER = 0.01
@@ -62,9 +66,9 @@ def mended(
 
     Notes
     -----
-    A part with a fault takes the plane of a neighbor or becomes level, whichever is nearer to its points. A level part
-    with a fault always joins a neighbor. All other parts stay as they are. Around a corner above its limit a part is
-    cut off, which takes a plane that keeps to the limit.
+    A part with a fault is lowered a little. If it still has one, it takes the plane of a neighbor or becomes level,
+    whichever is nearer to its points. A level part with a fault always joins a neighbor. All other parts stay as they
+    are. Around a corner above its limit a part is cut off, which takes a plane that keeps to the limit.
     """
     if limits is not None:
         # Its cells may be cut; those of the simpler levels stay.
@@ -81,7 +85,7 @@ def mended(
         found = [(piece, *one) for piece in pieces for one in faults_of(piece.solid).items()]
         if not found:
             return [piece.solid for piece in pieces], ""
-        if not mending.relabel([(piece, face) for piece, face, _ in found]):
+        if not mending.relabel([(piece, face) for piece, face, _ in found], count < _ROUNDS):
             return [], found[0][2]
     return [], "no solid could be made"
 
@@ -178,6 +182,7 @@ class _Mending:
     ) -> None:
         self.partition, self.xyz, self.limits, self.percentile = partition, xyz, limits, percentile
         self.level: set[int] = set()
+        self.lowered: set[int] = set()
         self._measure()
 
     def _measure(self) -> None:
@@ -325,8 +330,11 @@ class _Mending:
         _, group = components(self.beside[both, 0], self.beside[both, 1], len(is_near))
         return np.flatnonzero(group == group[cell])
 
-    def relabel(self, faces: list[tuple[_Piece, int]]) -> bool:
-        """Give the smallest part beside each face another plane; return whether any had one to take."""
+    def relabel(self, faces: list[tuple[_Piece, int]], may_lower: bool) -> bool:
+        """Give the smallest part beside each face another plane; return whether any had one to take.
+
+        With ``may_lower`` that is its own at first, a little lower.
+        """
         is_changed, touched = False, np.zeros(len(self.partition.label), bool)
         for piece, face in faces:
             roofs = [cells for cells, kind in zip(piece.cells, piece.solid.kinds) if kind == ROOF]
@@ -336,7 +344,11 @@ class _Mending:
             if not touched[part].any():
                 touched[part] = True
                 own = int(self.partition.label[part[0]])
-                is_changed |= self._take(part, self._neighbors(part), own not in self.level)
+                if may_lower and own not in self.lowered:
+                    self.lowered.add(self._add_plane(part, self.partition.coefficients[own] - [0.0, 0.0, _LOWERED]))
+                    is_changed = True
+                else:
+                    is_changed |= self._take(part, self._neighbors(part), own not in self.level)
         return is_changed
 
     def _neighbors(self, part: np.ndarray) -> list[int]:
@@ -377,11 +389,19 @@ class _Mending:
 
         best, coefficients = min(options, key=loss)
         if best == new:
-            partition.coefficients = np.vstack([partition.coefficients, coefficients])
-            partition.cost = np.column_stack([partition.cost, partition.cost[:, own]])
-            self.level.add(best)
-        partition.label[part] = best
+            self.level.add(self._add_plane(part, coefficients))
+        else:
+            partition.label[part] = best
         return best != own
+
+    def _add_plane(self, part: np.ndarray, coefficients: np.ndarray) -> int:
+        """Give a part a plane of its own; return the number of that plane."""
+        partition, new = self.partition, len(self.partition.coefficients)
+        own = partition.label[part[0]]
+        partition.coefficients = np.vstack([partition.coefficients, coefficients])
+        partition.cost = np.column_stack([partition.cost, partition.cost[:, own]])
+        partition.label[part] = new
+        return new
 
     def _level_plane(self, rows: np.ndarray, corners: np.ndarray, own: int) -> np.ndarray:
         """Return the level plane (3,) at the height of some points, not above what corners may have."""

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.models3d import mending
 from lidar_buildings.algorithms.models3d.heights_around import HeightsAround
 from lidar_buildings.algorithms.models3d.mending import mended
 from lidar_buildings.algorithms.models3d.roof_partition import Partition, empty_partition
 from lidar_buildings.algorithms.models3d.roof_planes import RoofPlanes, find_roof_planes, with_level_patches
-from lidar_buildings.algorithms.models3d.solid_faults import fault_of
+from lidar_buildings.algorithms.models3d.solid_faults import fault_of, faults_of
 from lidar_buildings.algorithms.models3d.solids import ROOF
 
 RING = np.array([[0, 0], [12, 0], [12, 8], [0, 8], [0, 0]], float)
@@ -142,6 +143,26 @@ def test_a_fault_stays_where_it_is():
     assert why == ""
     assert all(fault_of(solid) == "" for solid in solids)
     assert heights_of(solids).tolist() == [6.0, 6.5]
+
+
+def test_a_part_with_a_fault_is_lowered_before_it_takes_another_plane(monkeypatch):
+    """Edges touch by chance where roofs cross, and no longer 2 cm lower."""
+    xyz = level_points()
+    xyz[xyz[:, 0] > 8, 2] = 9.0
+    found = []
+
+    def faulty_once(solid):
+        found.append(faults_of(solid))
+        roofs = [face for face, kind in enumerate(solid.kinds) if kind == ROOF]
+        highest = max(roofs, key=lambda face: solid.vertices[solid.faces[face][0], 2].max())
+        return found[-1] if len(found) > 1 else {highest: "edges of a face touch"}
+
+    monkeypatch.setattr(mending, "faults_of", faulty_once)
+    parts = partition(xyz, [8.0], [[0, 0, 6.0], [0, 0, 9.0]], lambda x: int(x > 8))
+    solids, why = mended(parts, 0.0, xyz, HeightsAround(xyz), 70.0)
+    assert why == ""
+    assert found == [{}, {}]
+    assert heights_of(solids).tolist() == [6.0, 8.98]
 
 
 def test_planes_meet_where_they_intersect():
