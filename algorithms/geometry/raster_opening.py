@@ -27,8 +27,8 @@ def open_surface(surface: np.ndarray, radius: int, absent: Optional[np.ndarray] 
     Notes
     -----
     An octagon is a square swept over a diamond, a diamond is one diagonal line swept over the other, so four
-    running minima and four running maxima do it. Each takes the extremes of one cell and the next, of two and the next
-    two, of four and the next four: whole arrays at a time, and a step more for a line twice as long.
+    running minima and four running maxima do it. Each takes the extremes of one cell and the next, then of two and the
+    next two, then of four and the next four. These are whole arrays, and a line twice as long takes one step more.
     """
     if absent is None:
         absent = np.zeros(surface.shape, bool)

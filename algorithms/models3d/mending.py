@@ -16,8 +16,8 @@ from .solid_faults import faults_of
 from .solid_levels import Levels, turns_around
 from .solids import DECIMALS, ROOF, Solid
 
-# Rounds in which positions where too many walls meet are cleared, in which small parts and high cells get another
-# plane and parts with faults are lowered, and in which parts with faults get another plane.
+# Most rounds that clear positions where too many walls meet, that lower parts with faults and give small parts and high
+# cells another plane, and that give parts with faults another plane.
 _CLEARINGS, _ROUNDS, _MENDINGS = 60, 10, 40
 
 # How far (m) a part with a fault is lowered first: more than corners may be apart, and less than heights of points are

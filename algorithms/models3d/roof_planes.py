@@ -23,8 +23,8 @@ _REFIT = 0.3
 # Points on top that lie on no plane form a patch where they are no farther from each other than this (spacings).
 _PATCH_SPACINGS = 2.0
 
-# The points of a plane are off that of a larger neighbor by at most this many times as much as points of both are off
-# their own (root mean squares): a quarter more is what the end of a fit to some dozens of points does by chance.
+# A larger plane fits the points of a smaller one as well where these are off it by at most this many times the greater
+# of both planes' own deviations (root mean squares). Fits to some dozens of points differ by a quarter at their ends.
 _FITS_AS_WELL = 1.25
 
 # Rounds in which points choose the best plane of their neighborhood.
