@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, members
 from ..geometry.rings import signed_area
 from ..packages import spatial
 
@@ -16,7 +16,7 @@ from ..packages import spatial
 class Tracing:
     """Triangles over points, and the piece that each is part of.
 
-    The half-edge ``3 t + i`` lies opposite corner i of triangle t and has the triangle on its left.
+    An edge lies opposite a corner of its triangle and has the triangle on its left.
     """
 
     xy: np.ndarray  #: (n, 2): the points (m)
@@ -33,31 +33,13 @@ class Tracing:
 
     @property
     def parts(self) -> list[np.ndarray]:
-        """The closed ring (m) around each piece, counterclockwise."""
-        starts = self.triangles[:, [1, 2, 0]].ravel()
-        found: list = [[] for _ in range(int(self.face.max(initial=-1)) + 1)]
-        for face, edges in self._rings(starts):
-            points = self.xy[starts[edges]]
-            found[face].append(np.concatenate([points, points[:1]]))
-        return [max(rings, key=signed_area) for rings in found]
-
-    def _rings(self, starts: np.ndarray) -> list:
-        """Return the borders of the pieces, as pairs of piece and half-edges (with ``starts``) in order."""
-        across = np.where(self.neighbors >= 0, self.face[self.neighbors], -1).ravel()
-        is_border = (np.repeat(self.face, 3) >= 0) & (np.repeat(self.face, 3) != across)
-        border = np.flatnonzero(is_border)
-        following = _next_on_border(border, is_border, self.neighbors)
-        successor = dict(zip(border.tolist(), following.tolist()))
-        start_of = dict(zip(border.tolist(), starts[border].tolist()))
-        found = []
-        while successor:
-            first = next(iter(successor))
-            edges, edge = [], first
-            while edge in successor:
-                edges.append(edge)
-                edge = successor.pop(edge)
-            found += [(int(self.face[first // 3]), np.array(ring)) for ring in _simple_rings(edges, start_of)]
-        return found
+        """The closed ring (m) around each piece, counterclockwise: the largest of one that touches itself."""
+        across = np.where(self.neighbors >= 0, self.face[self.neighbors], -1)
+        triangle, corner = np.nonzero((self.face[:, None] >= 0) & (across != self.face[:, None]))
+        start, end = (self.triangles[triangle, (corner + step) % 3] for step in (1, 2))
+        edges = members(self.face[triangle] + 1).values()
+        rings = ([self.xy[ring] for ring in _simple_rings(start[own], end[own])] for own in edges)
+        return [max(of_piece, key=signed_area) for of_piece in rings]
 
 
 def triangulated(xy: np.ndarray) -> Optional[Any]:
@@ -116,33 +98,25 @@ def pieces_of(value: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
     return components(rows, neighbors[rows, sides], len(value))[1]
 
 
-def _next_on_border(border: np.ndarray, is_border: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
-    """Return the half-edge that follows each on the border, turning about its end through its own triangles."""
-    following = 3 * (border // 3) + (border % 3 + 1) % 3
-    inner = np.flatnonzero(~is_border[following])
-    while len(inner):
-        triangle, corner = np.divmod(following[inner], 3)
-        other = neighbors[triangle, corner]
-        twin = np.argmax(neighbors[other] == triangle[:, None], axis=1)
-        following[inner] = 3 * other + (twin + 1) % 3
-        inner = inner[~is_border[following[inner]]]
-    return following
-
-
-def _simple_rings(edges: list, starts: dict) -> list:
-    """Split a closed walk of half-edges at the points it visits twice, so that no ring touches itself."""
-    rings: list = []
-    walk: list = []
-    position: dict = {}
-    for edge in edges:
-        point = starts[edge]
+def _simple_rings(start: np.ndarray, end: np.ndarray) -> list[list[int]]:
+    """Return closed rings of points along edges (k,) around a piece, none of which visits a point twice."""
+    following: dict[int, list[int]] = {}
+    for one, other in zip(start.tolist(), end.tolist()):
+        following.setdefault(one, []).append(other)
+    walk = [int(start[0])]
+    position, rings = {walk[0]: 0}, []
+    while walk:
+        if not following[walk[-1]]:
+            walk = [point for point, others in following.items() if others][:1]
+            position = {point: 0 for point in walk}
+            continue
+        point = following[walk[-1]].pop()
         if point in position:
-            start = position[point]
-            rings.append(walk[start:])
-            for closed in walk[start:]:
-                del position[starts[closed]]
-            del walk[start:]
-        position[point] = len(walk)
-        walk.append(edge)
-    rings.append(walk)
+            rings.append([*walk[position[point] :], point])
+            for closed in walk[position[point] + 1 :]:
+                del position[closed]
+            del walk[position[point] + 1 :]
+        else:
+            position[point] = len(walk)
+            walk.append(point)
     return rings

@@ -25,7 +25,7 @@ class _Rules:
     most: float = 0.5
     # Width of a column (m): a step has several points in it from 50 points per m² on.
     column: float = 0.15
-    # The foot of a wall of which nothing is seen before it is this quantile of its points around the opening.
+    # The foot of a wall of which nothing is seen before it is this quantile of the heights of its points.
     foot: float = 0.01
 
 
@@ -58,16 +58,11 @@ class Approach:
         top = _highest(_between(self.before, box), box, low + _RULES.step)
         is_seen = np.isfinite(top)
         if is_seen.mean() < _RULES.most:
-            return bool(low - self._foot(box) <= _RULES.step)
+            # Nothing is seen before the opening: the foot of the wall is taken for the ground.
+            return bool(low - np.quantile(self.wall[:, 1], _RULES.foot) <= _RULES.step)
         seen_wall = _highest(_between(self.wall, box), box, low - _RULES.step) > low - _RULES.step - _RULES.below
         is_reached = top[is_seen] >= low - _RULES.step
         return bool(is_reached.mean() >= _RULES.most > seen_wall.mean())
-
-    def _foot(self, box: np.ndarray) -> float:
-        """Return the lowest position (m) up the wall around an opening, that of its sill where the wall ends there."""
-        around = [[box[0, 0] - BEFORE, 0.0], [box[1, 0] + BEFORE, 0.0]]
-        near = np.concatenate([_between(some, np.array(around))[:, 1] for some in (self.wall, self.before)])
-        return float(min(np.quantile(near, _RULES.foot), box[0, 1])) if len(near) else float(box[0, 1])
 
 
 def _between(positions: np.ndarray, box: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..geometry.line_segments import is_valid
+from ..geometry.polygon_overlap import meeting_boxes
 from ..stage import Monitor
 from .facade_frame import Frame, intersection_line
 from .facade_outline import ring_of_lines
@@ -54,18 +55,12 @@ def with_common_borders(facades: Sequence[Facade], reach: float, monitor: Monito
 
 def _near_pairs(facades: Sequence[Facade], reach: float, monitor: Monitor) -> Iterator[tuple[int, int]]:
     """Yield the pairs of facades whose boxes, with a margin ``reach`` (m) around each, overlap."""
-    boxes = np.array([_box(facade, reach) for facade in facades]).reshape(-1, 2, 3)
-    low, high = boxes[:, 0], boxes[:, 1]
-    for i in range(len(facades)):
+    corners = [facade.frame.space(facade.ring) for facade in facades]
+    boxes = np.array([(ring.min(axis=0) - reach, ring.max(axis=0) + reach) for ring in corners]).reshape(-1, 2, 3)
+    for i, j in zip(*meeting_boxes(boxes, boxes)):
         monitor.progress(i / len(facades))
-        overlap = ((low[i] <= high[i + 1 :]) & (low[i + 1 :] <= high[i])).all(axis=1)
-        for j in np.flatnonzero(overlap):
-            yield i, i + 1 + int(j)
-
-
-def _box(facade: Facade, margin: float) -> tuple[np.ndarray, np.ndarray]:
-    corners = facade.frame.space(facade.ring)
-    return corners.min(axis=0) - margin, corners.max(axis=0) + margin
+        if i < j:
+            yield int(i), int(j)
 
 
 def _flat(frame: Frame, point: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import members
 from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt, Seed
 from ..sampling.cloud_sampling import CloudSampling
-from ..segmentation.least_squares_planes import Planes, planes_of
+from ..segmentation.least_squares_planes import Planes, off_planes, planes_of
 from ..segmentation.segment_planes_ransac import segment_planes_ransac
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, ProgressOnly, stage
 from .common_borders import with_common_borders
@@ -31,8 +31,6 @@ _ON_PLANE = 3.0
 
 # Points among which walls are searched.
 ALL_POINTS, FACADE_LINES = "all points", "facade lines"
-
-_MOMENTS = ("count", "center", "covariance")
 
 # Distance (m) from a corner within which the border of a facade, and its outer side, depend on the facade beside it.
 AROUND_CORNER = 5.0
@@ -271,36 +269,19 @@ def merged_planes(xyz: np.ndarray, segment_id: np.ndarray, tolerance: float, mon
 
 def _walls_of(pieces: Planes, tolerance: float, monitor: Monitor) -> np.ndarray:
     """Return the wall (m,) from 1 of each plane: the largest first takes in what fits it, and is fitted again."""
-    walls = Planes(pieces.count.astype(float), pieces.center.copy(), pieces.covariance.copy())
-    normal = pieces.normal.copy()
-    # The number of the wall that a plane begins, 0 where it begins none.
-    begins, wall = np.zeros(len(pieces), np.int64), np.zeros(len(pieces), np.int64)
+    wall, n_walls = np.zeros(len(pieces), np.int64), 0
+    center, normal = np.empty((2, len(pieces), 3))
     for done, piece in enumerate(np.argsort(-pieces.count, kind="stable")):
-        offset = np.einsum("ij,ij->i", pieces.center[piece] - walls.center, normal)
-        near = np.flatnonzero((begins > 0) & (np.abs(offset) <= tolerance))
-        off = _deviations(pieces.chosen([piece]), walls.chosen(near))
-        if len(near) and off.min() <= tolerance:
-            best = near[np.argmin(off)]
-            both = _stacked(walls.chosen([best]), pieces.chosen([piece])).merged(np.zeros(2, np.int64), 1)
-            for name in _MOMENTS:
-                getattr(walls, name)[best] = getattr(both, name)[0]
-            normal[best] = both.normal[0]
-        else:
-            best = piece
-            begins[piece] = begins.max() + 1
-        wall[piece] = begins[best]
+        spread = np.broadcast_to(pieces.covariance[piece], (n_walls, 6))
+        off = off_planes(pieces.center[piece] - center[:n_walls], spread, normal[:n_walls])
+        best = int(np.argmin(off)) if n_walls and off.min() <= tolerance else n_walls
+        n_walls = max(n_walls, best + 1)
+        wall[piece] = best + 1
+        whole = pieces.chosen(wall == best + 1)
+        whole = whole.merged(np.zeros(len(whole), np.int64), 1)
+        center[best], normal[best] = whole.center[0], whole.normal[0]
         monitor.progress((done + 1) / len(pieces))
     return wall
-
-
-def _deviations(small: Planes, large: Planes) -> np.ndarray:
-    """Return how far (m,) (root mean square, m) the points of one plane lie off each of the planes ``large``."""
-    last = len(large)
-    return _stacked(large, small).deviation(np.full(last, last), np.arange(last))
-
-
-def _stacked(one: Planes, other: Planes) -> Planes:
-    return Planes(*(np.concatenate([getattr(plane, name) for plane in (one, other)]) for name in _MOMENTS))
 
 
 def split_at_gaps(xyz: np.ndarray, segment_id: np.ndarray, gap: float) -> np.ndarray:

@@ -170,10 +170,7 @@ def _near(facade: Facade, xyz: np.ndarray, margin: float) -> np.ndarray:
     """Return the points in the box around a facade with a margin (m) on all sides."""
     corners = facade.rings[0]
     low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
-    inside = np.ones(len(xyz), bool)
-    for axis in range(3):
-        inside &= (xyz[:, axis] >= low[axis]) & (xyz[:, axis] <= high[axis])
-    return np.flatnonzero(inside)
+    return np.flatnonzero(((xyz >= low) & (xyz <= high)).all(axis=1))
 
 
 def _holes(facade: Facade, openings: list[Opening]) -> list[np.ndarray]:

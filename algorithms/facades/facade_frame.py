@@ -7,8 +7,6 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import distinct
-
 # Planes that meet at a smaller angle (sine: 5°) have no intersection line that noise leaves in place.
 _LEAST_SINE = np.sin(np.radians(5.0))
 
@@ -49,11 +47,6 @@ def frame_of(origin: np.ndarray, normal: np.ndarray) -> Frame:
     return Frame(origin, along, np.cross(normal, along), normal)
 
 
-def turned(frame: Frame) -> Frame:
-    """Return the frame of the same plane seen from its other side."""
-    return frame_of(frame.origin, -frame.normal)
-
-
 def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np.ndarray]]:
     """Return a point (3,), m, and the unit direction (3,) of the line that two planes share, None if nearly parallel.
 
@@ -68,13 +61,3 @@ def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np
     offsets = [plane.normal @ (plane.origin - middle) for plane in (one, other)]
     point = middle + np.linalg.solve(np.array([one.normal, other.normal, direction]), [*offsets, 0.0])
     return point, direction
-
-
-def thinned(xyz: np.ndarray, size: float = 0.1) -> np.ndarray:
-    """Return the means (m, 3) of the points (n, 3) in each cube of ``size`` (m)."""
-    low = xyz.min(axis=0)
-    cell = np.floor((xyz - low) / size).astype(np.int64)
-    shape = cell.max(axis=0) + 1
-    which = distinct((cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2])[1]
-    count = np.bincount(which)
-    return np.column_stack([np.bincount(which, column) / count for column in xyz.T])

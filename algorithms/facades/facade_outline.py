@@ -8,7 +8,6 @@ from typing import Any, Optional
 import numpy as np
 
 from ..footprints.outline_pieces import sampled
-from ..geometry.groups import items
 from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
 from ..geometry.ring_directions import direction_weights, main_directions
 from ..geometry.ring_drawing import Prices, draw_ring
@@ -93,7 +92,7 @@ def outline_of(positions: np.ndarray, drawing: Drawing) -> Optional[Outline]:
         return None
     seen = ring_area(traced)
     if drawing.complete:
-        traced = _divided(completed(traced), spacing)
+        traced = completed(traced)
     hull = spatial.ConvexHull(positions)
     width = float(hull.volume) / float(np.linalg.norm(np.ptp(positions, axis=0)))
     tolerance = max(min(_TOLERANCE_SPACINGS * spacing, _TOLERANCE_SHARE * width), _LEAST_TOLERANCE)
@@ -146,18 +145,6 @@ def completed(ring: np.ndarray) -> np.ndarray:
     found = np.concatenate(made)
     found = np.concatenate([found, found[:1]])
     return found if is_valid([found]) else ring
-
-
-def _divided(ring: np.ndarray, spacing: float) -> np.ndarray:
-    """Return a closed ring whose long edges have vertices as those that were traced have, for straight edges to fit.
-
-    Edges are long beyond what a triangle's may be, and are divided into pieces of ``spacing`` (m).
-    """
-    steps = np.diff(ring, axis=0)
-    length = np.linalg.norm(steps, axis=1)
-    count = np.where(length > _LONGEST_EDGE * spacing, np.ceil(length / spacing), 1).astype(np.int64)
-    edge, item = items(count)
-    return np.concatenate([ring[edge] + (item / count[edge])[:, None] * steps[edge], ring[:1]])
 
 
 def _hidden_corners(

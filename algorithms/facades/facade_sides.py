@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..geometry.grid import shared_cells
+from ..geometry.sparse_voxels import voxelize
 from ..packages import spatial
 from ..stage import Monitor
-from .facade_frame import Frame, intersection_line, thinned, turned
+from .facade_frame import Frame, frame_of, intersection_line
 
 # Side (m) of the cells in which a facade is held against the points on both of its sides, and in which two must both
 # have points to meet.
 _CELL = 0.5
+
+# Side (m) of the voxels whose points count as one around a facade: a cell holds a few of them.
+_THINNED = 0.1
 
 # Points farther from the plane than this (m) say nothing about the side from which a facade was seen.
 _FARTHEST = 10.0
@@ -30,14 +33,6 @@ _AT_CORNER = 1.5
 
 # Facades whose normals enclose less than this angle (cosine: 40°) are strips of one front, and face the same side.
 _ALIKE = np.cos(np.radians(40.0))
-
-
-@dataclass(frozen=True)
-class _Evidence:
-    """For the side to which a normal points, -1 to 1, and the area (m²) of the wall that it was found on."""
-
-    share: float
-    area: float
 
 
 def facing_outside(
@@ -69,7 +64,8 @@ def facing_outside(
     the one with most evidence to that with least, each with those beside it that were decided before.
     """
     start = xyz.min(axis=0)
-    around = thinned(xyz - start) + start
+    _, voxel, count = voxelize(xyz - start, _THINNED)
+    around = start + np.column_stack([np.bincount(voxel, column) / count for column in (xyz - start).T])
     tree = spatial.cKDTree(around)
     evidence = []
     for done, (frame, own, thick) in enumerate(zip(frames, rows, thickness), start=1):
@@ -78,12 +74,15 @@ def facing_outside(
         near = around[np.sort(tree.query_ball_point(middle, reach))]
         evidence.append(_evidence(frame, points, near, thick))
         monitor.progress(done / len(frames))
-    side = _decided(evidence, *_corners(frames, xyz, rows))
-    return [frame if sign > 0 else turned(frame) for frame, sign in zip(frames, side)]
+    side = _decided(np.array(evidence).reshape(-1, 2), *_corners(frames, xyz, rows))
+    return [frame_of(frame.origin, sign * frame.normal) for frame, sign in zip(frames, side)]
 
 
-def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float) -> _Evidence:
-    """Return the evidence of points (n, 3) of a facade and those around it (m, 3) on its outside."""
+def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float) -> tuple[float, float]:
+    """Return what points (n, 3) of a facade and those around it (m, 3) say of its outside.
+
+    It is the evidence for the side to which the normal points, -1 to 1, and the area (m²) of the wall.
+    """
     own, positions = frame.local(own), frame.local(near)
     low = own[:, :2].min(axis=0)
     cell, own_cell = (np.floor((some[:, :2] - low) / _CELL).astype(np.int64) for some in (positions, own))
@@ -102,7 +101,7 @@ def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float)
     cell, off, side = cell[inside], off[inside], np.sign(positions[inside, 2])
     votes = np.where(off <= _DEPTH, -side, np.where(is_wall[cell @ [count[1], 1]], side, 0.0))
     total = float(np.abs(votes).sum())
-    return _Evidence(float(votes.sum()) / total if total else 0.0, float(is_wall.sum()) * _CELL**2)
+    return float(votes.sum()) / total if total else 0.0, float(is_wall.sum()) * _CELL**2
 
 
 def _corners(
@@ -132,13 +131,13 @@ def _agreement(one: Frame, of_one: np.ndarray, other: Frame, of_other: np.ndarra
     return sides[0] * sides[1]
 
 
-def _decided(evidence: Sequence[_Evidence], one: np.ndarray, other: np.ndarray, agree: np.ndarray) -> np.ndarray:
+def _decided(evidence: np.ndarray, one: np.ndarray, other: np.ndarray, agree: np.ndarray) -> np.ndarray:
     """Return 1 for each normal (m,) that points outside, and -1 for the others.
 
     A corner counts as much as the smaller of its two facades.
     """
-    area = np.array([each.area for each in evidence])
-    field = area * np.array([each.share for each in evidence])
+    area = evidence[:, 1]
+    field = area * evidence[:, 0]
     side, is_open = np.ones(len(field)), np.ones(len(field), bool)
     beside: list[list[tuple[int, float]]] = [[] for _ in field]
     for a, b, sign in zip(one, other, agree * np.minimum(area[one], area[other])):

@@ -166,7 +166,7 @@ def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: 
         made = _opening(facade, raster, wall, behind[chosen], own[chosen], approach, min_size)
         if made is not None:
             found.append(made)
-    return sorted(_apart(found), key=lambda opening: tuple(opening.box[0]))
+    return sorted(found, key=lambda opening: tuple(opening.box[0]))
 
 
 def _joined(positions: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
@@ -282,16 +282,3 @@ def _enclosure(raster: Raster, ring: np.ndarray, sill: Optional[float]) -> float
     distance = ndimage.distance_transform_edt(~raster.wall) * raster.size
     along, up = (np.clip(cell, 0, size - 1) for cell, size in zip(raster.cell(np.concatenate(positions)), raster.shape))
     return float(np.mean(distance[along, up] <= _REACH / 2 + raster.size))
-
-
-def _apart(openings: list) -> list:
-    """Return openings without those that lie in larger ones by half of their area."""
-    kept: list = []
-    for opening in sorted(openings, key=lambda opening: -float(np.prod(opening.size))):
-        shared = [
-            np.clip(np.minimum(opening.box[1], other.box[1]) - np.maximum(opening.box[0], other.box[0]), 0, None).prod()
-            for other in kept
-        ]
-        if max(shared, default=0.0) < 0.5 * float(np.prod(opening.size)):
-            kept.append(opening)
-    return kept

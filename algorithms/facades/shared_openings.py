@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..packages import spatial
 from .facade_surfaces import Facade
 from .opening_search import Opening
 
-# Openings that share this part of the points of one, or of its area, are one opening seen through two walls.
+# Openings that share this part of the points of one are one opening seen through two walls, and so is the part of an
+# opening before which a wall hides it: most of it.
 _SHARED = 0.5
 
 # Walls whose normals enclose less than this angle (cosine: 20°) face the same way.
@@ -47,11 +46,9 @@ def drawn_once(found: Found, xyz: np.ndarray, max_depth: float) -> Found:
     for own, opening in candidates:
         ring = found[own][0].frame.space(opening.ring)
         others = [wall for k, wall in enumerate(walls) if k != own and wall.faces_as(walls[own])]
-        is_hidden = any(wall.hides(ring, max_depth) for wall in others)
-        is_drawn = taken[opening.points].mean() >= _SHARED or any(wall.has(ring, max_depth) for wall in others)
-        if not is_hidden and not is_drawn:
+        is_drawn = taken[opening.points].mean() >= _SHARED
+        if not is_drawn and not any(wall.hides(ring, max_depth) for wall in others):
             kept[own].append(opening)
-            walls[own].boxes.append(opening.box)
             taken[opening.points] = True
     return [
         (facade, [opening for opening in openings if any(opening is one for one in chosen)])
@@ -60,39 +57,23 @@ def drawn_once(found: Found, xyz: np.ndarray, max_depth: float) -> Found:
 
 
 class _Wall:
-    """A facade, its points in its plane, and the boxes of the openings that are drawn in it."""
+    """A facade and its points in its plane."""
 
     def __init__(self, facade: Facade, xyz: np.ndarray) -> None:
         self.facade = facade
         self.tree = spatial.cKDTree(facade.frame.local(xyz[facade.points])[:, :2])
-        self.boxes: list[np.ndarray] = []
 
     def faces_as(self, other: _Wall) -> bool:
         """Return whether two walls face the same way."""
         return bool(self.facade.frame.normal @ other.facade.frame.normal >= _SAME_WAY)
 
-    def _box(self, ring: np.ndarray, max_depth: float, nearest: float) -> Optional[np.ndarray]:
-        """Return the box (2, 2) of a ring (m, 3) that is from ``nearest`` to a depth (m) behind the wall, else None."""
-        local = self.facade.frame.local(ring)
-        off = -float(local[:, 2].mean())
-        return np.array([local[:, :2].min(axis=0), local[:, :2].max(axis=0)]) if nearest <= off <= max_depth else None
-
     def hides(self, ring: np.ndarray, max_depth: float) -> bool:
         """Return whether the wall lies before most of an opening (m, 3) of another one."""
-        box = self._box(ring, max_depth, 3 * self.facade.rms)
-        if box is None:
+        local = self.facade.frame.local(ring)
+        if not 3 * self.facade.rms <= -local[:, 2].mean() <= max_depth:
             return False
+        low, size = local[:, :2].min(axis=0), np.ptp(local[:, :2], axis=0)
         share = (np.arange(_STEPS) + 0.5) / _STEPS
-        along, up = np.meshgrid(*(box[0] + share[:, None] * (box[1] - box[0])).T)
+        along, up = np.meshgrid(*(low + share[:, None] * size).T)
         off = self.tree.query(np.column_stack([along.ravel(), up.ravel()]))[0]
         return bool(np.mean(off <= _ON_WALL * self.facade.spacing) > _SHARED)
-
-    def has(self, ring: np.ndarray, max_depth: float) -> bool:
-        """Return whether an opening of another wall is one that is drawn in this one."""
-        box = self._box(ring, max_depth, -max_depth)
-        if box is None or not self.boxes:
-            return False
-        own = np.array(self.boxes)
-        shared = np.clip(np.minimum(own[:, 1], box[1]) - np.maximum(own[:, 0], box[0]), 0, None).prod(axis=1)
-        smaller = np.minimum((own[:, 1] - own[:, 0]).prod(axis=1), (box[1] - box[0]).prod())
-        return bool((shared >= _SHARED * smaller).any())
