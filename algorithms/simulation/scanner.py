@@ -30,6 +30,17 @@ RECORDED = (
     "segment_id",
 )
 
+PulseDensity = Annotated[
+    float,
+    Param(
+        "Pulse density",
+        "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
+        unit="pulses/m²",
+        low=0.5,
+        high=100,
+    ),
+]
+
 RangeNoise = Annotated[
     float,
     Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 from ..cloud.asprs import PointClass
 from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Param, stage
 from .bridge_site import KINDS, Deck, build_site, land
-from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
+from .scanner import RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pulses, scan
 
 _ALL = "all"
 
@@ -46,14 +46,12 @@ def simulate_bridges(
     angle: Annotated[
         float, Param("Angle", "Angle of the decks to the shortest way across.", unit="°", low=0, high=50)
     ] = 0.0,
-    density: Annotated[
-        float, Param("Pulse density", "Laser pulses on average.", unit="pulses/m²", low=0.5, high=100)
-    ] = 8.0,
+    density: PulseDensity = 8.0,
     cars: Annotated[bool, Param("Cars", "Cars on the decks.")] = True,
     trees: Annotated[bool, Param("Trees", "Trees on the land.")] = True,
     range_noise: RangeNoise = 0.02,
     seed: Seed = 1,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Scan made-up bridges from the air: decks with parapets, piers and cars, and the true class of every point.
 

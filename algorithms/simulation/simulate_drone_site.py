@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import Seed
-from ..stage import Field, Layer, Monitor, Param, stage
+from ..stage import Field, Layer, Param, stage
 from .drone_site import build_site
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
@@ -86,7 +86,7 @@ def simulate_drone_site(
         float, Param("Noise", "Standard deviation of each point in every direction.", unit="m", low=0, high=0.2)
     ] = 0.01,
     seed: Seed = 1,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Photograph a made-up site with a drone, match the images with all their errors, and store the true classes.
 
@@ -133,7 +133,6 @@ def simulate_drone_site(
     >>> bool((classification == 6).any()), len(footprints) > 0
     (True, True)
     """
-    monitor = monitor or Monitor()
     if density * size**2 > _MAX_POINTS:
         raise ValueError(
             f"A site of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 from ..params import Seed
-from ..stage import Monitor, Param, stage
+from ..stage import Param, stage
 from .drone import SCANNERS, LineScan, fly, plan_flight, pulses_per_line
 from .scanner import RECORDED, RangeNoise, refuse_many_pulses
 from .street_site import build_site
@@ -57,7 +57,7 @@ def simulate_flight(
     ] = 30.0,
     range_noise: RangeNoise = 0.03,
     seed: Seed = 1,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Scan a made-up street from a drone with two line scanners, with the true class of every point.
 
@@ -68,21 +68,17 @@ def simulate_flight(
 
     Returns
     -------
-    xyz : ndarray of shape (n, 3), float64
-        Coordinates (m), by time; those of both scanners in one frame.
+    xyz, intensity, gps_time : ndarray of shape (n, ...)
+        As of :func:`.simulate_town.simulate_town`; the points of both scanners are in one frame.
     classification : ndarray of shape (n,), uint8
         The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher (stems are 5); 6 buildings with their
         balconies; 1 cars and lamps.
     return_number, number_of_returns : ndarray of shape (n,), uint8
         1: the scanners record the first echo only.
-    intensity : ndarray of shape (n,), uint16
-        Brightness by material.
     scan_angle : ndarray of shape (n,), float32
         Angle of the beam to the nadir (°), 90 along the horizon, negative to the left of the drone.
     point_source_id : ndarray of shape (n,), uint16
         1 for the horizontal scanner, 2 for the vertical one.
-    gps_time : ndarray of shape (n,), float64
-        Time of the pulse (s), from take-off.
     segment_id : ndarray of shape (n,), int32
         Number of the object, the same for all points of a building; 0 for ground.
 
@@ -114,7 +110,6 @@ def simulate_flight(
     >>> bool((classification == 6).any())
     True
     """
-    monitor = monitor or Monitor()
     wanted = tuple(SCANNERS) if scanners == "both" else (scanners,)
     pulses = len(wanted) * duration * line_rate * pulses_per_line(angular_step)
     remedy = "lower the duration or the line rate, or take a larger angular step"

@@ -42,11 +42,7 @@ _AXIS_FIELDS = (
     Field("points", int, "points on it"),
 )
 
-_CENTER_FIELDS = (
-    Field("id", int, "number of the part, as SegmentID of its points"),
-    Field("radius", float, "radius", "m"),
-    Field("points", int, "points on it"),
-)
+_CENTER_FIELDS = tuple(field for field in _AXIS_FIELDS if field.name not in {"kind", "length"})
 
 
 @stage(
@@ -133,7 +129,6 @@ def simulate_plant(
     >>> len(axes), bool((shape == 2).any())
     (2, True)
     """
-    monitor = monitor or Monitor()
     rng = np.random.default_rng([seed, 5])
     plant = build_plant(pipes, tanks, spheres, clutter, rng)
     candidates = _candidates(plant, density, rng, monitor.part(0, 0.2))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 from ..params import Seed
-from ..stage import Monitor, Param, stage
+from ..stage import Param, stage
 from .line_site import build_line_site
-from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
+from .scanner import RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pulses, scan
 
 
 @stage(
@@ -21,9 +21,7 @@ def simulate_power_line(
     size: Annotated[
         float, Param("Size", "Side of the site, a square from (0, 0).", unit="m", low=80, high=1000)
     ] = 200.0,
-    density: Annotated[
-        float, Param("Pulse density", "Laser pulses on average.", unit="pulses/m²", low=0.5, high=100)
-    ] = 8.0,
+    density: PulseDensity = 8.0,
     span: Annotated[
         float, Param("Span", "Distance between the towers of the transmission line.", unit="m", low=50, high=500)
     ] = 120.0,
@@ -34,7 +32,7 @@ def simulate_power_line(
     ] = 0.15,
     range_noise: RangeNoise = 0.02,
     seed: Seed = 1,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Scan made-up power lines from the air, and the true class of every point.
 

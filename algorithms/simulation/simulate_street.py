@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Param, stage
 from .drone import LineScan
 from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
 from .scene import Scene
@@ -130,7 +130,7 @@ def simulate_street(
     ] = 40.0,
     range_noise: RangeNoise = 0.01,
     seed: Seed = 1,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Scan a made-up street from a vehicle or an airplane, with the true facades, windows, doors and corners.
 
@@ -140,20 +140,16 @@ def simulate_street(
 
     Returns
     -------
-    xyz : ndarray of shape (n, 3), float64
-        Coordinates (m), by time.
+    xyz, intensity, gps_time : ndarray of shape (n, ...)
+        As of :func:`.simulate_town.simulate_town`.
     classification : ndarray of shape (n,), uint8
         The truth: 2 ground; 3, 4, 5 vegetation by height; 6 buildings with their balconies; 1 cars, poles and people.
     return_number, number_of_returns : ndarray of shape (n,), uint8
         1: the scanners record the first echo only.
-    intensity : ndarray of shape (n,), uint16
-        Brightness by material.
     scan_angle : ndarray of shape (n,), float32
         Angle of the beam to the nadir (°), negative to the left of the vehicle.
     point_source_id : ndarray of shape (n,), uint16
         1 for the scanner that looks ahead on the left, 2 for the other one.
-    gps_time : ndarray of shape (n,), float64
-        Time of the pulse (s).
     segment_id : ndarray of shape (n,), int32
         Number of the facade; 0 for everything else, reveals, panes and frames too.
     cluster_id : ndarray of shape (n,), int32
@@ -185,7 +181,6 @@ def simulate_street(
     >>> len(corners) >= 4 * len(facades)
     True
     """
-    monitor = monitor or Monitor()
     settings = LineScan(line_rate, angular_step, max_range, range_noise, seed)
     remedy = "shorten it, lower the line rate, or take a larger speed or angular step"
     refuse_many_pulses(pulses_of(length, speed, settings), f"A street of {length:g} m", remedy)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 from ..params import Seed
-from ..stage import Monitor, Param, stage
-from .scanner import PATTERNS, RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
+from ..stage import Param, stage
+from .scanner import PATTERNS, RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pulses, scan
 from .town_layout import MAX_BUILDINGS, TownPlan, build_town
 
 _MaxScanAngle = Annotated[
@@ -46,17 +46,6 @@ _NoisePoints = Annotated[
     ),
 ]
 
-_Density = Annotated[
-    float,
-    Param(
-        "Pulse density",
-        "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
-        unit="pulses/m²",
-        low=0.5,
-        high=100,
-    ),
-]
-
 
 @stage(
     "Simulate town",
@@ -69,7 +58,7 @@ def simulate_town(
     size: Annotated[
         float, Param("Size", "Side of the town, a square from (0, 0).", unit="m", low=50, high=2000)
     ] = 200.0,
-    density: _Density = 8.0,
+    density: PulseDensity = 8.0,
     buildings: _Buildings = 20.0,
     trees: Annotated[
         float,
@@ -123,7 +112,7 @@ def simulate_town(
         ),
     ] = True,
     seed: Seed = 1,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Scan a made-up town from the air: houses, trees, a river, and the true class of every point.
 
@@ -176,7 +165,6 @@ def simulate_town(
     >>> bool((classification == 2).any())
     True
     """
-    monitor = monitor or Monitor()
     town = f"A town of {size:g} m with {density:g} pulses per m²"
     refuse_many_pulses(density * size**2, town, "lower size or density")
     plan = TownPlan(size, slope, relief, terrace_height, buildings, trees, forest, river, clutter, seed)

@@ -10,7 +10,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..params import Seed
 from ..shapes.cylinder_fits import across_axis
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Param, stage
 
 # Height (m) at which the diameter of the stem is given.
 _BREAST = 1.3
@@ -104,7 +104,6 @@ def simulate_tree(
     >>> len(lines) >= 3, int(segment_id.max()) == len(lines)
     (True, True)
     """
-    monitor = monitor or Monitor()
     rng = np.random.default_rng([seed, 6])
     limbs = _grown(height, dbh, n_branches, rng)
     monitor.progress(0.3)

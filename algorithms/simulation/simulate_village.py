@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
 from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Param, stage
 from .beams import Echoes
 from .camera import photograph
 from .relief import Relief
@@ -137,7 +137,7 @@ def simulate_village(
         ),
     ] = 0.1,
     seed: Seed = 1,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Photograph a made-up village with a drone: the matched points, the true footprints of the walls, and an old map.
 
@@ -184,7 +184,6 @@ def simulate_village(
     >>> bool((classification == 6).any()), len(footprints) > 0
     (True, True)
     """
-    monitor = monitor or Monitor()
     if density * size**2 > _MAX_POINTS:
         raise ValueError(
             f"A village of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "

@@ -85,6 +85,10 @@ _STRIPS = 6
 _TURN = 60.0
 
 
+# First and last of positions or elevations (m).
+_Span = tuple[float, float]
+
+
 @dataclass
 class Truth:
     """Truth of the fronts: polygons and kinds, and the object ids that belong to them.
@@ -148,7 +152,7 @@ class Line:
         """Return the point (2,) at distances along the wall and behind its front (m)."""
         return self.start + along * self.way + inward * np.array([-self.way[1], self.way[0]])
 
-    def rect(self, along: tuple[float, float], inward: tuple[float, float]) -> Rect:
+    def rect(self, along: _Span, inward: _Span) -> Rect:
         """Return the rectangle between two positions along the wall and two behind its front (m)."""
         x, y = self.at(sum(along) / 2, sum(inward) / 2)
         angle = float(np.arctan2(self.way[1], self.way[0]))
@@ -169,22 +173,23 @@ class Front:
         line, kind = self.line, self.kind
         top = float(scene.relief.plane(*line.start)) + self.height + self.raised
         for part, is_front in _parts(line, kind):
-            _build_wall(scene, truth, part, top, kind, self.raised, has_openings=is_front and part.length > 1.8)
+            has_openings = is_front and part.length > 1.8
+            _Wall(scene, truth, part).build(top, kind, self.raised, has_openings)
         if kind == "balconies":
-            _hang_balconies(scene, line, top, self.height)
+            _Wall(scene, truth, line).hang_balconies(top, self.height)
 
     def build_house(self, scene: Scene, truth: Truth, pitch: float) -> None:
         """Put a house behind a straight front: its other walls and a gable roof (°).
 
         The roof is flush with the walls; its ridge runs along the street, and it goes on over a recess.
         """
-        line, kind = self.line, self.kind
+        line, kind, walls = self.line, self.kind, _Wall(scene, truth, self.line)
         ground = float(scene.relief.plane(*line.start))
         top, across, number = ground + (self.height + self.raised), (0.0, line.length), scene.new_id()
         inner = _STEP + _WALL if kind == "recess" else _WALL
         sides = [((end, end + _WALL), (_WALL, inner)) for end in (0.0, line.length - _WALL)]
         for along, inward in [(across, (inner, _DEPTH)), *sides]:
-            _block(scene, line, along, inward, ground - 2 * _BELOW, top, number)
+            walls.put(along, inward, ground - 2 * _BELOW, top, number)
         rect = line.rect(across, (0.0, _DEPTH))
         tops = gable(rect, top, float(np.tan(np.deg2rad(pitch))))
         scene.solids.append(Solid(rect, tops, top, PointClass.BUILDING, number))
@@ -192,7 +197,7 @@ class Front:
         if kind == "bay":
             # Between its walls: a beam never meets two faces at once.
             lid = (third + _WALL, 2 * third - _WALL), (_WALL - _STEP, 0.0)
-            _block(scene, line, *lid, top - _LID, top, number)
+            walls.put(*lid, top - _LID, top, number)
         if kind in ("bay", "recess"):
             off = _STEP if kind == "recess" else -_STEP
             front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]
@@ -227,132 +232,104 @@ def between(a: np.ndarray, b: np.ndarray) -> Line:
     return Line(a, (b - a) / length, length)
 
 
-def _build_wall(
-    scene: Scene, truth: Truth, line: Line, top: float, kind: str, raised: float, has_openings: bool
-) -> None:
-    """Put one flat wall with its openings, and its truth."""
-    ends = [line.at(0.0), line.at(line.length)]
-    feet = [float(scene.relief.plane(*end)) for end in ends]
-    start, end = (np.array([*end, foot]) for end, foot in zip(ends, feet))
-    number = truth.add_wall(start, end, top, kind)
-    own = scene.new_id()
-    truth.facade_of[own] = number
-    ground = max(feet)
-    axes = _axes(line.length) if has_openings else []
-    spans, last = [], 0.0
-    for middle, width in axes:
-        spans.append((last, middle - width / 2))
-        last = middle + width / 2
-    for start, end in [*spans, (last, line.length)]:
-        _block(scene, line, (start, end), (0.0, _WALL), min(feet) - _BELOW, top, own)
-    for k, (middle, width) in enumerate(axes):
-        along = (middle - width / 2, middle + width / 2)
-        levels = (ground, ground + raised)
-        _build_axis(scene, truth, line, along, levels, (min(feet) - _BELOW, top), own, number, k == len(axes) // 2)
+@dataclass(frozen=True)
+class _Wall:
+    """A flat wall on a line, which is put into a scene with its truth."""
+
+    scene: Scene
+    truth: Truth
+    line: Line
+
+    def put(self, along: _Span, inward: _Span, bottom: float, top: float, number: int) -> None:
+        """Put a box between positions along the wall and behind its front and between two elevations (m)."""
+        if along[1] - along[0] > 1e-6 and top - bottom > 1e-6:
+            self.scene.add_box(self.line.rect(along, inward), bottom, top, PointClass.BUILDING, number)
+
+    def build(self, top: float, kind: str, raised: float, has_openings: bool) -> None:
+        """Put the wall with its openings."""
+        line = self.line
+        ends = [line.at(0.0), line.at(line.length)]
+        feet = [float(self.scene.relief.plane(*end)) for end in ends]
+        first, last = (np.array([*end, foot]) for end, foot in zip(ends, feet))
+        facade = self.truth.add_wall(first, last, top, kind)
+        own = self.scene.new_id()
+        self.truth.facade_of[own] = facade
+        bottom, levels = min(feet) - _BELOW, (max(feet), max(feet) + raised)
+        axes = _axes(line.length) if has_openings else []
+        sides = [0.0, *(side for axis in axes for side in axis), line.length]
+        for along in zip(sides[::2], sides[1::2]):
+            self.put(along, (0.0, _WALL), bottom, top, own)
+        for k, along in enumerate(axes):
+            self._build_axis(along, levels, (bottom, top), own, facade, k == len(axes) // 2)
+
+    def _build_axis(self, along: _Span, levels: _Span, heights: _Span, own: int, facade: int, has_door: bool) -> None:
+        """Put the openings of one axis and the wall between them; ``levels`` are ground and ground floor (m)."""
+        (bottom, top), (ground, floor) = heights, levels
+        level, below = floor, bottom
+        if not has_door and floor - ground >= _LEAST_RAISED:
+            low, high = ground + _CELLAR[0], ground + sum(_CELLAR)
+            self.put(along, (0.0, _WALL), below, low, own)
+            self._build_opening(along, (low, high), "window", facade)
+            below = high
+        while level + _SILL + _WINDOW[1] + 0.3 < top:
+            is_door = has_door and level == floor
+            low, high = (level + _SILL, level + _SILL + _WINDOW[1])
+            if is_door:
+                low, high = floor if floor > ground else bottom, level + _DOOR[1]
+                self._put_stairs(along, bottom, levels)
+            if low > below:
+                self.put(along, (0.0, _WALL), below, low, own)
+            self._build_opening(along, (low, high), "door" if is_door else "window", facade)
+            below, level = high, level + _STOREY
+        self.put(along, (0.0, _WALL), below, top, own)
+
+    def _put_stairs(self, along: _Span, bottom: float, levels: _Span) -> None:
+        """Put a landing and steps before a door, from the bottom of its wall over the ground to the floor (m)."""
+        ground, floor = levels
+        steps = int(np.ceil((floor - ground) / _RISE))
+        wide = (along[0] - _BESIDE, along[1] + _BESIDE)
+        number = self.scene.new_id() if steps else 0
+        for step in range(steps):
+            start = 0.0 if step == 0 else _LANDING + (step - 1) * _RUN
+            outward = (-(_LANDING + step * _RUN), -start)
+            self.put(wide, outward, bottom, floor - step / steps * (floor - ground), number)
+
+    def _build_opening(self, along: _Span, heights: _Span, kind: str, facade: int) -> None:
+        """Put pane and frame of an opening; a door is opaque."""
+        truth, (start, end), (low, high) = self.truth, along, heights
+        number = len(truth.openings) + 1
+        pane, frame = self.scene.new_id(), self.scene.new_id()
+        truth.opening_of |= {pane: number, frame: number}
+        if kind == "window":
+            truth.glass.add(pane)
+        self.put(along, (_PANE, _PANE + 0.05), low, high, pane)
+        inward, width = (_FRAME, _PANE), _FRAME_WIDTH
+        for side in ((start, start + width), (end - width, end)):
+            self.put(side, inward, low, high, frame)
+        for bar in ((low, low + width), (high - width, high)):
+            self.put(along, inward, *bar, frame)
+        ground = max(low, min(float(self.scene.relief.plane(*self.line.at(position))) for position in along))
+        corners = [(start, ground), (end, ground), (end, high), (start, high), (start, ground)]
+        truth.openings.append(np.array([(*self.line.at(a), z) for a, z in corners]))
+        truth.opening_kinds.append(kind)
+        truth.opening_facades.append(facade)
+
+    def hang_balconies(self, top: float, height: float) -> None:
+        """Put a balcony before the middle axis of each upper storey."""
+        middle, floor = self.line.length / 2, top - height
+        for level in np.arange(floor + _STOREY, top - _STOREY + 0.5, _STOREY):
+            number, along = self.scene.new_id(), (middle - 1.4, middle + 1.4)
+            self.put(along, (-_BALCONY, 0.0), level - 0.15, level, number)
+            self.put(along, (-_BALCONY, -_BALCONY + 0.05), level, level + _PARAPET, number)
 
 
-def _axes(length: float) -> list[tuple[float, float]]:
-    """Return middle and width (m) of the axes of openings of a wall."""
-    count = int((length - 2 * _MARGIN + (_AXIS - _WINDOW[0])) // _AXIS)
-    return [(length / 2 + (k - (count - 1) / 2) * _AXIS, _WINDOW[0]) for k in range(max(count, 0))]
-
-
-def _build_axis(
-    scene: Scene,
-    truth: Truth,
-    line: Line,
-    along: tuple[float, float],
-    levels: tuple[float, float],
-    heights: tuple[float, float],
-    own: int,
-    facade: int,
-    has_door: bool,
-) -> None:
-    """Put the openings of one axis and the wall between them; ``levels`` are ground and ground floor (m)."""
-    (bottom, top), (ground, floor) = heights, levels
-    level, below = floor, bottom
-    if not has_door and floor - ground >= _LEAST_RAISED:
-        low, high = ground + _CELLAR[0], ground + sum(_CELLAR)
-        _block(scene, line, along, (0.0, _WALL), below, low, own)
-        _build_opening(scene, truth, line, along, (low, high), "window", facade)
-        below = high
-    while level + _SILL + _WINDOW[1] + 0.3 < top:
-        is_door = has_door and level == floor
-        low, high = (level + _SILL, level + _SILL + _WINDOW[1])
-        if is_door:
-            low, high = floor if floor > ground else bottom, level + _DOOR[1]
-            _put_stairs(scene, line, along, (bottom, ground, floor))
-        if low > below:
-            _block(scene, line, along, (0.0, _WALL), below, low, own)
-        _build_opening(scene, truth, line, along, (low, high), "door" if is_door else "window", facade)
-        below, level = high, level + _STOREY
-    _block(scene, line, along, (0.0, _WALL), below, top, own)
-
-
-def _put_stairs(scene: Scene, line: Line, along: tuple[float, float], levels: tuple[float, float, float]) -> None:
-    """Put a landing and steps before a door, from the bottom of its wall over the ground to the floor (m)."""
-    bottom, ground, floor = levels
-    steps = int(np.ceil((floor - ground) / _RISE))
-    wide = (along[0] - _BESIDE, along[1] + _BESIDE)
-    number = scene.new_id() if steps else 0
-    for step in range(steps):
-        start = 0.0 if step == 0 else _LANDING + (step - 1) * _RUN
-        outward = (-(_LANDING + step * _RUN), -start)
-        _block(scene, line, wide, outward, bottom, floor - step / steps * (floor - ground), number)
-
-
-def _build_opening(
-    scene: Scene,
-    truth: Truth,
-    line: Line,
-    along: tuple[float, float],
-    heights: tuple[float, float],
-    kind: str,
-    facade: int,
-) -> None:
-    """Put pane and frame of an opening; a door is opaque."""
-    number = len(truth.openings) + 1
-    pane, frame = scene.new_id(), scene.new_id()
-    truth.opening_of |= {pane: number, frame: number}
-    if kind == "window":
-        truth.glass.add(pane)
-    _block(scene, line, along, (_PANE, _PANE + 0.05), *heights, pane)
-    (start, end), (low, high) = along, heights
-    inward, width = (_FRAME, _PANE), _FRAME_WIDTH
-    for side in ((start, start + width), (end - width, end)):
-        _block(scene, line, side, inward, low, high, frame)
-    for bar in ((low, low + width), (high - width, high)):
-        _block(scene, line, along, inward, *bar, frame)
-    ground = max(low, min(float(scene.relief.plane(*line.at(position))) for position in along))
-    corners = [(start, ground), (end, ground), (end, high), (start, high), (start, ground)]
-    truth.openings.append(np.array([(*line.at(a), z) for a, z in corners]))
-    truth.opening_kinds.append(kind)
-    truth.opening_facades.append(facade)
-
-
-def _block(
-    scene: Scene,
-    line: Line,
-    along: tuple[float, float],
-    inward: tuple[float, float],
-    bottom: float,
-    top: float,
-    number: int,
-) -> None:
-    """Put a box that is part of a wall."""
-    if along[1] - along[0] > 1e-6 and top - bottom > 1e-6:
-        scene.add_box(line.rect(along, inward), bottom, top, PointClass.BUILDING, number)
+def _axes(length: float) -> list[_Span]:
+    """Return where the axes of openings of a wall begin and end along it (m)."""
+    count = max(int((length - 2 * _MARGIN + (_AXIS - _WINDOW[0])) // _AXIS), 0)
+    middles = [length / 2 + (k - (count - 1) / 2) * _AXIS for k in range(count)]
+    return [(middle - _WINDOW[0] / 2, middle + _WINDOW[0] / 2) for middle in middles]
 
 
 def draw_pitch(rng: np.random.Generator) -> float:
     """Return the pitch (°) of a roof."""
     return float(rng.uniform(*_PITCHES))
-
-
-def _hang_balconies(scene: Scene, line: Line, top: float, height: float) -> None:
-    """Put a balcony before the middle axis of each upper storey."""
-    middle, floor = line.length / 2, top - height
-    for level in np.arange(floor + _STOREY, top - _STOREY + 0.5, _STOREY):
-        number, along = scene.new_id(), (middle - 1.4, middle + 1.4)
-        _block(scene, line, along, (-_BALCONY, 0.0), level - 0.15, level, number)
-        _block(scene, line, along, (-_BALCONY, -_BALCONY + 0.05), level, level + _PARAPET, number)
