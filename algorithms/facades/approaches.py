@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Depth (m) before a wall in which ground, landings and stairs lead up to a door, and from which they count. A sill or a
-# cornice juts out less than 0.2 m, and a landing is rarely deeper than 1.5 m.
-FROM_WALL, BEFORE = 0.2, 1.5
+# Distance (m) before a wall from which points are of ground, landings and stairs: sills and cornices jut out less.
+FROM_WALL = 0.2
+
+# Distance (m) before a wall up to which these lead up to a door: a landing is rarely deeper.
+BEFORE = 1.5
 
 
 @dataclass(frozen=True)

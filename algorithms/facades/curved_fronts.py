@@ -10,14 +10,23 @@ from ..geometry.grid import distinct, grid_over, shared_cells
 from ..geometry.groups import components
 from ..segmentation.least_squares_planes import planes_of
 
-# Planes that meet at an angle between these (sines: 3° and 40°) may be strips of one curved front.
-_LEAST_SINE, _MOST_SINE = np.sin(np.radians(3.0)), np.sin(np.radians(40.0))
+# Least angle (sine: 3°) between strips of one curved front: planes at smaller ones are one wall.
+_LEAST_SINE = np.sin(np.radians(3.0))
 
-# Side (m) of the cells in which two planes must both have points to be of one front, and least number of these.
-_TOUCH_CELL, _TOUCHES = 0.5, 2
+# Largest angle (sine: 40°) between strips of one curved front: planes at larger ones meet at a corner.
+_MOST_SINE = np.sin(np.radians(40.0))
 
-# Side of a column: tolerances, and m. The points of a column are of one strip.
-_COLUMN_TOLERANCES, _LEAST_COLUMN = 2.0, 0.1
+# Side (m) of the cells in which two planes must both have points to be of one front: some spacings of a sparse scan.
+_TOUCH_CELL = 0.5
+
+# Least number of these cells: one may be of a pole or a sign at a corner.
+_TOUCHES = 2
+
+# Side of a column, whose points are of one strip (tolerances): the noise of a strip fits into one.
+_COLUMN_TOLERANCES = 2.0
+
+# Least side of a column (m): finer ones hold too few points for a root mean square.
+_LEAST_COLUMN = 0.1
 
 # Strips are fitted and columns assigned again this often: both hardly change after the third time.
 _ROUNDS = 5

@@ -29,8 +29,11 @@ _PLAN_CELL = 0.5
 # Distance within which a point lies on a facade (standard deviations): one point of 400 is farther off.
 _ON_PLANE = 3.0
 
-# Points among which walls are searched.
-ALL_POINTS, FACADE_LINES = "all points", "facade lines"
+# The choice that searches walls among all points.
+ALL_POINTS = "all points"
+
+# The choice that searches them among the points of facade lines only.
+FACADE_LINES = "facade lines"
 
 # Distance (m) from a corner within which the border of a facade, and its outer side, depend on the facade beside it.
 AROUND_CORNER = 5.0

@@ -15,13 +15,18 @@ from ..geometry.rings import signed_area
 from ..packages import spatial
 from .alpha_shape import Tracing, trace_outlines, triangulated
 
-# The angle (°) between the edges at a boundary point below which it is no key point: in the first round, and after as
-# many rounds of one degree (paper, section 3.3, step 3).
-_FIRST_ANGLE, _ROUNDS = 10.0, 30
+# The angle (°) between the edges at a boundary point below which it is no key point, in the first round (paper, section
+# 3.3, step 3).
+_FIRST_ANGLE = 10.0
 
-# Longest edge of a triangle (spacings): of the paper (section 3.3, step 2), and for straight edges, where chance must
-# take no bites out of the boundary of evenly scattered points.
-_PUBLISHED_EDGE, _LONGEST_EDGE = 1.5, 4.0
+# Rounds that follow, in each of which that angle is one degree larger (paper, the same step).
+_ROUNDS = 30
+
+# Longest edge of a triangle for key points (spacings): that of the paper (section 3.3, step 2).
+_PUBLISHED_EDGE = 1.5
+
+# Longest edge of a triangle for straight edges (spacings): chance takes no bites out of evenly scattered points.
+_LONGEST_EDGE = 4.0
 
 # Share of the points that the largest piece of a facade must hold before shadows are bridged.
 _WHOLE = 0.95
@@ -32,15 +37,24 @@ _GROWTH = 1.5
 # The spacing of points where they are farthest apart: this percentile of the points' smallest triangles.
 _PERCENTILE = 95
 
-# Tolerance of straight edges: spacings, m, and the largest share of the width of a facade, lest a narrow one be a line.
-_TOLERANCE_SPACINGS, _LEAST_TOLERANCE, _TOLERANCE_SHARE = 2.0, 0.05, 0.2
+# Tolerance of straight edges (spacings): the boundary of scattered points is as rough.
+_TOLERANCE_SPACINGS = 2.0
+
+# Least tolerance of straight edges (m): the relief of an edge of plaster or brick.
+_LEAST_TOLERANCE = 0.05
+
+# Largest tolerance of straight edges (share of the width of a facade), lest a narrow one become a line.
+_TOLERANCE_SHARE = 0.2
 
 # A corner costs as much as this many cubed tolerances of squared distance along the boundary; fitted on simulated
 # outlines.
 _CORNER = 0.5
 
-# Angles (rad) within which an edge of the hull is the foot of a facade, which may lie on a slope, and a side.
-_FOOT_ANGLE, _SIDE_ANGLE = np.radians(12.0), np.radians(4.0)
+# Angle (rad) to the horizontal within which an edge of the hull is the foot of a facade: streets are hardly steeper.
+_FOOT_ANGLE = np.radians(12.0)
+
+# Angle (rad) to the vertical within which an edge of the hull is a side: walls end upright, but for noise.
+_SIDE_ANGLE = np.radians(4.0)
 
 # Part of a corner of the foot that a parked car or a bush hides, along and up the facade (m).
 _HIDDEN = (5.0, 2.5)

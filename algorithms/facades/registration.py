@@ -18,25 +18,28 @@ class _Rules:
 
     # Walls and outlines run the same way within this angle (°): regularized outlines turn by a few degrees.
     angle: float = 10.0
-    # Step of the search (m), and distance (m) within which it counts a wall or an end as common.
+    # Step of the search (m): half of it is within the first distance of the rounds.
     step: float = 0.25
+    # Distance (m) within which the search counts a wall or an end as common: more than a step.
     near: float = 0.4
     # Overhangs of eaves (m) that are tried: few are wider.
     overhangs: tuple[float, ...] = (0.0, 0.4, 0.8)
     # Distances (m) within which walls and ends are common in the rounds that follow: down to twice the accuracy
     # of an outline (0.1 m).
     rounds: tuple[float, ...] = (0.6, 0.6, 0.4, 0.4, 0.3, 0.3, 0.2, 0.2)
-    # Standard deviations (m) of an outline's edge, of the eaves' overhang, and of the shift along a street where
-    # no evidence there determines it.
+    # Standard deviation (m) of an outline's edge from the air.
     edge: float = 0.1
+    # Standard deviation (m) of the overhang of eaves and gables.
     overhang: float = 0.3
+    # Standard deviation (m) of a shift that nothing determines, as that along a street without ends of walls.
     unseen: float = 1.0
     # Least squares with weights of the residuals before: a tenth round moves the shift by less than a millimeter.
     reweighted: int = 9
     # Walls shorter than this (m) are sides of recesses, which outlines from the air don't show.
     shortest: float = 2.0
-    # Cells (m) of which the lowest points are taken for the ground of the street, and the least of them.
+    # Side (m) of the cells of which the lowest points are taken for the ground of the street: wider than a spacing.
     cell: float = 0.5
+    # Least number of these cells: fewer may all be below cars.
     least_cells: int = 20
     # Ground of both scans is common within this height (m) of the median difference.
     ground: float = 0.2

@@ -12,8 +12,11 @@ from ..neighborhoods.covariance import full_matrices
 from ..segmentation.least_squares_planes import planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 
-# Two neighbors of a line this far apart (median steps of the line; m at least) are of two segments.
-_GAP_STEPS, _LEAST_GAP = 8.0, 0.3
+# Two neighbors of a line this far apart are of two segments (median steps of the line): steps grow with the range.
+_GAP_STEPS = 8.0
+
+# Neighbors nearer than this (m) are of one segment: joints and sills leave such gaps.
+_LEAST_GAP = 0.3
 
 # Pauses this many times as long as the median one between two points may be the sky at the end of a turn.
 _PAUSE = 20.0
@@ -24,12 +27,16 @@ _SKY = 1 / 8
 # A line goes on beyond a turn by this share at most, where no sky is seen.
 _BEYOND = 0.1
 
-# Slope (°) up to which a segment is level enough for ground, and from which it is upright enough for a facade.
-_LEVEL, _UPRIGHT = 20.0, 70.0
+# Slope (°) up to which a segment is level enough for ground: ramps and gutters are less steep.
+_LEVEL = 20.0
+
+# Slope (°) from which a segment is upright enough for a facade: windshields and hoods lean more.
+_UPRIGHT = 70.0
 
 # Length (m) from which a steep segment may be of a facade.
 _LEAST_FACADE = 0.5
 
+# Kinds of segments, in the order of their numbers.
 KINDS = ("other", "ground", "facade")
 _OTHER, _GROUND, _FACADE = range(3)
 

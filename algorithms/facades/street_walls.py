@@ -31,8 +31,9 @@ class _Rules:
     step: float = 0.1
     # A row of walls that shares more than this part of its way with a longer one is something before or behind it.
     most: float = 0.3
-    # Distance (m) of the positions at which walls are compared with footprints, and shortest wall (m) that is taken.
+    # Distance (m) of the positions at which walls are compared with footprints: less than an outline is off.
     sample: float = 0.25
+    # Shortest wall (m) that is taken: shorter ones are of porches and pillars.
     shortest: float = 1.0
 
 

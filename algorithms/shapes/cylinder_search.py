@@ -60,8 +60,10 @@ _MOST_IN_WINDOW = 4
 # Length (radii) by which a seed is first extended at both ends: the direction of its axis is good for that long.
 _FIRST_STEP = 6.0
 
-# Widest gap along a cylinder in radii (the shadow of another pipe) and in point spacings (chance).
+# Widest gap along a cylinder (radii): the shadow of another pipe.
 _GAP_RADII = 2.0
+
+# Widest gap along a cylinder (point spacings): chance leaves no wider one.
 _GAP_SPACINGS = 6.0
 
 # Least height of the arc that is seen above its chord (standard deviations of the noise): a flatter one is a plane.

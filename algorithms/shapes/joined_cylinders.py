@@ -16,10 +16,13 @@ from .cylinder_search import Found
 # replaced by that of both pieces. Pipes 2 m long with noise of 2 mm whose axes are 6 mm apart exceed it.
 _MOST_APART = 0.2
 
-# Largest ratio of the radii of two pieces, and largest angle (°) between their axes: wide bounds that save fits.
-_RADII, _ANGLE = 1.15, 8.0
+# Largest ratio of the radii of two pieces: a wide bound that saves fits.
+_RADII = 1.15
 
-# Largest distance (radii) of the facing end of a piece from the axis of the other: a wide bound, too.
+# Largest angle (°) between the axes of two pieces: a wide bound, too.
+_ANGLE = 8.0
+
+# Largest distance (radii) of the facing end of a piece from the axis of the other: another wide bound.
 _BESIDE = 0.5
 
 # Radius (share of that of the cylinder) within which an end cap is looked for: clear of points of the wall.

@@ -35,8 +35,11 @@ _MOST_SLOPE_BIN = 0.2
 # A gap of three spacings is no accident of random sampling on a surface.
 _GAP_SPACINGS = 3.0
 
-# Window and gap (m) that automatic ones seldom exceed: those of clouds with 40 points per m² and noise of 5 cm.
-_WIDE_WINDOW, _WIDE_GAP = 1.0, 0.5
+# Window (m) that automatic ones seldom exceed: that of clouds with 40 points per m² and noise of 5 cm.
+_WIDE_WINDOW = 1.0
+
+# Gap (m) that automatic ones seldom exceed: that of clouds with 40 points per m².
+_WIDE_GAP = 0.5
 
 # Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
 _MOST_ANGLE = 10.0

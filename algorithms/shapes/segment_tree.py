@@ -15,8 +15,11 @@ from .stem_search import BREAST, find_stems, ground_level
 from .surface_normals import refuse_line
 from .tree_structure import Branch, Slices, branches_of, self_supporting_slices, smooth, voxels_of
 
-# Side of a voxel (spacings), and the least (m): bark is not resolved any finer.
-_VOXEL_SPACINGS, _LEAST_VOXEL = 2.0, 0.02
+# Side of a voxel (spacings): chance leaves few voxels of bark empty.
+_VOXEL_SPACINGS = 2.0
+
+# Least side of a voxel (m): bark is not resolved any finer.
+_LEAST_VOXEL = 0.02
 
 # Gaps that paths cross with nothing set (voxels).
 _GAP_VOXELS = 8.0
@@ -28,8 +31,11 @@ _ROUND = 0.2
 # Largest measured radius (of that estimated): wider ones are leaves. Simulated branches have 1.4.
 _WIDEST = 3.0
 
-# Length (m) of the pieces of a branch that have a radius of their own, and times that radius within which points lie.
-_PIECE, _WITHIN = 0.5, 2.5
+# Length (m) of the pieces of a branch that have a radius of their own: branches taper little over it.
+_PIECE = 0.5
+
+# Distance from the line of a piece within which its points lie (estimated radii): beyond it are leaves.
+_WITHIN = 2.5
 
 _FIELDS = (
     Field("id", int, "number of the branch, as SegmentID of its points"),

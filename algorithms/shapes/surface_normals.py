@@ -16,8 +16,11 @@ from ..stage import Monitor, Param
 # Standard deviation (radians) that normals may have from the noise: 3°, so that directions distinguish surfaces.
 _NORMAL_ERROR = 0.05
 
-# Points of the smallest and the largest neighborhood of a normal. Fewer follow the noise; more cost time.
-_LEAST_POINTS, _MOST_POINTS = 12, 80
+# Points of the smallest neighborhood of a normal: fewer follow the noise.
+_LEAST_POINTS = 12
+
+# Points of the largest neighborhood of a normal: more cost time.
+_MOST_POINTS = 80
 
 # Ratio of the two larger variances below which points lie on one line, and the plane through them is undefined.
 _LINE = 1e-8

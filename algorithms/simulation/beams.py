@@ -13,8 +13,10 @@ from .relief import Relief
 from .scene import Scene
 from .solids import SolidArrays, dot, stack
 
-# A wire this near (m) to the middle of the beam sends something back.
+# A wire this near (m) to the middle of the beam is in the beam, which is 0.2 m wide.
 _WIRE_REACH = 0.1
+
+# Share of the wires in a beam that send something back: they cover a small part of it.
 _WIRE_CHANCE = 0.7
 
 # Leaves on the way of a beam through one ellipsoid: more of them would come too late to be heard.

@@ -14,20 +14,40 @@ from .solids import Rect, Solid, flat, inclined
 # Side of a lot (m): the ramps of a fly-over are 46 m long on both sides of its span.
 LOT = 140.0
 
-# Obstacles end this far (m) before the border of their lot, and over this length.
-_MARGIN, _FADE = 4.0, 12.0
+# Obstacles end this far (m) before the border of their lot: neighbors do not meet.
+_MARGIN = 4.0
+
+# Length (m) over which they rise to the land there.
+_FADE = 12.0
 
 # Vertical walls that are terrain are this steep (tangent): beams up to 30° off the vertical meet them once.
 _WALL = 1.7
 
-# Thickness of a deck, height and width of its parapets, what it lies on at its ends (m).
-_THICKNESS, _PARAPET, _PARAPET_WIDTH, _SEAT = 0.9, 1.0, 0.25, 0.5
+# Thickness of a deck (m): that of short concrete bridges.
+_THICKNESS = 0.9
 
-# Length, width and height of a car, and the way from one to the next (m).
-_CAR, _CARS = (4.3, 1.8, 1.45), 15.0
+# Height of parapets (m), as codes ask for.
+_PARAPET = 1.0
 
-# Slope of the ramps of a fly-over, and its height (m); slope of embankments and cuttings.
-_RAMP, _FLY_OVER = 0.12, 5.5
+# Width of parapets (m).
+_PARAPET_WIDTH = 0.25
+
+# Length (m) of a deck on the land at each end.
+_SEAT = 0.5
+
+# Length, width and height of a car (m): of a middle class.
+_CAR = (4.3, 1.8, 1.45)
+
+# Way from one car to the next (m), in slow traffic.
+_CARS = 15.0
+
+# Slope of the ramps of a fly-over: steeper than roads, to keep lots small.
+_RAMP = 0.12
+
+# Height of a fly-over (m): trucks pass below.
+_FLY_OVER = 5.5
+
+# Slope of embankments and cuttings, two to three, as usual.
 _BANK = 0.67
 
 
@@ -48,6 +68,7 @@ class Kind:
         return self.depth / _WALL if self.is_water and self.bank == _WALL else 0.0
 
 
+# What the lots hold, by the names of their kinds.
 KINDS = {
     "canal": Kind(9.0, 3.0, _WALL, True, (8.0,)),
     "arch": Kind(9.0, 3.0, _WALL, True, (6.0,), 0.9),
@@ -64,8 +85,11 @@ KINDS = {
 # Depth of the water (m).
 _WATER = 1.0
 
-# Half the length of the tunnel, over which the land goes on (m), and the slope of the road down to its mouths.
-_TUNNEL, _ROAD = 30.0, 0.16
+# Half the length of the tunnel (m), over which the land goes on.
+_TUNNEL = 30.0
+
+# Slope of the road down to its mouths: it reaches them within the lot.
+_ROAD = 0.16
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,11 @@ from .pairs import in_boxes
 from .relief import Relief
 from .scene import Scene
 
-# Rays worked on at once, which bounds memory, and where they start over the ground (m).
-_BLOCK, _HEIGHT = 50_000, 80.0
+# Rays worked on at once, which bounds memory.
+_BLOCK = 50_000
+
+# Height (m) over the ground from which rays start: over all trees.
+_HEIGHT = 80.0
 
 # Wires are thinner than a pixel.
 _SEEN = ("solids", "crowns")

@@ -18,8 +18,10 @@ from .street_site import SIZE
 # Number of each scanner, which is the source id of its points.
 SCANNERS = {"horizontal": 1, "vertical": 2}
 
-# A scanner looks everywhere but into the quarter behind it (°), and from 0.1 m on.
+# A scanner looks everywhere but into the quarter behind it (°).
 FIELD = 270.0
+
+# Least range (m) of a scanner, as in its data sheet.
 _NEAREST = 0.1
 
 # Position in the street from which the drone starts, from the middle of the site (m).

@@ -16,8 +16,11 @@ _HALL_SIZES = (10.0, 100.0)
 # Least and greatest height of their roofs (m).
 _HALL_HEIGHTS = (3.0, 9.0)
 
-# Height and width of the parapets around them (m).
-_PARAPET_HEIGHT, _PARAPET_WIDTH = 0.6, 0.35
+# Height of the parapets around them (m).
+_PARAPET_HEIGHT = 0.6
+
+# Width of these parapets (m).
+_PARAPET_WIDTH = 0.35
 
 # Number of flat roofs that touch in a block.
 _BLOCK_ROOFS = 4

@@ -30,21 +30,47 @@ _LEAF_NOISE_FACTORS = (0.4, 1.6)
 # Plants of this height (m) and more have the full errors.
 _FULL_LEAF_NOISE = 2.0
 
-# The sun: its azimuth from east, counterclockwise, and its elevation (rad), and how far shadows are looked for (m).
-_SUN, _SHADOW_REACH = (np.radians(130.0), np.radians(38.0)), 25.0
+# The sun: its azimuth from east, counterclockwise, and its elevation (rad), as on a morning in summer.
+_SUN = (np.radians(130.0), np.radians(38.0))
+
+# How far shadows are looked for (m): those of trees and houses of 20 m.
+_SHADOW_REACH = 25.0
 
 # Light of the sky alone (red, green, blue), as a share of sunlight.
 _SHADE = np.array([0.38, 0.42, 0.5])
 
-# Brightness (red, green, blue, of 255) of materials. Roofs and cars come in several, one each, bright and dark.
-_ASPHALT, _GRASS, _SOIL = (128, 126, 122), (104, 124, 62), (150, 128, 100)
+# Brightness of asphalt (red, green, blue, of 255, as below).
+_ASPHALT = (128, 126, 122)
+
+# Brightness of grass.
+_GRASS = (104, 124, 62)
+
+# Brightness of bare soil.
+_SOIL = (150, 128, 100)
+
+# Brightness of leaves: green, yellow and red plants, one each.
 _LEAVES = np.array([(62, 92, 40), (84, 110, 50), (92, 98, 44), (120, 74, 60)])
+
+# Brightness of roofs: tiles, slate and metal, bright and dark.
 _ROOFS = np.array([(150, 76, 56), (112, 66, 56), (96, 97, 102), (132, 110, 92), (222, 222, 218), (60, 60, 64)])
+
+# Brightness of cars, bright and dark, too.
 _CARS = np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (170, 172, 176)])
 
-# Matching fails on this part of surfaces darker or brighter than these (of 255), of cars, which mirror, and
-# of everything else.
-_DARK, _BRIGHT, _FAILS, _FAILS_ON_CARS, _FAILS_ELSEWHERE = 32.0, 205.0, 0.35, 0.35, 0.005
+# Brightness (of 255) below which matching is difficult: shadows have no texture.
+_DARK = 32.0
+
+# Brightness (of 255) above which matching is difficult: the images are saturated.
+_BRIGHT = 205.0
+
+# Share of difficult surfaces on which matching fails.
+_FAILS = 0.35
+
+# Share of cars, which mirror, on which it fails.
+_FAILS_ON_CARS = 0.35
+
+# Share of everything else on which it fails.
+_FAILS_ELSEWHERE = 0.005
 
 # Where it fails it finds nothing, or spikes where smooth noise of unit deviation exceeds this, on 16 % of the cells.
 _SPIKES_ABOVE = 1.0

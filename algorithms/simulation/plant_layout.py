@@ -9,21 +9,37 @@ import numpy as np
 from ..shapes.searched_points import Shape
 from .plant_parts import Part, beam, cylinder, disk, elbow, grating, heap, plate, sphere
 
-# Distance between the middles of bays (m), and length of the pipes of a rack, at most.
-PITCH, _LENGTH = 10.0, 6.0
+# Distance between the middles of bays (m): a rack and an aisle.
+PITCH = 10.0
 
-# Heights of the levels of a rack (m), width that pipes may take, and gaps between them (m).
-_LEVELS, _WIDTH, _GAPS = (1.2, 2.4, 3.6), 4.6, (0.15, 0.5)
+# Greatest length of the pipes of a rack (m), a common one of delivery.
+_LENGTH = 6.0
 
-# Diameters of pipes and tanks (m).
-PIPES, TANKS = (0.05, 0.6), (5.0, 30.0)
+# Heights of the levels of a rack (m).
+_LEVELS = (1.2, 2.4, 3.6)
+
+# Width (m) that the pipes of a level may take.
+_WIDTH = 4.6
+
+# Least and greatest gap between neighboring pipes (m).
+_GAPS = (0.15, 0.5)
+
+# Least and greatest diameter of pipes (m).
+PIPES = (0.05, 0.6)
+
+# Least and greatest diameter of tanks (m).
+TANKS = (5.0, 30.0)
 
 # Radius of the axis of an elbow (diameters): the common long one.
 _BEND = 1.5
 
-# Share of the pipes of the lowest and the highest level that turn down or up at their end, and that have a flange.
-_TURNING, _FLANGED = 0.6, 0.3
+# Share of the pipes of the lowest and the highest level that turn down or up at their end.
+_TURNING = 0.6
 
+# Share of the pipes that have a flange.
+_FLANGED = 0.3
+
+# The direction of the zenith.
 _UP = np.array([0.0, 0.0, 1.0])
 
 

@@ -9,15 +9,19 @@ from ..stage import Monitor
 from .scene import Scene
 from .solids import Rect
 
-# Share of the trees outside the forest that grow in clumps, and the number in a clump.
+# Share of the trees outside the forest that grow in clumps.
 _CLUMP_SHARE = 0.4
+
+# Trees of a clump.
 _CLUMP_SIZE = 4
 
 # Distance between the trees of the forest (m).
 _FOREST_SPACING = 4.5
 
-# Heights of trees (m) in gardens and in the forest.
+# Least and greatest height of trees in gardens (m).
 _GARDEN_TREES = (5.0, 16.0)
+
+# Least and greatest height of trees in the forest (m).
 _FOREST_TREES = (10.0, 22.0)
 
 

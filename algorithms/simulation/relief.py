@@ -9,14 +9,22 @@ import numpy as np
 
 from .solids import Rect
 
-# Half width of the level valley floor and of the channel in it, and its depth: a small regulated river.
+# Half the width (m) of the level floor of the valley of a small regulated river.
 VALLEY = 16.0
+
+# Half the width (m) of its channel between the upper edges of the banks.
 CHANNEL = 9.6
+
+# Depth (m) of the channel under the floor of the valley.
 _CHANNEL_DEPTH = 4.5
+
+# Slope of the banks, a tangent.
 _BANK_SLOPE = 0.8
+
+# Depth of the water (m).
 _WATER_DEPTH = 1.5
 
-# Distance between terraces.
+# Distance between terraces (m).
 _TERRACE_LENGTH = 45.0
 
 # Beams lean by at most 30°; with gradients below 1 / tan 30° each of them meets the ground exactly once.

@@ -15,6 +15,7 @@ from .pairs import in_boxes, rank
 from .relief import Relief
 from .scene import Scene
 
+# How a scanner may lay its pulses on the ground.
 PATTERNS = ("lines", "zigzag", "random")
 
 # The dimensions that scanners record, and the true class and object of each point.
@@ -49,9 +50,13 @@ RangeNoise = Annotated[
 # Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.
 MAX_PULSES = 5e7
 
-# Height over the ground (m) and speed (m/s) of a survey flight, and what a strip takes beside the way (s).
+# Height of a survey flight over the ground (m).
 _HEIGHT = 600.0
+
+# Speed of a survey flight (m/s).
 _SPEED = 60.0
+
+# Time from the end of one strip to the start of the next (s).
 _TURN = 300.0
 
 # Radius of the beam at the ground (m): 0.35 mrad from 600 m.
@@ -60,21 +65,31 @@ _BEAM_RADIUS = 0.1
 # Pulses worked on at once, which bounds memory.
 _BLOCK = 50_000
 
-# The scanner separates echoes at this distance from each other (m), and records five.
+# Least distance of echoes that the scanner separates (m): half the length of a pulse.
 _DEAD_ZONE = 0.7
+
+# Most echoes of a pulse that the scanner records.
 _MAX_RETURNS = 5
 
-# A leaf lets this share of the pulses on. Water sends back few, and hardly any at a slant.
+# Share of the pulses that a leaf lets on.
 _THROUGH = 0.7
+
+# Share of the pulses straight down that water sends back.
 _WATER_CHANCE = 0.25
+
+# Angle (rad) to the vertical at which that share is 1/e of this: water mirrors.
 _WATER_SLANT = np.deg2rad(12.0)
 
-# Heights (m) of birds over and of multipath points under the ground.
+# Least and greatest height of birds over the ground (m).
 _BIRDS = (30.0, 120.0)
+
+# Least and greatest depth of multipath points under the ground (m).
 _MULTIPATH = (2.0, 15.0)
 
+# Classes of what lets a part of the light through.
 _LEAFY = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
 
+# Share of the light that a material reflects, by class.
 _REFLECTANCE = np.full(256, 0.3)
 _REFLECTANCE[[PointClass.GROUND, PointClass.BUILDING, PointClass.WATER]] = (0.35, 0.45, 0.06)
 _REFLECTANCE[[PointClass.LOW_NOISE, PointClass.HIGH_NOISE, PointClass.WIRE_CONDUCTOR]] = 0.05

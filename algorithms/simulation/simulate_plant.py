@@ -27,9 +27,14 @@ _DRAWN = 1_000_000
 # The floor is thinned to this share of the density of everything else: there is more of it than of pipes.
 _FLOOR = 0.05
 
-# Range of the scanner (m), distance at which its points have the asked density, and least angle (°) of incidence to
-# the surface.
-_RANGE, _FULL_DENSITY, _LEAST_INCIDENCE = 45.0, 6.0, 8.0
+# Range of the scanner (m).
+_RANGE = 45.0
+
+# Distance (m) at which the points of a scan have the asked density.
+_FULL_DENSITY = 6.0
+
+# Least angle (°) between beam and surface at which the surface returns an echo.
+_LEAST_INCIDENCE = 8.0
 
 # Surfaces at most this far (spacings) behind the first one in a beam are the same one.
 _SAME = 2.0

@@ -19,9 +19,13 @@ from .vehicle import Drive, drive_along, pulses_of
 # The scanners are this high over the street (m).
 _HEIGHT = 2.2
 
-# Points of a wall this far from its front (m, and standard deviations of the noise) are on its ends and reveals.
-_ON_FRONT, _DEVIATIONS = 0.01, 4.0
+# Points of a wall this far from its front are on its ends and reveals (m), without noise.
+_ON_FRONT = 0.01
 
+# What the noise adds to that distance (standard deviations): one point of 16,000 is farther off.
+_DEVIATIONS = 4.0
+
+# From where the street may be scanned.
 VIEWS = ("vehicle", "airplane")
 
 _CREATED = (*RECORDED, "cluster_id")

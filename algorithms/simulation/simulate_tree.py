@@ -15,20 +15,35 @@ from ..stage import Field, Layer, LayerFeatures, Param, stage
 # Height (m) at which the diameter of the stem is given.
 _BREAST = 1.3
 
-# Radius of a branch where it leaves its parent: share of the radius of the parent there. Tips have a share of the base.
-_THINNER, _TIP = 0.55, 0.35
+# Radius of a branch where it leaves its parent (share of the radius of the parent there).
+_THINNER = 0.55
+
+# Radius of the tip of a branch (share of that of its base).
+_TIP = 0.35
 
 # Length of a branch: share of the way from its base to the tip of its parent, so that the parent stays the longer one.
 _LENGTH = (0.35, 0.6)
 
-# Angle (°) between a branch and its parent, and pieces of its line, each turned a little (°).
-_ANGLE, _PIECES, _TURN = (45.0, 70.0), 12, 3.0
+# Least and greatest angle between a branch and its parent (°).
+_ANGLE = (45.0, 70.0)
 
-# Branches of a branch, and length (m) of the shortest one that has any.
-_OF_BRANCH, _LONG = 3, 2.0
+# Straight pieces of the line of a branch.
+_PIECES = 12
 
-# Radius of the square of ground (m) and its points per square meter.
-_GROUND, _GROUND_DENSITY = 3.0, 200.0
+# Standard deviation of the turn from one piece to the next (°), about either axis.
+_TURN = 3.0
+
+# Branches of a branch.
+_OF_BRANCH = 3
+
+# Length of the shortest branch that has branches (m).
+_LONG = 2.0
+
+# Half the side of the square of ground (m).
+_GROUND = 3.0
+
+# Points of the ground per square meter.
+_GROUND_DENSITY = 200.0
 
 _FIELDS = (
     Field("id", int, "number of the branch, as SegmentID of its points"),

@@ -220,9 +220,19 @@ def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> n
     return ~np.isfinite(spatial.cKDTree(centers).query(xyz, distance_upper_bound=_HOLE)[0])
 
 
-# Brightness (red, green, blue, of 255) of objects in a village; walls and roofs come in several.
-_GROUND, _LEAVES, _CARS = (134, 124, 92), (70, 96, 48), (150, 152, 158)
+# Brightness of the ground (red, green, blue, of 255, as below).
+_GROUND = (134, 124, 92)
+
+# Brightness of leaves.
+_LEAVES = (70, 96, 48)
+
+# Brightness of cars.
+_CARS = (150, 152, 158)
+
+# Brightness of walls, one each.
 _WALLS = np.array([(226, 218, 200), (212, 190, 140), (190, 186, 180), (205, 160, 130)])
+
+# Brightness of roofs, one each.
 _ROOFS = np.array([(150, 70, 50), (110, 60, 50), (95, 95, 100), (130, 105, 90)])
 
 

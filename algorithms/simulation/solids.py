@@ -14,7 +14,10 @@ from typing import Optional
 
 import numpy as np
 
+# Most planes of the top of a solid: those of a hip roof.
 _MAX_TOPS = 4
+
+# Faces of a solid: four sides, the underside and the top.
 _FACES = 4 + 1 + _MAX_TOPS
 
 

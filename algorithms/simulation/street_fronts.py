@@ -10,6 +10,7 @@ from ..cloud.asprs import PointClass
 from .scene import Scene
 from .solids import Rect, Solid, gable
 
+# Kinds of fronts.
 KINDS = ("plain", "recess", "bay", "curved", "balconies")
 
 # Thickness of walls (m).
@@ -24,8 +25,11 @@ _STOREY = 3.0
 # Height of sills over the floor (m).
 _SILL = 0.9
 
-# Width and height of windows, and of doors (m).
-_WINDOW, _DOOR = (1.2, 1.5), (1.1, 2.2)
+# Width and height of windows (m).
+_WINDOW = (1.2, 1.5)
+
+# Height of doors (m), which are as wide as windows.
+_DOOR = 2.2
 
 # Distance of panes behind the front (m).
 _PANE = 0.16
@@ -275,7 +279,7 @@ class _Wall:
             is_door = has_door and level == floor
             low, high = (level + _SILL, level + _SILL + _WINDOW[1])
             if is_door:
-                low, high = floor if floor > ground else bottom, level + _DOOR[1]
+                low, high = floor if floor > ground else bottom, level + _DOOR
                 self._put_stairs(along, bottom, levels)
             if low > below:
                 self.put(along, (0.0, _WALL), below, low, own)

@@ -14,14 +14,32 @@ from .solids import Rect
 from .street_fronts import KINDS, Front, Line, Truth, between, draw_pitch
 from .town_layout import park_car
 
-# Widths of houses, and heights of the eaves of a side (m); houses of one side differ by less than a storey.
-_WIDTHS, _EAVES, _DIFFERENCE = (8.0, 12.0), (7.0, 11.0), 0.8
+# Least and greatest width of houses (m).
+_WIDTHS = (8.0, 12.0)
 
-# Rows of objects, from the fronts toward the street (m).
-_PEOPLE, _TREES, _POLES, _CARS = 1.2, 2.2, 2.4, 3.6
+# Least and greatest height of the eaves of a side (m).
+_EAVES = (7.0, 11.0)
 
-# A person and a pole: width (m) and height (m).
-_PERSON, _POLE = (0.45, 1.75), (0.16, 6.0)
+# Greatest difference of the eaves of one side (m): less than a storey.
+_DIFFERENCE = 0.8
+
+# Distance of people from the fronts (m): they walk on the sidewalk.
+_PEOPLE = 1.2
+
+# Distance of trees from the fronts (m).
+_TREES = 2.2
+
+# Distance of poles from the fronts (m), in the row of trees.
+_POLES = 2.4
+
+# Distance of the middles of parked cars from the fronts (m), beyond the curb.
+_CARS = 3.6
+
+# Width and height of a person (m).
+_PERSON = (0.45, 1.75)
+
+# Width and height of a pole (m).
+_POLE = (0.16, 6.0)
 
 
 @dataclass(frozen=True)

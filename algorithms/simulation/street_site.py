@@ -21,18 +21,32 @@ _HOUSES = (
     (6.5, 17.0, 14.0, 10.0, 0.0, 3.4, True),
     (23.0, -6.0, 11.0, 8.0, -90.0, 3.4, True),
 )
+
+# Pitch of gable roofs, as a tangent: 38°.
 _PITCH = np.tan(np.deg2rad(38.0))
+
+# Height of a storey (m), at which there are balconies.
 _STOREY = 3.0
+
+# Length and depth of a balcony (m).
 _BALCONY = (2.6, 1.2)
 
-# Cars are parked in two rows along the street; lamps between the street and the houses (m from the middle).
+# Cars that are parked in two rows along the street (m from the middle).
 _CARS = [(x, y) for y in (8.2, -1.8) for x in (-16.0, -10.5, -5.0, 6.5, 12.0)]
+
+# Lamps between the street and the houses (m from the middle).
 _LAMPS = [(x, 9.8) for x in (-18.0, -1.0, 16.0)]
+
+# Width and height of a lamp (m).
 _LAMP = (0.15, 6.0)
 
-# Trees are south of the street, and two in front of the houses (m from the middle).
+# The first row of trees, south of the street (m from the middle).
 _ROW_OF_TREES = -9.0
+
+# Trees in front of the houses (m from the middle).
 _TREES_IN_FRONT = ((-12.0, 5.0), (12.0, 4.0))
+
+# Least and greatest height of trees (m).
 _TREE_HEIGHTS = (6.0, 11.0)
 
 

@@ -155,5 +155,9 @@ def _dormer(site: Site, rect: Rect, pitch: float, along: float, side: int) -> So
 
 
 _Build = Callable[[Scene, Rect, np.random.Generator], None]
+
+# Kinds of houses on plots.
 _KINDS: tuple[_Build, ...] = (_gable_house, _hip_house, _flat_house, _angled_house, _row)
+
+# Share of the plots with each kind.
 _SHARES = (0.28, 0.16, 0.14, 0.16, 0.26)

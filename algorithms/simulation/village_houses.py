@@ -86,6 +86,7 @@ def _roof(rng: np.random.Generator) -> tuple[float, float]:
     return float(rng.choice(_EAVES)), float(np.tan(np.deg2rad(rng.uniform(25.0, 42.0))))
 
 
+# Planes that cut a roof: none.
 _WHOLE = np.zeros((0, 3))
 
 
