@@ -53,19 +53,7 @@ def triangulated(xy: np.ndarray) -> Optional[Any]:
 def trace_outlines(xy: np.ndarray, max_edge: float, triangulation: Any) -> Optional[Tracing]:
     """Return the pieces of triangles that share edges and have none longer than ``max_edge`` (m), holes filled.
 
-    Parameters
-    ----------
-    xy : ndarray of shape (n, 2)
-        Coordinates (m).
-    max_edge : float
-        Longest edge (m).
-    triangulation : Delaunay
-        That of the points, as :func:`triangulated` gives it.
-
-    Returns
-    -------
-    Tracing or None
-        None where no triangle is left.
+    The triangulation is that of the points ``xy`` (n, 2), m; None where no triangle is left.
 
     References
     ----------

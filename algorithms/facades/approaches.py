@@ -35,14 +35,9 @@ _RULES = _Rules()
 
 
 class Approach:
-    """The surroundings of a wall, in its frame.
+    """The surroundings of a wall: positions (n, 2), m, along and up, of its points and of those before it.
 
-    Parameters
-    ----------
-    wall : ndarray of shape (n, 2)
-        Positions (m) along and up of the points on the wall.
-    before : ndarray of shape (m, 2)
-        Of the points from :data:`FROM_WALL` to :data:`BEFORE` (m) before it.
+    Those before it are from :data:`FROM_WALL` to :data:`BEFORE` (m) before it.
     """
 
     def __init__(self, wall: np.ndarray, before: np.ndarray) -> None:

@@ -22,17 +22,7 @@ _LEAST_COMMON = 0.3
 
 
 def with_common_borders(facades: Sequence[Facade], reach: float, monitor: Monitor) -> list[Facade]:
-    """Return facades whose neighboring edges lie on the intersection lines of their planes.
-
-    Parameters
-    ----------
-    facades : sequence of Facade
-        With boundaries of their own.
-    reach : float
-        Edges farther from the line than this (m) stay where they are.
-    monitor : Monitor
-        Receives the progress.
-    """
+    """Return facades whose neighboring edges, if within ``reach`` (m), lie on the intersection line of their planes."""
     lines: list[dict[int, tuple]] = [{} for _ in facades]
     neighbors: list[set[int]] = [set() for _ in facades]
     for i, j in _near_pairs(facades, reach, monitor):

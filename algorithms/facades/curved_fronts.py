@@ -35,14 +35,8 @@ _ROUNDS = 5
 def as_strips(xyz: np.ndarray, wall: np.ndarray, tolerance: float) -> np.ndarray:
     """Return wall numbers (n,) from 1, those of curved fronts as upright strips side by side; 0 stays 0.
 
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        Coordinates (m).
-    wall : ndarray of shape (n,)
-        Walls from 1 to m, each with a point; 0 if unassigned. On a curved front planes overlap.
-    tolerance : float
-        Largest root mean square distance (m) of the points of a column from their strip.
+    On a curved front the planes of walls overlap. The points of a column lie off their strip by at most ``tolerance``
+    (root mean square, m).
     """
     result = wall.copy()
     count = int(wall.max(initial=0))

@@ -196,7 +196,7 @@ def extract_facades(
     monitor.resolved(tolerance=tolerance, edge_factor=edge_factor)
     searched = _is_stacked(xyz, min_height)
     if search_in == FACADE_LINES:
-        searched &= _in_lines(xyz, gps_time, point_source_id)
+        searched &= are_of_facade_lines(xyz, gps_time, point_source_id)
     plane = np.zeros(len(xyz), np.int64)
     rows = np.flatnonzero(searched)
     if len(rows):
@@ -223,15 +223,6 @@ def extract_facades(
         facades = with_common_borders(facades, corner_distance, monitor.part(0.95, 1.0))
     monitor.progress(1.0)
     return _result(facades, len(xyz), min_area, min_height, monitor)
-
-
-def _in_lines(xyz: np.ndarray, gps_time: Optional[np.ndarray], point_source_id: Optional[np.ndarray]) -> np.ndarray:
-    """Return which points (n,) are of facade lines."""
-    if gps_time is None:
-        raise ValueError(
-            "Facade lines are found by the times of the pulses, and the cloud has no GPS time; search in all points."
-        )
-    return are_of_facade_lines(xyz, gps_time, point_source_id)
 
 
 def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:

@@ -132,12 +132,8 @@ def completed(ring: np.ndarray) -> np.ndarray:
 
     Bites are the pockets between the boundary and its convex hull. They are filled where the hull is upright or follows
     the foot of the facade; where a corner of the foot is hidden, the side goes on down to the line of the foot.
-    Upward, a facade may have any shape: steps and gables stay.
-
-    Parameters
-    ----------
-    ring : ndarray of shape (m, 2)
-        Closed, counterclockwise, along and up the facade (m).
+    Upward, a facade may have any shape: steps and gables stay. The ring (m, 2), m along and up the facade, is closed
+    and counterclockwise.
     """
     positions = ring[:-1]
     corners = np.sort(spatial.ConvexHull(positions).vertices)
@@ -252,16 +248,9 @@ def _turns(positions: np.ndarray) -> np.ndarray:
 
 
 def pushed_out(ring: np.ndarray, positions: np.ndarray, limit: float) -> np.ndarray:
-    """Return a ring whose edges are moved outward, parallel, until it holds all positions.
+    """Return a ring whose edges are moved outward, parallel, until it holds all positions (n, 2) within a limit (m).
 
-    Parameters
-    ----------
-    ring : ndarray of shape (m, 2)
-        Closed, counterclockwise.
-    positions : ndarray of shape (n, 2)
-        Vertices of the traced boundary (m).
-    limit : float
-        Positions farther outside than this (m) are spikes, which stay outside; infinite: none stays outside.
+    Positions farther outside are spikes, which stay outside; with an infinite limit none does.
     """
     for _ in range(_PUSHES):
         starts, ends = ring[:-1], ring[1:]

@@ -86,17 +86,7 @@ class Opening:
 
 
 class Raster:
-    """Cells on a facade, and which hold wall.
-
-    Parameters
-    ----------
-    wall : ndarray of shape (n, 2)
-        Positions of the points of the wall (m).
-    behind : ndarray of shape (m, 2)
-        Positions of the points behind the wall (m).
-    size : float
-        Side of a cell (m).
-    """
+    """Cells of a ``size`` (m) on a facade, and which hold positions (n, 2), m, of points of the wall and behind it."""
 
     def __init__(self, wall: np.ndarray, behind: np.ndarray, size: float) -> None:
         self.size, self.margin = size, int(np.ceil(_REACH / size)) + 2

@@ -185,14 +185,14 @@ def segment_facade_lines(
     return segment_id, features
 
 
-def are_of_facade_lines(xyz: np.ndarray, gps_time: np.ndarray, point_source_id: Optional[np.ndarray]) -> np.ndarray:
-    """Return which points (n,) are of the facade lines that :func:`segment_facade_lines` finds by default.
-
-    Raises
-    ------
-    ValueError
-        If all points have the same time.
-    """
+def are_of_facade_lines(
+    xyz: np.ndarray, gps_time: Optional[np.ndarray], point_source_id: Optional[np.ndarray]
+) -> np.ndarray:
+    """Return which points (n,) are of the facade lines that :func:`segment_facade_lines` finds by default."""
+    if gps_time is None:
+        raise ValueError(
+            "Facade lines are found by the times of the pulses, and the cloud has no GPS time; search in all points."
+        )
     segment_id, lines = segment_facade_lines(xyz, gps_time, point_source_id)
     is_facade = np.array([False, *(kind == KINDS[_FACADE] for kind in lines.columns["kind"])])
     return is_facade[segment_id]

@@ -27,16 +27,8 @@ Found = list[tuple[Facade, list[Opening]]]
 def drawn_once(found: Found, xyz: np.ndarray, max_depth: float) -> Found:
     """Return facades with their openings, without those that another wall hides or has as well.
 
-    Of two openings that are the same the one with more wall around it is kept.
-
-    Parameters
-    ----------
-    found : list of tuple of (Facade, list of Opening)
-        Facades with all openings that were found in each for itself.
-    xyz : ndarray of shape (n, 3)
-        The whole cloud (m).
-    max_depth : float
-        How far (m) behind a wall its openings reach.
+    Of two openings that are the same the one with more wall around it is kept. Openings reach ``max_depth`` (m) behind
+    their wall; ``xyz`` (n, 3), m, is the whole cloud.
     """
     walls = [_Wall(facade, xyz) for facade, _ in found]
     candidates = [(own, opening) for own, (_, openings) in enumerate(found) for opening in openings]

@@ -39,9 +39,6 @@ class _Rules:
 
 _RULES = _Rules()
 
-# Halvings of a distance between samples that lead to less than a micrometer.
-_HALVINGS = 20
-
 
 @dataclass(frozen=True)
 class _Piece:
@@ -81,21 +78,9 @@ class _Ring:
 
 
 def fitted_to_walls(footprints: LayerFeatures, walls: PlanSegments) -> tuple[LayerFeatures, np.ndarray]:
-    """Return footprints with their exterior on the walls that were seen, and which share of each was seen.
+    """Return footprints with their exterior on the walls that were seen, and which share (n,) of each was seen.
 
-    Parameters
-    ----------
-    footprints : LayerFeatures
-        Outlines from the air; attributes and holes are kept.
-    walls : PlanSegments
-        Walls seen from the street, in the frame of the footprints.
-
-    Returns
-    -------
-    fitted : LayerFeatures
-        The footprints; one that would cross itself stays as it is.
-    seen : ndarray of shape (n,)
-        Share of the outline that lies on walls, 0 to 1.
+    Attributes and holes are kept, and a footprint that would cross itself stays as it is.
     """
     outlines = [_exterior(rings) for rings in footprints.geometries]
     pieces = _pieces(_chains(walls), [_Ring(ring) for ring in outlines])
@@ -162,27 +147,12 @@ def _pieces(chains: list[np.ndarray], rings: list[_Ring]) -> list[list[_Piece]]:
             if number < 0:
                 continue
             corners = samples[run][is_corner[run] | (np.arange(len(run)) % (len(run) - 1 or 1) == 0)]
-            corners[0] = _border(rings, samples, owner, run[0], -1)
-            corners[-1] = _border(rings, samples, owner, run[-1], 1)
             first, last = rings[number].nearest(corners[[0, -1]])[1]
             length = float(np.hypot(*np.diff(corners, axis=0).T).sum())
             # Walls that run against the ring are of a yard or of another building.
             if length >= _RULES.shortest and rings[number].between(first, last) <= 2 * length + _RULES.gap:
                 pieces[number].append(_Piece(corners, float(first), float(last)))
     return [_apart(some, ring) for some, ring in zip(pieces, rings)]
-
-
-def _border(rings: list[_Ring], samples: np.ndarray, owner: np.ndarray, row: int, step: int) -> np.ndarray:
-    """Return where (2,), m, the walls of a ring end: at a sample, or as near to the ring of the next one as to it."""
-    own, beyond = samples[row], row + step
-    if not 0 <= beyond < len(samples) or owner[beyond] < 0:
-        return own
-    pair, other = [rings[owner[row]], rings[owner[beyond]]], samples[beyond]
-    for _ in range(_HALVINGS):
-        middle = (own + other) / 2
-        distance = [float(ring.nearest(middle[None])[0][0]) for ring in pair]
-        own, other = (middle, other) if distance[0] <= distance[1] else (own, middle)
-    return own
 
 
 def _apart(pieces: list[_Piece], ring: _Ring) -> list[_Piece]:

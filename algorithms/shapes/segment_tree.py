@@ -34,7 +34,7 @@ _WIDEST = 3.0
 # Length (m) of the pieces of a branch that have a radius of their own: branches taper little over it.
 _PIECE = 0.5
 
-# Distance from the line of a piece within which its points lie (estimated radii): beyond it are leaves.
+# Distance from its line within which the points of a piece lie (median of their distances): farther ones are leaves.
 _WITHIN = 2.5
 
 _FIELDS = (
