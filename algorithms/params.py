@@ -155,18 +155,6 @@ FacadeGap = Annotated[
     ),
 ]
 
-EdgeFactor = Annotated[
-    Optional[float],
-    Param(
-        "Longest edge",
-        "Triangles with an edge longer than this many point spacings are removed from the boundary inward.",
-        low=1,
-        high=20,
-        automatic="4 for straight edges; 1.5 for key points, as published.",
-        advanced=True,
-    ),
-]
-
 CornerDistance = Annotated[
     float,
     Param(

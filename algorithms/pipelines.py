@@ -230,8 +230,7 @@ _PIPELINES = (
         ),
         steps=(Step("planes", "extract_facades"), Step("openings", "extract_openings")),
         shared={
-            name: ("planes", "openings")
-            for name in ("max_tilt", "max_gap", "edge_factor", "corner_distance", "boundary", "complete")
+            name: ("planes", "openings") for name in ("max_tilt", "max_gap", "corner_distance", "boundary", "complete")
         },
         shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
         switched_off=("output", "planes_facades"),

@@ -152,7 +152,6 @@ WITHOUT_UNIT = {
     "min_share_around",
     "holes",
     "leaves",
-    "edge_factor",
     "map_changes",
     "max_penetration",
     "min_overlap",

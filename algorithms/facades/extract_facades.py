@@ -9,14 +9,14 @@ import numpy as np
 
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import members
-from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt, Seed
+from ..params import Boundary, CompleteFacades, CornerDistance, FacadeGap, FacadeTilt, Seed
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.least_squares_planes import Planes, off_planes, planes_of
 from ..segmentation.segment_planes_ransac import segment_planes_ransac
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, ProgressOnly, stage
 from .common_borders import with_common_borders
 from .curved_fronts import as_strips
-from .facade_outline import Drawing, longest_edge
+from .facade_outline import Drawing
 from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
 from .segment_facade_lines import are_of_facade_lines
 
@@ -118,7 +118,6 @@ def extract_facades(
         ),
     ] = 2.5,
     max_gap: FacadeGap = 1.0,
-    edge_factor: EdgeFactor = None,
     corner_distance: CornerDistance = 0.4,
     boundary: Boundary = "straight edges",
     complete: CompleteFacades = True,
@@ -192,8 +191,7 @@ def extract_facades(
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance
-    edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
-    monitor.resolved(tolerance=tolerance, edge_factor=edge_factor)
+    monitor.resolved(tolerance=tolerance)
     searched = _is_stacked(xyz, min_height)
     if search_in == FACADE_LINES:
         searched &= are_of_facade_lines(xyz, gps_time, point_source_id)
@@ -214,7 +212,7 @@ def extract_facades(
     walls = as_strips(xyz, merged_planes(xyz, plane, tolerance, monitor.part(0.6, 0.65)), tolerance)
     pieces = split_at_gaps(xyz, walls, max_gap)
     _leave_small(xyz, pieces, min_height)
-    drawing = Drawing(max_tilt, max_gap, edge_factor, boundary, complete)
+    drawing = Drawing(max_tilt, max_gap, boundary, complete)
     facades = surfaces_of(xyz, pieces, drawing, monitor.part(0.65, 0.95))
     # The area that was seen: the boundary of a post and of objects at its foot has a larger one.
     facades = [each for each in facades if min(each.area, each.seen_area) >= min_area and each.height >= min_height]

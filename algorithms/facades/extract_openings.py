@@ -8,12 +8,12 @@ from typing import Annotated
 import numpy as np
 
 from ..geometry.line_segments import is_valid
-from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt
+from ..params import Boundary, CompleteFacades, CornerDistance, FacadeGap, FacadeTilt
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .approaches import BEFORE
 from .common_borders import with_common_borders
 from .extract_facades import FACADES
-from .facade_outline import Drawing, longest_edge, ring_area
+from .facade_outline import Drawing, ring_area
 from .facade_surfaces import Facade, facade_features, surfaces_of
 from .opening_search import Opening, find_openings
 from .shared_openings import drawn_once
@@ -75,7 +75,6 @@ def extract_openings(
     ] = 0.4,
     max_tilt: FacadeTilt = 10.0,
     max_gap: FacadeGap = 1.0,
-    edge_factor: EdgeFactor = None,
     corner_distance: CornerDistance = 0.4,
     boundary: Boundary = "straight edges",
     complete: CompleteFacades = True,
@@ -130,9 +129,7 @@ def extract_openings(
     >>> len(openings), openings.columns["kind"][0]
     (1, 'window')
     """
-    edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
-    monitor.resolved(edge_factor=edge_factor)
-    drawing = Drawing(max_tilt, max_gap, edge_factor, boundary, complete)
+    drawing = Drawing(max_tilt, max_gap, boundary, complete)
     facades = surfaces_of(xyz, segment_id, drawing, monitor.part(0, 0.5))
     if corner_distance:
         facades = with_common_borders(facades, corner_distance, monitor.part(0.5, 0.55))

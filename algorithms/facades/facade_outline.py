@@ -85,14 +85,8 @@ class Drawing:
 
     max_tilt: float  #: Largest angle of a facade to the vertical, °
     max_gap: float  #: Widest shadow that is bridged, m
-    edge_factor: float  #: Longest edge of a triangle, in spacings
     boundary: str  #: "straight edges" by least squares, or "key points" of the boundary, where it turns
     complete: bool  #: Whether what cars and trees hide of the foot and the sides is filled
-
-
-def longest_edge(boundary: str) -> float:
-    """Return the longest edge of a triangle (spacings) for a kind of boundary."""
-    return _PUBLISHED_EDGE if boundary == "key points" else _LONGEST_EDGE
 
 
 def outline_of(positions: np.ndarray, drawing: Drawing) -> Optional[Outline]:
@@ -200,7 +194,8 @@ def sparse_spacing(positions: np.ndarray, triangles: np.ndarray) -> float:
 
 def _traced(positions: np.ndarray, triangulation: Any, spacing: float, drawing: Drawing) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
-    max_edge, max_gap = drawing.edge_factor * spacing, drawing.max_gap
+    longest_edge = _PUBLISHED_EDGE if drawing.boundary == "key points" else _LONGEST_EDGE
+    max_edge, max_gap = longest_edge * spacing, drawing.max_gap
     while True:
         tracing = trace_outlines(positions, max_edge, triangulation)
         piece = None if tracing is None else _largest(tracing)

@@ -184,6 +184,11 @@ class World:
         return beams.echoes(beam[met], ranges[met], classes, self.wires[wire[met], 6])
 
 
+def is_vegetation(classification: np.ndarray) -> np.ndarray:
+    """Return which classes are low, medium or high vegetation."""
+    return (classification >= PointClass.LOW_VEGETATION) & (classification <= PointClass.HIGH_VEGETATION)
+
+
 def vegetation_class(height: np.ndarray) -> np.ndarray:
     """Return low (under 0.5 m), medium (under 2 m) or high vegetation by height over the ground (m)."""
     steps = np.array([PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION], np.uint8)

@@ -63,6 +63,11 @@ class Kind:
     arch: float = 0.0  #: Height of the middle of a deck over its ends, m
 
     @property
+    def width(self) -> float:
+        """Width (m) of all decks with the gaps of 1.5 m between them."""
+        return sum(self.decks) + 1.5 * (len(self.decks) - 1)
+
+    @property
     def behind(self) -> float:
         """How far (m) the slope to the bottom lies behind the edges: vertical quays are in front of it."""
         return self.depth / _WALL if self.is_water and self.bank == _WALL else 0.0
@@ -146,8 +151,7 @@ class Lot:
     def span(self) -> float:
         """Length (m) of the deck from edge to edge of the obstacle."""
         made = KINDS[self.kind]
-        width = sum(made.decks) + 1.5 * (len(made.decks) - 1)
-        return 2 * made.half_width / np.cos(self.skew) + width * np.tan(abs(self.skew))
+        return 2 * made.half_width / np.cos(self.skew) + made.width * np.tan(abs(self.skew))
 
     @property
     def water_level(self) -> float:
@@ -255,8 +259,7 @@ def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
     """Put the decks of a lot with parapets, piers under long ones, and cars."""
     made = KINDS[lot.kind]
     top = _FLY_OVER if lot.kind == "fly-over" else 0.05
-    total = sum(made.decks) + 1.5 * (len(made.decks) - 1)
-    decks, at = [], -total / 2
+    decks, at = [], -made.width / 2
     for width in made.decks:
         frame = lot.frame.part(0.0, 0.0, 1.0, 1.0, lot.skew)
         rect = frame.part(0.0, at + width / 2, lot.span + 2 * _SEAT, width)

@@ -62,6 +62,17 @@ _BLOCK_TIME = 1.0
 
 
 @dataclass(frozen=True)
+class LineScan:
+    """Settings of scanners that turn a mirror and record the first echo."""
+
+    line_rate: float  #: Lines per second
+    angular_step: float  #: Angle between pulses, °
+    max_range: float  #: Reach of the scanner, m
+    range_noise: float  #: Standard deviation of distances, m
+    seed: int  #: The same seed makes the same points
+
+
+@dataclass(frozen=True)
 class Flight:
     """Position and attitude of a drone over time: it climbs, turns once and lands."""
 
@@ -92,6 +103,43 @@ class Flight:
         """Return the deviations (n, 3) at times (n,), from -1 to 1 of the largest."""
         waves = np.sin(2 * np.pi * time[:, None, None] / np.array(_PERIODS) + self.phases[which]).mean(axis=-1)
         return waves * np.clip(np.minimum(time, self.duration - time) / _SETTLING, 0.0, 1.0)[:, None]
+
+    def scanned(
+        self, scene: Scene, scanners: tuple[str, ...], scan: LineScan, monitor: Monitor
+    ) -> dict[str, np.ndarray]:
+        """Return the dimensions of a scene scanned by some of the scanners, by name, in the order of time."""
+        world, parts = Surroundings(scene, scan.max_range), []
+        blocks = [(name, time) for name in scanners for time in self._blocks(scan)]
+        generators = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
+        for i, (name, time) in enumerate(blocks):
+            rng = generators[name]
+            beams, left = self._pulses(name, time, scan.line_rate)
+            echoes = first_met(world, beams, rng)
+            # The noise of the range lies along the beam.
+            ranges = echoes.range + scan.range_noise * rng.standard_normal(len(echoes))
+            part = recorded(echoes, left, SCANNERS[name], rng)
+            part["gps_time"] = time[echoes.pulse]
+            part["xyz"] = beams.at(echoes.pulse, ranges)
+            parts.append(part)
+            monitor.progress((i + 1) / len(blocks))
+        return in_time_order(parts)
+
+    def _blocks(self, scan: LineScan) -> Iterator[np.ndarray]:
+        """Yield the times (s) of the pulses of some scan lines each; a turn of the mirror is a line."""
+        per_line, rate = pulses_per_line(scan.angular_step), scan.line_rate
+        n_lines, step = int(self.duration * rate), max(1, min(_BLOCK // per_line, int(_BLOCK_TIME * rate)))
+        for line in range(0, n_lines, step):
+            lines = np.arange(line, min(line + step, n_lines))
+            pulse = np.arange(per_line) * (scan.angular_step / 360.0)
+            yield (lines[:, None] + pulse).ravel() / rate
+
+    def _pulses(self, scanner: str, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+        """Return the beams of pulses, and directions to the left of the drone (n, 3)."""
+        forward, left, up = self.axes(time)
+        angle = np.deg2rad(np.mod(time * line_rate, 1.0) * 360.0 - FIELD / 2)[:, None]
+        ahead = forward if scanner == "horizontal" else -up
+        direction = np.cos(angle) * ahead + np.sin(angle) * left
+        return Beams(np.arange(len(time)), self.positions(time), direction, np.column_stack(bearing(direction))), left
 
 
 def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flight:
@@ -167,52 +215,6 @@ def _half_widths(elevation: np.ndarray, radius: np.ndarray, distance: np.ndarray
     return np.column_stack([wide, high])
 
 
-@dataclass(frozen=True)
-class LineScan:
-    """Settings of scanners that turn a mirror and record the first echo."""
-
-    line_rate: float  #: Lines per second
-    angular_step: float  #: Angle between pulses, °
-    max_range: float  #: Reach of the scanner, m
-    range_noise: float  #: Standard deviation of distances, m
-    seed: int  #: The same seed makes the same points
-
-
-def fly(
-    scene: Scene, flight: Flight, scanners: tuple[str, ...], scan: LineScan, monitor: Monitor
-) -> dict[str, np.ndarray]:
-    """Return the dimensions of a site scanned from a drone by name, in the order of time.
-
-    Parameters
-    ----------
-    scene : Scene
-        The site.
-    flight : Flight
-        The flight.
-    scanners : tuple of str
-        Names of the scanners.
-    scan : LineScan
-        Their settings.
-    monitor : Monitor
-        Receives the progress.
-    """
-    world, parts = Surroundings(scene, scan.max_range), []
-    blocks = [(name, time) for name in scanners for time in _blocks(flight, scan)]
-    generators = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
-    for i, (name, time) in enumerate(blocks):
-        rng = generators[name]
-        beams, left = _pulses(flight, name, time, scan.line_rate)
-        echoes = first_met(world, beams, rng)
-        # The noise of the range lies along the beam.
-        ranges = echoes.range + scan.range_noise * rng.standard_normal(len(echoes))
-        part = recorded(echoes, left, SCANNERS[name], rng)
-        part["gps_time"] = time[echoes.pulse]
-        part["xyz"] = beams.at(echoes.pulse, ranges)
-        parts.append(part)
-        monitor.progress((i + 1) / len(blocks))
-    return in_time_order(parts)
-
-
 def in_time_order(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
     """Return the dimensions of all parts of a scan, in the order of time."""
     made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -220,28 +222,9 @@ def in_time_order(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
     return {name: values[order] for name, values in made.items()}
 
 
-def _blocks(flight: Flight, scan: LineScan) -> Iterator[np.ndarray]:
-    """Yield the times (s) of the pulses of some scan lines each; a turn of the mirror is a line."""
-    per_line, rate = pulses_per_line(scan.angular_step), scan.line_rate
-    n_lines, step = int(flight.duration * rate), max(1, min(_BLOCK // per_line, int(_BLOCK_TIME * rate)))
-    for line in range(0, n_lines, step):
-        lines = np.arange(line, min(line + step, n_lines))
-        pulse = np.arange(per_line) * (scan.angular_step / 360.0)
-        yield (lines[:, None] + pulse).ravel() / rate
-
-
 def pulses_per_line(angular_step: float) -> int:
     """Return how many pulses a scanner sends in the angle that it sees, one every ``angular_step`` (°)."""
     return int(FIELD / angular_step + 1e-9) + 1
-
-
-def _pulses(flight: Flight, scanner: str, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-    """Return the beams of pulses, and directions to the left of the drone (n, 3)."""
-    forward, left, up = flight.axes(time)
-    angle = np.deg2rad(np.mod(time * line_rate, 1.0) * 360.0 - FIELD / 2)[:, None]
-    ahead = forward if scanner == "horizontal" else -up
-    direction = np.cos(angle) * ahead + np.sin(angle) * left
-    return Beams(np.arange(len(time)), flight.positions(time), direction, np.column_stack(bearing(direction))), left
 
 
 def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import ndimage
+from .beams import is_vegetation
 from .height_field import CELL, HeightField, smooth_noise
 
 # Waves of matching (m): their length, and their share of the whole; the whole is a tunable.
@@ -106,8 +107,9 @@ def match(field: HeightField, rounding: float, waves: float, rng: np.random.Gene
     colors = _lit(field, _materials(field, rng), rng)
     top = _rounded(field.top, rounding, rng)
     shared = sum(share * smooth_noise(shape, length, rng) for length, share in _WAVES)
-    # Where there is little texture, errors of matching are larger.
-    top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * _by_texture(field)
+    # On roofs with little texture, errors of matching are larger.
+    by_texture = np.where(field.classification == PointClass.BUILDING, 1.2, 0.8)
+    top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * by_texture
     top += _leaf_noise(field, rng)
     fails = _fails(field, colors, rng)
     spike = fails & (smooth_noise(shape, 0.6, rng) > _SPIKES_ABOVE)
@@ -136,22 +138,13 @@ def _rounded(top: np.ndarray, rounding: float, rng: np.random.Generator) -> np.n
     return sharp * (1 - share) + soft * share
 
 
-def _by_texture(field: HeightField) -> np.ndarray:
-    """Return the factor on waves: roofs and asphalt have little texture, plants much."""
-    return np.where(field.classification == PointClass.BUILDING, 1.2, 0.8)
-
-
 def _leaf_noise(field: HeightField, rng: np.random.Generator) -> np.ndarray:
     """Return the errors (rows, columns), m, of crowns, 0 elsewhere; each crown has its own multiple of them."""
     factor = rng.uniform(*_LEAF_NOISE_FACTORS, int(field.object_id.max()) + 1)[field.object_id]
     errors = sum(deviation * smooth_noise(field.top.shape, length, rng) for length, deviation in _LEAF_NOISE)
     # A low plant is not rougher than it is high.
     height = np.clip((field.top - field.ground) / _FULL_LEAF_NOISE, 0.0, 1.0)
-    return np.where(_is_vegetation(field.classification), factor * height * errors, 0.0)
-
-
-def _is_vegetation(classification: np.ndarray) -> np.ndarray:
-    return (classification >= PointClass.LOW_VEGETATION) & (classification <= PointClass.HIGH_VEGETATION)
+    return np.where(is_vegetation(field.classification), factor * height * errors, 0.0)
 
 
 def _materials(field: HeightField, rng: np.random.Generator) -> np.ndarray:
@@ -161,7 +154,7 @@ def _materials(field: HeightField, rng: np.random.Generator) -> np.ndarray:
     ground = np.where((grass > 0.1)[..., None], _GRASS, np.where((soil > 0.8)[..., None], _SOIL, _ASPHALT))
     colors = ground.astype(np.float32)
     for chosen, palette in (
-        (_is_vegetation(field.classification), _LEAVES),
+        (is_vegetation(field.classification), _LEAVES),
         (field.classification == PointClass.BUILDING, _ROOFS),
         (field.classification == PointClass.UNCLASSIFIED, _CARS),
     ):
@@ -229,7 +222,8 @@ def sample(
     xy = rng.uniform(0.0, [columns * CELL, rows * CELL], (count, 2))
     row, column = field.at(xy)
     kept = ~matched.is_hole[row, column]
-    z = _height_at(matched.top, xy)
+    # The elevation between the middles of cells.
+    z = ndimage.map_coordinates(matched.top, (xy / CELL - 0.5).T[::-1], order=1, mode="nearest")
     is_leaf = field.classification[row, column] == PointClass.HIGH_VEGETATION
     z += np.where(is_leaf, _LEAF_SCATTER, 0.0) * rng.standard_normal(count)
     faces = _faces(matched, density * walls, rng)
@@ -238,11 +232,6 @@ def sample(
     inside = ((xyz[:, :2] >= 0) & (xyz[:, :2] < [columns * CELL, rows * CELL])).all(axis=1)
     xyz = xyz[inside]
     return xyz, *field.at(xyz[:, :2])
-
-
-def _height_at(top: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    """Return the elevation at positions (n, 2), m, between the middles of cells."""
-    return ndimage.map_coordinates(top, (xy / CELL - 0.5).T[::-1], order=1, mode="nearest")
 
 
 def _faces(matched: Matched, density: float, rng: np.random.Generator) -> np.ndarray:

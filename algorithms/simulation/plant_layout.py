@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..shapes.searched_points import Shape
 from .plant_parts import Part, beam, cylinder, disk, elbow, grating, heap, plate, sphere
 
 # Distance between the middles of bays (m): a rack and an aisle.
@@ -180,7 +179,5 @@ def _spheres(plant: Plant, count: int, east: float, rng: np.random.Generator) ->
 
 
 def _floor(west: float, east: float, depth: float) -> Part:
-    part = plate(
-        "floor", np.array([west, -2.0, 0.0]), np.array([east - west, 0.0, 0.0]), np.array([0.0, depth + 4.0, 0.0])
-    )
-    return Part("floor", Shape.PLANE, part.area, part.middle, part.sample)
+    corner, along = np.array([west, -2.0, 0.0]), np.array([east - west, 0.0, 0.0])
+    return plate("floor", corner, along, np.array([0.0, depth + 4.0, 0.0]))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..stage import Monitor, Param
-from .beams import Beams, Echoes, World, join
+from .beams import Beams, Echoes, World, is_vegetation, join
 from .pairs import in_boxes, rank
 from .relief import Relief
 from .scene import Scene
@@ -85,9 +85,6 @@ _BIRDS = (30.0, 120.0)
 
 # Least and greatest depth of multipath points under the ground (m).
 _MULTIPATH = (2.0, 15.0)
-
-# Classes of what lets a part of the light through.
-_LEAFY = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
 
 # Share of the light that a material reflects, by class.
 _REFLECTANCE = np.full(256, 0.3)
@@ -277,8 +274,7 @@ def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.nda
     """Return which echoes, in order, a scanner separates before the pulse is used up."""
     pulse = echoes.pulse
     number = rank(pulse)
-    is_porous = np.isin(echoes.classification, _LEAFY)
-    goes_on = ~is_porous | (rng.random(len(echoes)) < _THROUGH)
+    goes_on = ~is_vegetation(echoes.classification) | (rng.random(len(echoes)) < _THROUGH)
     kept = np.zeros(len(echoes), bool)
     last, heard = np.full(n_pulses, -np.inf), np.zeros(n_pulses, np.int64)
     for k in range(int(number.max()) + 1):

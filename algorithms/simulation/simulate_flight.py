@@ -6,7 +6,7 @@ from typing import Annotated
 
 from ..params import Seed
 from ..stage import Param, stage
-from .drone import SCANNERS, LineScan, fly, plan_flight, pulses_per_line
+from .drone import SCANNERS, LineScan, plan_flight, pulses_per_line
 from .scanner import RECORDED, RangeNoise, refuse_many_pulses
 from .street_site import build_site
 
@@ -115,7 +115,7 @@ def simulate_flight(
     remedy = "lower the duration or the line rate, or take a larger angular step"
     refuse_many_pulses(pulses, f"A flight of {duration:g} s", remedy)
     scene, settings = build_site(trees, slope, seed), LineScan(line_rate, angular_step, max_range, range_noise, seed)
-    made = fly(scene, plan_flight(scene, height, duration, seed), wanted, settings, monitor)
+    made = plan_flight(scene, height, duration, seed).scanned(scene, wanted, settings, monitor)
     if not len(made["xyz"]):
         raise ValueError(f"Nothing is within {max_range:g} m of the scanner; raise the maximum range.")
     return tuple(made[name] for name in RECORDED)

@@ -14,7 +14,7 @@ from .scene import Scene
 from .solids import Rect
 from .street_fronts import Truth
 from .street_scene import StreetPlan, build_street
-from .vehicle import Drive, drive_along, pulses_of
+from .vehicle import Drive, pulses_of
 
 # The scanners are this high over the street (m).
 _HEIGHT = 2.2
@@ -193,7 +193,7 @@ def simulate_street(
     if view == "airplane":
         made = scan(scene, Survey(density, range_noise=range_noise, seed=seed), monitor)
     else:
-        made = drive_along(scene, _drive(scene, street, speed), settings, monitor)
+        made = _drive(scene, street, speed).scanned(scene, settings, monitor)
     made = _with_numbers(_through_glass(made, truth, glass, seed), truth, range_noise)
     if not len(made["xyz"]):
         raise ValueError(f"Nothing is within {max_range:g} m of the scanners; raise the maximum range.")

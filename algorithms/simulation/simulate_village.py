@@ -10,11 +10,10 @@ from ..cloud.asprs import PointClass
 from ..packages import spatial
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Param, stage
-from .beams import Echoes
+from .beams import Echoes, is_vegetation
 from .camera import photograph
 from .relief import Relief
 from .scene import footprint_layer
-from .solids import Rect
 from .village_layout import MAX_HOMES, Village, VillagePlan, build_village
 
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
@@ -240,8 +239,7 @@ def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndar
     """Return red, green and blue (n, 3), uint16: by material, each object its own shade, each point its own light."""
     color = np.tile(np.array(_GROUND, float), (len(seen), 1))
     classes, number = seen.classification, seen.object_id
-    leaves = (classes >= PointClass.LOW_VEGETATION) & (classes <= PointClass.HIGH_VEGETATION)
-    color[leaves] = _LEAVES
+    color[is_vegetation(classes)] = _LEAVES
     color[classes == PointClass.UNCLASSIFIED] = _CARS
     building = classes == PointClass.BUILDING
     is_roof = village.owner[number] != number
@@ -282,7 +280,10 @@ def _old_map(village: Village, shift: float, noise: float, changes: float, rng: 
     count = round(changes * len(buildings))
     missing = set(rng.permutation(len(buildings))[:count].tolist())
     known = [(b.outline[:-1], b.object_id) for i, b in enumerate(buildings) if i not in missing]
-    known += [(position.corners(), 0) for position in _demolished(village.free, count, rng)]
+    # Of plots that have no house any more.
+    plots = [village.free[i] for i in rng.permutation(len(village.free))[:count]]
+    gone = [plot.part(0.0, 0.0, *rng.uniform(6.0, 10.0, 2), rng.uniform(0.0, np.pi)) for plot in plots]
+    known += [(house.corners(), 0) for house in gone]
     rings = [ring + shift + noise * rng.standard_normal(ring.shape) for ring, _ in known]
     numbers = [number for _, number in known]
     return LayerFeatures(
@@ -293,9 +294,3 @@ def _old_map(village: Village, shift: float, noise: float, changes: float, rng: 
             "state": ["kept" if number else "demolished" for number in numbers],
         },
     )
-
-
-def _demolished(free: list[Rect], count: int, rng: np.random.Generator) -> list[Rect]:
-    """Return where houses stood on plots that have none any more."""
-    plots = [free[i] for i in rng.permutation(len(free))[:count]]
-    return [plot.part(0.0, 0.0, *rng.uniform(6.0, 10.0, 2), rng.uniform(0.0, np.pi)) for plot in plots]

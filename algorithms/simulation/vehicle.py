@@ -40,34 +40,42 @@ class Drive:
         """Return where the scanners are (n, 3) (m) at times (n,) (s)."""
         return self.start + self.speed * time[:, None] * self.way
 
+    def scanned(self, scene: Scene, scan: LineScan, monitor: Monitor) -> dict[str, np.ndarray]:
+        """Return the dimensions of a scene scanned on the way by name, in the order of time."""
+        world, parts = Surroundings(scene, scan.max_range), []
+        blocks = [(number, time) for number in PLANES for time in self._blocks(scan)]
+        for i, (number, time) in enumerate(blocks):
+            rng = np.random.default_rng([scan.seed, _STREAM, i])
+            beams, left = self._pulses(PLANES[number], time, scan.line_rate)
+            echoes = first_met(world, beams, rng)
+            part = recorded(echoes, left, number, rng)
+            part["gps_time"] = time[echoes.pulse]
+            # The noise of the range lies along the beam.
+            part["xyz"] = beams.at(echoes.pulse, echoes.range + scan.range_noise * rng.standard_normal(len(echoes)))
+            parts.append(part)
+            monitor.progress((i + 1) / len(blocks))
+        return in_time_order(parts)
 
-def drive_along(scene: Scene, drive: Drive, scan: LineScan, monitor: Monitor) -> dict[str, np.ndarray]:
-    """Return the dimensions of a street scanned from a vehicle by name, in the order of time.
+    def _blocks(self, scan: LineScan) -> Iterator[np.ndarray]:
+        """Yield the times (s) of the pulses of some scan lines each."""
+        per_line, rate = pulses_per_turn(scan.angular_step), scan.line_rate
+        n_lines = max(1, int(self.length / self.speed * rate))
+        step = max(1, min(_BLOCK // per_line, int(_BLOCK_WAY / self.speed * rate)))
+        for line in range(0, n_lines, step):
+            lines = np.arange(line, min(line + step, n_lines))
+            yield (lines[:, None] + np.arange(per_line) / per_line).ravel() / rate
 
-    Parameters
-    ----------
-    scene : Scene
-        The street.
-    drive : Drive
-        The way of the vehicle.
-    scan : LineScan
-        Settings of its scanners.
-    monitor : Monitor
-        Receives the progress.
-    """
-    world, parts = Surroundings(scene, scan.max_range), []
-    blocks = [(number, time) for number in PLANES for time in _blocks(drive, scan)]
-    for i, (number, time) in enumerate(blocks):
-        rng = np.random.default_rng([scan.seed, _STREAM, i])
-        beams, left = _pulses(drive, PLANES[number], time, scan.line_rate)
-        echoes = first_met(world, beams, rng)
-        part = recorded(echoes, left, number, rng)
-        part["gps_time"] = time[echoes.pulse]
-        # The noise of the range lies along the beam.
-        part["xyz"] = beams.at(echoes.pulse, echoes.range + scan.range_noise * rng.standard_normal(len(echoes)))
-        parts.append(part)
-        monitor.progress((i + 1) / len(blocks))
-    return in_time_order(parts)
+    def _pulses(self, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+        """Return the beams of pulses at times (n,) (s) in a plane turned by ``turn`` (°), and the left (n, 3)."""
+        cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
+        left = np.array([-self.way[1], self.way[0], 0.0]) / np.hypot(*self.way[:2])
+        ahead = np.array([left[1], -left[0], 0.0])
+        across = cos * left + sin * ahead
+        # A line begins at the zenith and comes down on the left.
+        angle = 2 * np.pi * np.mod(time * line_rate, 1.0)[:, None]
+        direction = np.cos(angle) * [0.0, 0.0, 1.0] + np.sin(angle) * across
+        aim = np.column_stack(bearing(direction))
+        return Beams(np.arange(len(time)), self.positions(time), direction, aim), np.tile(left, (len(time), 1))
 
 
 def pulses_of(length: float, speed: float, scan: LineScan) -> float:
@@ -78,26 +86,3 @@ def pulses_of(length: float, speed: float, scan: LineScan) -> float:
 def pulses_per_turn(angular_step: float) -> int:
     """Return how many pulses a scanner sends in one turn, which is one line."""
     return max(1, int(360.0 / angular_step + 1e-9))
-
-
-def _blocks(drive: Drive, scan: LineScan) -> Iterator[np.ndarray]:
-    """Yield the times (s) of the pulses of some scan lines each."""
-    per_line, rate = pulses_per_turn(scan.angular_step), scan.line_rate
-    n_lines = max(1, int(drive.length / drive.speed * rate))
-    step = max(1, min(_BLOCK // per_line, int(_BLOCK_WAY / drive.speed * rate)))
-    for line in range(0, n_lines, step):
-        lines = np.arange(line, min(line + step, n_lines))
-        yield (lines[:, None] + np.arange(per_line) / per_line).ravel() / rate
-
-
-def _pulses(drive: Drive, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-    """Return the beams of pulses at times (n,) (s) in a plane turned by ``turn`` (°), and the vehicle's left (n, 3)."""
-    cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
-    left = np.array([-drive.way[1], drive.way[0], 0.0]) / np.hypot(*drive.way[:2])
-    ahead = np.array([left[1], -left[0], 0.0])
-    across = cos * left + sin * ahead
-    # A line begins at the zenith and comes down on the left.
-    angle = 2 * np.pi * np.mod(time * line_rate, 1.0)[:, None]
-    direction = np.cos(angle) * [0.0, 0.0, 1.0] + np.sin(angle) * across
-    aim = np.column_stack(bearing(direction))
-    return Beams(np.arange(len(time)), drive.positions(time), direction, aim), np.tile(left, (len(time), 1))

@@ -248,7 +248,7 @@ def test_a_facade_narrower_than_its_tolerance_keeps_the_boundary_of_its_points(r
     """Sparse points of a strip 0.6 m wide: straight edges within two spacings would leave a line of it."""
     positions = np.column_stack([rng.uniform(0, 0.6, 60), np.sort(rng.uniform(0, 4.5, 60))])
     positions[::7, 1] += 0.4
-    outline = outline_of(positions, Drawing(10.0, 1.0, 4.0, "straight edges", True))
+    outline = outline_of(positions, Drawing(10.0, 1.0, "straight edges", True))
     assert len(outline.ring) > 3
     assert outline.seen_area <= ring_area(outline.ring) <= 1.1 * np.prod(np.ptp(positions, axis=0))
 
