@@ -29,7 +29,9 @@ class Tracing:
     @property
     def areas(self) -> np.ndarray:
         """Area (m²) of each triangle."""
-        return _areas(self.xy, self.triangles)
+        corners = self.xy[self.triangles]
+        a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
     @property
     def parts(self) -> list[np.ndarray]:
@@ -73,11 +75,6 @@ def trace_outlines(xy: np.ndarray, max_edge: float, triangulation: Any) -> Optio
     face = np.full(len(triangles), -1)
     face[is_kept] = np.unique(pieces_of(is_kept, neighbors)[is_kept], return_inverse=True)[1]
     return Tracing(xy, triangles, neighbors, face)
-
-
-def _areas(xy: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    a, b = xy[triangles[:, 1]] - xy[triangles[:, 0]], xy[triangles[:, 2]] - xy[triangles[:, 0]]
-    return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def pieces_of(value: np.ndarray, neighbors: np.ndarray) -> np.ndarray:

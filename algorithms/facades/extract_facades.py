@@ -211,12 +211,12 @@ def extract_facades(
         )[0]
     walls = as_strips(xyz, merged_planes(xyz, plane, tolerance, monitor.part(0.6, 0.65)), tolerance)
     pieces = split_at_gaps(xyz, walls, max_gap)
-    _leave_small(xyz, pieces, min_height)
     drawing = Drawing(max_tilt, max_gap, boundary, complete)
     facades = surfaces_of(xyz, pieces, drawing, monitor.part(0.65, 0.95))
     # The area that was seen: the boundary of a post and of objects at its foot has a larger one.
     facades = [each for each in facades if min(each.area, each.seen_area) >= min_area and each.height >= min_height]
-    facades = _numbered(facades)
+    facades.sort(key=lambda facade: tuple(np.round(facade.rings[0].min(axis=0), 2)))
+    facades = [replace(facade, number=number) for number, facade in enumerate(facades, start=1)]
     if corner_distance:
         facades = with_common_borders(facades, corner_distance, monitor.part(0.95, 1.0))
     monitor.progress(1.0)
@@ -288,19 +288,6 @@ def split_at_gaps(xyz: np.ndarray, segment_id: np.ndarray, gap: float) -> np.nda
         result[points] = count + 1 + group[find_cells(cells, number)[0]]
         count += found
     return result
-
-
-def _leave_small(xyz: np.ndarray, pieces: np.ndarray, min_height: float) -> None:
-    """Take pieces that are too low for a facade out, in place, before their boundaries are looked for."""
-    for points in members(pieces).values():
-        if np.ptp(xyz[points, 2]) < 0.9 * min_height:
-            pieces[points] = 0
-
-
-def _numbered(facades: list[Facade]) -> list[Facade]:
-    """Return facades with numbers from 1, from west to east and south to north."""
-    ordered = sorted(facades, key=lambda facade: tuple(np.round(facade.rings[0].min(axis=0), 2)))
-    return [replace(facade, number=number) for number, facade in enumerate(ordered, start=1)]
 
 
 def _result(

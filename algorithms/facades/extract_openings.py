@@ -185,19 +185,15 @@ def _holes(facade: Facade, openings: list[Opening]) -> list[np.ndarray]:
 
 def _features(found: list[tuple[Facade, list[Opening]]]) -> LayerFeatures:
     """Return the openings as features."""
-    columns: dict[str, list] = {field.name: [] for field in OPENING_FIELDS}
-    geometries = []
+    geometries, table = [], []
     for facade, openings in found:
-        rows, positions = _arrangement(openings)
-        for opening, row, position in zip(openings, rows, positions):
+        for opening, row, position in zip(openings, *(numbers.tolist() for numbers in _arrangement(openings))):
             geometries.append([facade.frame.space(opening.ring)])
-            left, low = opening.box[0] - facade.ring.min(axis=0)
-            width, height = opening.size
-            size = (width, height, ring_area(opening.ring))
-            values: tuple = (len(geometries), facade.number, opening.kind, row, position, *size, left, low)
-            values += (opening.depth, opening.enclosed, opening.seen)
-            for name, value in zip(columns, values):
-                columns[name].append(value.item() if isinstance(value, np.generic) else value)
+            from_left, sill = (opening.box[0] - facade.ring.min(axis=0)).tolist()
+            size = (*opening.size.tolist(), ring_area(opening.ring))
+            numbers = (len(geometries), facade.number, opening.kind, row, position)
+            table.append((*numbers, *size, from_left, sill, opening.depth, opening.enclosed, opening.seen))
+    columns = {field.name: [row[k] for row in table] for k, field in enumerate(OPENING_FIELDS)}
     return LayerFeatures(geometries, columns)
 
 

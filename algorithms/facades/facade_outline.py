@@ -13,7 +13,7 @@ from ..geometry.ring_directions import direction_weights, main_directions
 from ..geometry.ring_drawing import Prices, draw_ring
 from ..geometry.rings import signed_area
 from ..packages import spatial
-from .alpha_shape import Tracing, trace_outlines, triangulated
+from .alpha_shape import trace_outlines, triangulated
 
 # The angle (°) between the edges at a boundary point below which it is no key point, in the first round (paper, section
 # 3.3, step 3).
@@ -197,22 +197,16 @@ def _traced(positions: np.ndarray, triangulation: Any, spacing: float, drawing: 
     longest_edge = _PUBLISHED_EDGE if drawing.boundary == "key points" else _LONGEST_EDGE
     max_edge, max_gap = longest_edge * spacing, drawing.max_gap
     while True:
-        tracing = trace_outlines(positions, max_edge, triangulation)
-        piece = None if tracing is None else _largest(tracing)
-        if max_edge >= max_gap or (tracing is not None and piece is not None and _share(tracing, piece) >= _WHOLE):
-            break
+        tracing, is_last = trace_outlines(positions, max_edge, triangulation), max_edge >= max_gap
+        if tracing is not None:
+            inside = tracing.face >= 0
+            piece = int(np.argmax(np.bincount(tracing.face[inside], tracing.areas[inside])))
+            held = np.unique(tracing.triangles[tracing.face == piece])
+            if is_last or len(held) >= _WHOLE * len(positions):
+                return tracing.parts[piece]
+        elif is_last:
+            return None
         max_edge = min(max_edge * _GROWTH, max_gap)
-    return None if tracing is None or piece is None else tracing.parts[piece]
-
-
-def _largest(tracing: Tracing) -> Optional[int]:
-    inside = tracing.face >= 0
-    return int(np.argmax(np.bincount(tracing.face[inside], tracing.areas[inside]))) if inside.any() else None
-
-
-def _share(tracing: Tracing, piece: int) -> float:
-    """Return the share of the points that a piece holds."""
-    return len(np.unique(tracing.triangles[tracing.face == piece])) / len(tracing.xy)
 
 
 def key_points(ring: np.ndarray) -> np.ndarray:
@@ -252,25 +246,20 @@ def pushed_out(ring: np.ndarray, positions: np.ndarray, limit: float) -> np.ndar
         outside = positions[~inside_ring(positions, ring)]
         if not len(outside):
             break
-        distance = edge_distances(outside, starts, ends)
-        out = signed_offsets(outside, starts, ends)
+        distance, outward = edge_distances(outside, starts, ends), _outward(starts, ends)
+        # How far positions lie outside the lines of the edges.
+        out = outside @ outward.T - np.einsum("ij,ij->i", starts, outward)
         # At a corner two edges are equally near: the one that is farther behind has to move.
         nearest = np.argmax(np.where(distance <= distance.min(axis=1, keepdims=True) + 1e-9, out, -np.inf), axis=1)
         rows = np.flatnonzero(distance.min(axis=1) <= limit)
         shift = np.zeros(len(starts))
         np.maximum.at(shift, nearest[rows], out[rows, nearest[rows]])
-        moved = ring_of_lines(starts + shift[:, None] * _outward(starts, ends), ends - starts, starts)
+        moved = ring_of_lines(starts + shift[:, None] * outward, ends - starts, starts)
         is_spike = np.isfinite(limit) and np.linalg.norm(moved - ring, axis=1).max() > _MITER * shift.max()
         if shift.max() < 1e-9 or is_spike or not is_valid([moved]):
             break
         ring = moved
     return ring
-
-
-def signed_offsets(positions: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return how far (n, m) (m) positions lie outside the lines of the edges of a counterclockwise ring."""
-    outward = _outward(starts, ends)
-    return positions @ outward.T - np.einsum("ij,ij->i", starts, outward)
 
 
 def _outward(starts: np.ndarray, ends: np.ndarray) -> np.ndarray:

@@ -95,12 +95,18 @@ def outline_segments(footprints: LayerFeatures) -> PlanSegments:
     """Return the edges of the exterior rings of footprints."""
     starts, ends, owners = [], [], []
     for number, rings in enumerate(footprints.geometries):
-        ring = np.asarray(rings[0], float)[:, :2]
-        ring = ring if signed_area(ring) > 0 else ring[::-1]
-        is_edge = np.hypot(*np.diff(ring, axis=0).T) > 1e-6
-        starts.append(ring[:-1][is_edge])
-        ends.append(ring[1:][is_edge])
-        owners.append(np.full(int(is_edge.sum()), number))
+        ring = exterior(rings)
+        starts.append(ring[:-1])
+        ends.append(ring[1:])
+        owners.append(np.full(len(ring) - 1, number))
     if not starts:
         return PlanSegments(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, int))
     return PlanSegments(np.concatenate(starts), np.concatenate(ends), np.concatenate(owners))
+
+
+def exterior(rings: list) -> np.ndarray:
+    """Return the exterior in plan, counterclockwise and without vertices that follow another one at once."""
+    ring = np.asarray(rings[0], float)[:, :2]
+    ring = ring if signed_area(ring) > 0 else ring[::-1]
+    corners = ring[:-1][np.hypot(*np.diff(ring, axis=0).T) > 1e-6]
+    return np.concatenate([corners, corners[:1]])

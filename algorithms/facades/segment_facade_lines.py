@@ -280,11 +280,9 @@ def _described(
     side, distance = _from_scanner(xyz[order], line, middle, of_line)
     height = middle[:, 2] - _extreme(np.minimum, middle[:, 2], of_line)[of_line]
     length = np.linalg.norm(end - start, axis=1)
-    kind = _kinds(slope, height, distance, length, 2 * of_line + side, limits)
     columns = {
         "id": np.arange(1, len(kept) + 1),
         "line": of_line + 1,
-        "kind": [KINDS[k] for k in kind],
         "slope": slope,
         **dict(zip("xyz", middle.T)),
         "height": height,
@@ -292,6 +290,7 @@ def _described(
         "length": length,
         "points": count[kept],
     }
+    columns["kind"] = [KINDS[kind] for kind in _kinds(columns, 2 * of_line + side, limits)]
     return segment_id, LayerFeatures(list(np.stack([start, end], axis=1)), columns)
 
 
@@ -322,15 +321,9 @@ def _from_scanner(
     return (np.einsum("ij,ij->i", away, first[of_line]) < 0).astype(np.int64), np.hypot(*away.T)
 
 
-def _kinds(
-    slope: np.ndarray,
-    height: np.ndarray,
-    distance: np.ndarray,
-    length: np.ndarray,
-    side: np.ndarray,
-    limits: tuple[float, float],
-) -> np.ndarray:
+def _kinds(columns: dict, side: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
     """Return what segments (m,) are of; ``limits`` are greatest height of ground and distance of facades (m)."""
+    slope, height, distance, length = (columns[name] for name in ("slope", "height", "distance", "length"))
     kind = np.full(len(slope), _OTHER)
     kind[(slope <= _LEVEL) & (height <= limits[0])] = _GROUND
     steep = np.flatnonzero((slope >= _UPRIGHT) & (length >= _LEAST_FACADE))

@@ -31,13 +31,15 @@ def drawn_once(found: Found, xyz: np.ndarray, max_depth: float) -> Found:
     their wall; ``xyz`` (n, 3), m, is the whole cloud.
     """
     walls = [_Wall(facade, xyz) for facade, _ in found]
+    normals = np.array([facade.frame.normal for facade, _ in found]).reshape(-1, 3)
     candidates = [(own, opening) for own, (_, openings) in enumerate(found) for opening in openings]
     candidates.sort(key=lambda one: (-one[1].enclosed, -float(np.prod(one[1].size))))
     taken = np.zeros(len(xyz), bool)
     kept: list[list[Opening]] = [[] for _ in found]
     for own, opening in candidates:
-        ring = found[own][0].frame.space(opening.ring)
-        others = [wall for k, wall in enumerate(walls) if k != own and wall.faces_as(walls[own])]
+        frame = found[own][0].frame
+        ring, faces_as = frame.space(opening.ring), normals @ frame.normal >= _SAME_WAY
+        others = [wall for k, wall in enumerate(walls) if k != own and faces_as[k]]
         is_drawn = taken[opening.points].mean() >= _SHARED
         if not is_drawn and not any(wall.hides(ring, max_depth) for wall in others):
             kept[own].append(opening)
@@ -54,10 +56,6 @@ class _Wall:
     def __init__(self, facade: Facade, xyz: np.ndarray) -> None:
         self.facade = facade
         self.tree = spatial.cKDTree(facade.frame.local(xyz[facade.points])[:, :2])
-
-    def faces_as(self, other: _Wall) -> bool:
-        """Return whether two walls face the same way."""
-        return bool(self.facade.frame.normal @ other.facade.frame.normal >= _SAME_WAY)
 
     def hides(self, ring: np.ndarray, max_depth: float) -> bool:
         """Return whether the wall lies before most of an opening (m, 3) of another one."""

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.line_segments import is_valid
-from ..geometry.rings import signed_area
 from ..stage import LayerFeatures
 from .facade_outline import ring_of_lines
-from .plan_segments import PlanSegments
+from .plan_segments import PlanSegments, exterior
 
 
 @dataclass(frozen=True)
@@ -82,7 +81,7 @@ def fitted_to_walls(footprints: LayerFeatures, walls: PlanSegments) -> tuple[Lay
 
     Attributes and holes are kept, and a footprint that would cross itself stays as it is.
     """
-    outlines = [_exterior(rings) for rings in footprints.geometries]
+    outlines = [exterior(rings) for rings in footprints.geometries]
     pieces = _pieces(_chains(walls), [_Ring(ring) for ring in outlines])
     geometries, seen = [], np.zeros(len(outlines))
     for number, (rings, outline) in enumerate(zip(footprints.geometries, outlines)):
@@ -95,15 +94,6 @@ def fitted_to_walls(footprints: LayerFeatures, walls: PlanSegments) -> tuple[Lay
             ring = outline
         geometries.append([ring, *holes])
     return LayerFeatures(geometries, dict(footprints.columns)), seen
-
-
-def _exterior(rings: list) -> np.ndarray:
-    """Return the exterior in plan, counterclockwise and without vertices that follow another one at once."""
-    ring = np.asarray(rings[0], float)[:, :2]
-    ring = ring if signed_area(ring) > 0 else ring[::-1]
-    kept = np.hypot(*np.diff(ring, axis=0).T) > 1e-6
-    corners = ring[:-1][kept]
-    return np.concatenate([corners, corners[:1]])
 
 
 def _chains(walls: PlanSegments) -> list[np.ndarray]:
@@ -205,19 +195,13 @@ class _Lines:
     """The lines of the edges of a ring, in order."""
 
     def __init__(self) -> None:
-        self.points: list[np.ndarray] = []
-        self.ways: list[np.ndarray] = []
-        self.corners: list[np.ndarray] = []
-
-    def _add(self, point: np.ndarray, way: np.ndarray, corner: np.ndarray) -> None:
-        self.points.append(point)
-        self.ways.append(way)
-        self.corners.append(corner)
+        #: Of each edge a point (2,) and the way (2,) of its line, and where it began before (2,).
+        self.lines: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
 
     def add_walls(self, corners: np.ndarray) -> None:
         """Add the walls between corners (m, 2)."""
         for start, end in zip(corners[:-1], corners[1:]):
-            self._add(start, _unit(end - start), start)
+            self.lines.append((start, _unit(end - start), start))
 
     def add_step(self, one: np.ndarray, other: np.ndarray) -> None:
         """Add the step between two rows of walls that follow each other, none where they meet or go on.
@@ -228,7 +212,7 @@ class _Lines:
         outward = np.array([way[1], -way[0]])
         off = float((other[0] - one[-1]) @ outward)
         if abs(_cross(way, following)) < _RULES.same_way and abs(off) > _RULES.step:
-            self._add(other[0] if off > 0 else one[-1], outward * np.sign(off), one[-1])
+            self.lines.append((other[0] if off > 0 else one[-1], outward * np.sign(off), one[-1]))
 
     def add_edges(self, ring: _Ring, piece: _Piece, following: _Piece) -> None:
         """Add the edges of the outline from the end of a row of walls to the start of the next one."""
@@ -260,15 +244,15 @@ class _Lines:
                 points[beside] = end
         for k, edge in enumerate(edges):
             if k in steps and k == 0:
-                self._add(*steps[k])
+                self.lines.append(steps[k])
             if k in points:
-                self._add(points[k], ring.way[edge], ring.corners[edge])
+                self.lines.append((points[k], ring.way[edge], ring.corners[edge]))
             if k in steps and k > 0:
-                self._add(*steps[k])
+                self.lines.append(steps[k])
 
     def ring(self) -> np.ndarray:
         """Return the closed ring (m, 2) of the lines."""
-        return ring_of_lines(np.array(self.points), np.array(self.ways), np.array(self.corners))
+        return ring_of_lines(*(np.array(part) for part in zip(*self.lines)))
 
 
 def _ends_at(end: np.ndarray, way: np.ndarray, point: np.ndarray, edge_way: np.ndarray) -> bool:

@@ -57,7 +57,8 @@ def photograph(
     positions, parts = [], []
     for i, ((tilt, heading), (low, high, count)) in enumerate(blocks):
         rays = _rays(scene.relief, rng.uniform(low, high, (count, 2)), tilt, heading)
-        seen = _first_met(world, rays, rng)
+        solids, crowns = (_met(world, kind, rays) for kind in _SEEN)
+        seen = join([world.surfaces(rays, *solids), world.leaves(rays, *crowns, rng)]).first()
         xyz = rays.at(seen.pulse, seen.range)
         inside = ((xyz[:, :2] >= 0) & (xyz[:, :2] <= scene.size)).all(axis=1)
         positions.append(xyz[inside])
@@ -81,12 +82,6 @@ def _rays(relief: Relief, aim: np.ndarray, tilt: float, heading: float) -> Beams
     direction = np.array([np.sin(tilt) * np.cos(heading), np.sin(tilt) * np.sin(heading), -np.cos(tilt)])
     end = np.column_stack([aim, relief.plane(*aim.T)])
     return Beams(np.arange(len(aim)), end - _HEIGHT / np.cos(tilt) * direction, np.tile(direction, (len(aim), 1)), aim)
-
-
-def _first_met(world: World, rays: Beams, rng: np.random.Generator) -> Echoes:
-    """Return what each ray meets first, in the order of the rays."""
-    solids, crowns = (_met(world, kind, rays) for kind in _SEEN)
-    return join([world.surfaces(rays, *solids), world.leaves(rays, *crowns, rng)]).first()
 
 
 def _met(world: World, kind: str, rays: Beams) -> tuple[np.ndarray, np.ndarray]:

@@ -101,12 +101,9 @@ def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
 
 
 def _parapets(site: Site, rect: Rect) -> list[Solid]:
-    sides: list[tuple[float, float, float, float]] = [(side, 0.0, _PARAPET_WIDTH, rect.width) for side in (-1, 1)]
-    sides += [(0.0, side, rect.length, _PARAPET_WIDTH) for side in (-1, 1)]
-    parts = [
-        rect.part(along * (rect.length - _PARAPET_WIDTH) / 2, across * (rect.width - _PARAPET_WIDTH) / 2, long, wide)
-        for along, across, long, wide in sides
-    ]
+    along, across = (rect.length - _PARAPET_WIDTH) / 2, (rect.width - _PARAPET_WIDTH) / 2
+    parts = [rect.part(side * along, 0.0, _PARAPET_WIDTH, rect.width) for side in (-1, 1)]
+    parts += [rect.part(0.0, side * across, rect.length, _PARAPET_WIDTH) for side in (-1, 1)]
     return [site.solid(part, flat(part, site.eave + _PARAPET_HEIGHT)) for part in parts]
 
 

@@ -90,10 +90,7 @@ def _high_voltage(scene: Scene, direction: float, span: float) -> None:
         _tower(scene, foot, direction)
     hangs = [(side * _ARM, height - 1.0) for height in _ARMS for side in (-1, 1)] + [(0.0, _TOWER)]
     for aside, height in hangs:
-        number = scene.new_id()
-        for start, end in zip(feet, feet[1:]):
-            shift = aside * across + [0.0, 0.0, height]
-            _hang(scene, start + shift, end + shift, _SAG * span, number)
+        _string(scene, feet + (aside * across + [0.0, 0.0, height]), _SAG * span)
 
 
 def _tower(scene: Scene, foot: np.ndarray, direction: float) -> None:
@@ -126,12 +123,9 @@ def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> No
             eave = _house(scene, middle, direction, rng)
             wall = middle + 4.0 * across
             drop = np.append(wall[:2], eave - 0.2)
-            _hang(scene, foot + [0.0, 0.0, _POLE - 0.6], drop, _DROP_SAG, scene.new_id())
+            _string(scene, np.array([foot + [0.0, 0.0, _POLE - 0.6], drop]), _DROP_SAG)
     for aside in _SIDES:
-        number = scene.new_id()
-        for start, end in zip(feet, feet[1:]):
-            shift = aside * across + [0.0, 0.0, _POLE - 0.2]
-            _hang(scene, start + shift, end + shift, _POLE_SAG, number)
+        _string(scene, feet + (aside * across + [0.0, 0.0, _POLE - 0.2]), _POLE_SAG)
 
 
 def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Generator) -> float:
@@ -144,11 +138,10 @@ def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Ge
     return eave
 
 
-def _hang(scene: Scene, start: np.ndarray, end: np.ndarray, sag: float, number: int) -> None:
-    """Hang a wire between two points (3,) m, with a sag (m) in the middle."""
-    share = np.linspace(0.0, 1.0, _PIECES + 1)[:, None]
-    line = start + share * (end - start) - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]
-    inside = _inside(scene, line)
-    for p, q, first, last in zip(line, line[1:], inside, inside[1:]):
-        if first and last:
-            scene.wires.append((*p, *q, number))
+def _string(scene: Scene, points: np.ndarray, sag: float) -> None:
+    """Hang a wire from point to point (n, 3), m, with a sag (m) in the middle between them."""
+    number, share = scene.new_id(), np.linspace(0.0, 1.0, _PIECES + 1)[:, None]
+    for start, end in zip(points, points[1:]):
+        line = start + share * (end - start) - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]
+        inside = _inside(scene, line)
+        scene.wires += [(*line[k], *line[k + 1], number) for k in np.flatnonzero(inside[1:] & inside[:-1])]

@@ -87,7 +87,7 @@ class Relief:
         if self.river is not None:
             rise = np.sign(distance) * np.maximum(np.abs(distance) - VALLEY, 0.0)
         z = self.gradient * rise + self._terrace(rise) + self._hill(across, along, rise)
-        return z if self.river is None else z - _channel(distance)
+        return z if self.river is None else z - np.clip((CHANNEL - np.abs(distance)) * _BANK_SLOPE, 0.0, _CHANNEL_DEPTH)
 
     def surface(self, x, y) -> np.ndarray:
         """Elevation (m) of ground or water, whichever is higher."""
@@ -123,11 +123,6 @@ class Relief:
         # The valley floor is level, as the river is.
         fade = 1.0 if self.river is None else np.minimum(np.abs(rise) / 60.0, 1.0)
         return self.hills / (2 * len(self.waves)) * total * fade
-
-
-def _channel(distance):
-    """Depth (m) of the river's trapezoidal channel, by distance (m) from its axis."""
-    return np.clip((CHANNEL - np.abs(distance)) * _BANK_SLOPE, 0.0, _CHANNEL_DEPTH)
 
 
 def make_relief(

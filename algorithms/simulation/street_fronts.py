@@ -70,9 +70,6 @@ _BESIDE = 0.25
 # Depth of houses behind their fronts (m).
 _DEPTH = 10.0
 
-# Least and greatest pitch of gable roofs (°).
-_PITCHES = (30.0, 45.0)
-
 # Thickness of the roof of a bay (m).
 _LID = 0.2
 
@@ -332,8 +329,3 @@ def _axes(length: float) -> list[_Span]:
     count = max(int((length - 2 * _MARGIN + (_AXIS - _WINDOW[0])) // _AXIS), 0)
     middles = [length / 2 + (k - (count - 1) / 2) * _AXIS for k in range(count)]
     return [(middle - _WINDOW[0] / 2, middle + _WINDOW[0] / 2) for middle in middles]
-
-
-def draw_pitch(rng: np.random.Generator) -> float:
-    """Return the pitch (°) of a roof."""
-    return float(rng.uniform(*_PITCHES))

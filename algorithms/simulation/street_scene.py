@@ -11,7 +11,7 @@ from .plants import plant_tree
 from .relief import Relief
 from .scene import Scene
 from .solids import Rect
-from .street_fronts import KINDS, Front, Line, Truth, between, draw_pitch
+from .street_fronts import KINDS, Front, Line, Truth, between
 from .town_layout import park_car
 
 # Least and greatest width of houses (m).
@@ -22,6 +22,9 @@ _EAVES = (7.0, 11.0)
 
 # Greatest difference of the eaves of one side (m): less than a storey.
 _DIFFERENCE = 0.8
+
+# Least and greatest pitch of gable roofs (°).
+_PITCHES = (30.0, 45.0)
 
 # Distance of people from the fronts (m): they walk on the sidewalk.
 _PEOPLE = 1.2
@@ -94,7 +97,7 @@ def _build_side(
         front = Front(plan.off_line(Line(start, way, width), of_fronts), height, kind, plan.stoops)
         front.build(scene, truth)
         if plan.houses:
-            front.build_house(scene, truth, draw_pitch(of_fronts))
+            front.build_house(scene, truth, float(of_fronts.uniform(*_PITCHES)))
         start = start + width * way
 
 

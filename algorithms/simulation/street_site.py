@@ -63,7 +63,9 @@ def build_site(trees: int, slope: float, seed: int) -> Scene:
     for x, y in _CARS:
         park_car(scene, Rect(*_position(x + rng.uniform(-0.4, 0.4), y), 4.3, 1.8, np.deg2rad(rng.uniform(-3.0, 3.0))))
     for x, y in _LAMPS:
-        _put_lamp(scene, Rect(*_position(x, y), _LAMP[0], _LAMP[0], 0.0))
+        lamp = Rect(*_position(x, y), _LAMP[0], _LAMP[0], 0.0)
+        ground = float(scene.relief.ground(lamp.x, lamp.y))
+        scene.add_box(lamp, ground - 1.0, ground + _LAMP[1], PointClass.UNCLASSIFIED)
     for x, y in _tree_positions(trees, rng):
         foot = (*_position(x, y), float(scene.relief.ground(*_position(x, y))))
         plant_tree(scene, foot, rng.uniform(*_TREE_HEIGHTS), rng)
@@ -88,11 +90,6 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
                 parapet = flat(slab, ground + floor + 1.0)
                 solids.append(Solid(slab, parapet, ground + floor, PointClass.BUILDING, number))
     scene.add_building("block", rect.corners(), solids)
-
-
-def _put_lamp(scene: Scene, rect: Rect) -> None:
-    ground = float(scene.relief.ground(rect.x, rect.y))
-    scene.add_box(rect, ground - 1.0, ground + _LAMP[1], PointClass.UNCLASSIFIED)
 
 
 def _tree_positions(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:

@@ -91,14 +91,11 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator) -> None:
         if rng.random() < 0.4 and not scene.near_building(car.corners(), 0.4).any():
             park_car(scene, car)
         hedge = plot.part(-plot.length / 2, 0.0, plot.width - 4.0, 0.8, np.pi / 2)
-        if rng.random() < 0.4 and not scene.near_building(_line(hedge), 0.6).any():
+        line = np.column_stack(hedge.at(np.linspace(-hedge.length / 2, hedge.length / 2, 20), 0.0))
+        if rng.random() < 0.4 and not scene.near_building(line, 0.6).any():
             plant_hedge(scene, hedge, rng.uniform(1.2, 2.2))
     for building in scene.buildings:
         _plant_against_walls(scene, building, rng)
-
-
-def _line(hedge: Rect) -> np.ndarray:
-    return np.column_stack(hedge.at(np.linspace(-hedge.length / 2, hedge.length / 2, 20), 0.0))
 
 
 def _plant_against_walls(scene: Scene, building: Building, rng: np.random.Generator) -> None:
