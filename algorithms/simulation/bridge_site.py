@@ -218,7 +218,7 @@ def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, seed: int) -> tuple[Scene, list[Deck]]:
-    """Build a site with a lot for each of ``kinds``, its decks ``angle`` degrees off the shortest way across.
+    """Return a site with a lot for each of ``kinds``, and its true decks, all at one angle to the shortest way across.
 
     Parameters
     ----------
@@ -230,11 +230,6 @@ def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, se
         Whether there are cars on the decks, and trees.
     seed : int
         The same seed makes the same.
-
-    Returns
-    -------
-    tuple of Scene and list of Deck
-        The site, and the true decks.
     """
     rng = np.random.default_rng([seed, 7])
     columns = int(np.ceil(np.sqrt(len(kinds))))

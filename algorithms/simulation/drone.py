@@ -4,16 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
-from ..stage import Monitor
+from ..stage import Monitor, Param
 from .beams import Beams, Echoes, World, join
 from .pairs import in_boxes
 from .scanner import brightness
 from .scene import Scene
 from .solids import dot
 from .street_site import SIZE
+
+LineRate = Annotated[
+    float, Param("Line rate", "Scan lines of each scanner.", unit="1/s", low=1, high=500, advanced=True)
+]
+
+AngularStep = Annotated[
+    float,
+    Param("Angular step", "Angle between neighboring beams of a scanner.", unit="°", low=0.02, high=5, advanced=True),
+]
 
 # Number of each scanner, which is the source id of its points.
 SCANNERS = {"horizontal": 1, "vertical": 2}

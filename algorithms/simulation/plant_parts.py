@@ -13,6 +13,9 @@ from ..shapes.searched_points import Shape
 # What a surface gives: positions (k, 3) and outward normals (k, 3) of k random points on it.
 Sampler = Callable[[np.random.Generator, int], tuple[np.ndarray, np.ndarray]]
 
+# Distance between the bars of a grating (m).
+_MESH = 0.04
+
 
 @dataclass(frozen=True)
 class Part:
@@ -162,18 +165,10 @@ def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np
     return [web, *(plate("beam", start + sign * rise / 2 - side / 2, along, side) for sign in (-1, 1))]
 
 
-def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray, mesh: float = 0.04) -> Part:
-    """Return a level grating: bars of 4 mm by 3 cm across two edges (3,), with gaps between them.
-
-    Parameters
-    ----------
-    corner, first, second : ndarray of shape (3,)
-        A corner, and the two edges from it, m.
-    mesh : float
-        Distance between the bars, m.
-    """
+def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> Part:
+    """Return a level grating from a corner (3,) along two edges (3,), m: bars of 4 mm by 3 cm with gaps."""
     long, wide = float(np.linalg.norm(first)), float(np.linalg.norm(second))
-    n_bars = max(1, int(wide / mesh))
+    n_bars = max(1, int(wide / _MESH))
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         along = rng.uniform(0, 1, count)[:, None]

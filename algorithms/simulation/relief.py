@@ -128,7 +128,7 @@ class Relief:
 def make_relief(
     size: float, slope: float, hills: float, terrace_height: float, river: bool, rng: np.random.Generator
 ) -> Relief:
-    """Draw the ground of a town: ``slope`` in degrees, the rest as in :class:`Relief`.
+    """Return the ground of a town, drawn at random.
 
     Parameters
     ----------
@@ -140,11 +140,6 @@ def make_relief(
         Whether there is a river.
     rng : numpy.random.Generator
         Source of random numbers.
-
-    Returns
-    -------
-    Relief
-        The ground.
     """
     angle = float(np.deg2rad(rng.uniform(10.0, 35.0)))
     length = rng.uniform(80.0, 160.0, 4)

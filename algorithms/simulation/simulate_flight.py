@@ -6,7 +6,7 @@ from typing import Annotated
 
 from ..params import Seed
 from ..stage import Param, stage
-from .drone import SCANNERS, LineScan, plan_flight, pulses_per_line
+from .drone import SCANNERS, AngularStep, LineRate, LineScan, plan_flight, pulses_per_line
 from .scanner import RECORDED, RangeNoise, refuse_many_pulses
 from .street_site import build_site
 
@@ -43,15 +43,8 @@ def simulate_flight(
     ] = "both",
     trees: Annotated[int, Param("Trees", "Trees along the street.", low=0, high=22)] = 4,
     slope: Annotated[float, Param("Slope", "Slope of the ground, which is a plane.", unit="°", low=0, high=10)] = 1.5,
-    line_rate: Annotated[
-        float, Param("Line rate", "Scan lines of each scanner.", unit="1/s", low=1, high=200, advanced=True)
-    ] = 40.0,
-    angular_step: Annotated[
-        float,
-        Param(
-            "Angular step", "Angle between neighboring beams of a scanner.", unit="°", low=0.05, high=5, advanced=True
-        ),
-    ] = 0.25,
+    line_rate: LineRate = 40.0,
+    angular_step: AngularStep = 0.25,
     max_range: Annotated[
         float, Param("Maximum range", "How far the scanners see.", unit="m", low=1, high=40, advanced=True)
     ] = 30.0,

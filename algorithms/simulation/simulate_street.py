@@ -8,7 +8,7 @@ import numpy as np
 
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Param, stage
-from .drone import LineScan
+from .drone import AngularStep, LineRate, LineScan
 from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
 from .scene import Scene
 from .solids import Rect
@@ -120,15 +120,8 @@ def simulate_street(
         Param("Glass", "Share of the pulses on window panes that pass them and are lost.", unit="%", low=0, high=100),
     ] = 70.0,
     speed: Annotated[float, Param("Speed", "Speed of the vehicle.", unit="m/s", low=0.5, high=30, advanced=True)] = 5.0,
-    line_rate: Annotated[
-        float, Param("Line rate", "Scan lines of each scanner.", unit="1/s", low=1, high=500, advanced=True)
-    ] = 100.0,
-    angular_step: Annotated[
-        float,
-        Param(
-            "Angular step", "Angle between neighboring beams of a scanner.", unit="°", low=0.02, high=5, advanced=True
-        ),
-    ] = 0.25,
+    line_rate: LineRate = 100.0,
+    angular_step: AngularStep = 0.25,
     max_range: Annotated[
         float, Param("Maximum range", "How far the scanners see.", unit="m", low=5, high=200, advanced=True)
     ] = 40.0,
