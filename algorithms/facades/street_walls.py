@@ -38,6 +38,9 @@ class _Rules:
 
 _RULES = _Rules()
 
+# An edge of a ring: a point (2,) and the way (2,) of its line, and where it began before (2,), m.
+_Line = tuple[np.ndarray, np.ndarray, np.ndarray]
+
 
 @dataclass(frozen=True)
 class _Piece:
@@ -176,83 +179,64 @@ def _sampled(chain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _joined(ring: _Ring, pieces: list[_Piece]) -> np.ndarray:
     """Return the closed ring of walls and of the edges between them."""
-    lines = _Lines()
+    lines: list[_Line] = []
     for number, piece in enumerate(pieces):
         following = pieces[(number + 1) % len(pieces)]
-        lines.add_walls(piece.corners)
+        lines += [(start, _unit(end - start), start) for start, end in zip(piece.corners[:-1], piece.corners[1:])]
         gap = ring.between(piece.last, following.first)
         is_last = len(pieces) == 1
         is_same_edge = ring.edge(piece.last) == ring.edge(following.first) and following.first >= piece.last
         is_overlap = ring.between(following.first, piece.last) <= _RULES.gap
         if not is_last and (gap <= _RULES.gap or is_same_edge or is_overlap):
-            lines.add_step(piece.corners, following.corners)
+            lines += _step(piece.corners, following.corners)
         else:
-            lines.add_edges(ring, piece, following)
-    return lines.ring()
+            lines += _edges(ring, piece, following)
+    return ring_of_lines(*(np.array(part) for part in zip(*lines)))
 
 
-class _Lines:
-    """The lines of the edges of a ring, in order."""
+def _step(one: np.ndarray, other: np.ndarray) -> list[_Line]:
+    """Return the line of the step between two rows of walls that follow each other, none where they meet or go on.
 
-    def __init__(self) -> None:
-        #: Of each edge a point (2,) and the way (2,) of its line, and where it began before (2,).
-        self.lines: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+    Of two parallel walls the outer one hides the end of the inner one: the step is at the end of the outer one.
+    """
+    way, following = _unit(one[-1] - one[-2]), _unit(other[1] - other[0])
+    outward = np.array([way[1], -way[0]])
+    off = float((other[0] - one[-1]) @ outward)
+    if abs(_cross(way, following)) >= _RULES.same_way or abs(off) <= _RULES.step:
+        return []
+    return [(other[0] if off > 0 else one[-1], outward * np.sign(off), one[-1])]
 
-    def add_walls(self, corners: np.ndarray) -> None:
-        """Add the walls between corners (m, 2)."""
-        for start, end in zip(corners[:-1], corners[1:]):
-            self.lines.append((start, _unit(end - start), start))
 
-    def add_step(self, one: np.ndarray, other: np.ndarray) -> None:
-        """Add the step between two rows of walls that follow each other, none where they meet or go on.
-
-        Of two parallel walls the outer one hides the end of the inner one: the step is at the end of the outer one.
-        """
-        way, following = _unit(one[-1] - one[-2]), _unit(other[1] - other[0])
+def _edges(ring: _Ring, piece: _Piece, following: _Piece) -> list[_Line]:
+    """Return the lines of the outline from the end of a row of walls to the start of the next one."""
+    count = len(ring.way)
+    first, last = ring.edge(piece.last), ring.edge(following.first)
+    n_between = (last - first) % count
+    if n_between == 0 and (following.first < piece.last or piece is following):
+        n_between = count
+    edges = [(first + k) % count for k in range(n_between + 1)]
+    points = {k: ring.corners[edge] for k, edge in enumerate(edges)}
+    ends = (
+        (0, 1, piece.corners[-1], _unit(piece.corners[-1] - piece.corners[-2])),
+        (len(edges) - 1, len(edges) - 2, following.corners[0], _unit(following.corners[1] - following.corners[0])),
+    )
+    steps: dict[int, list[_Line]] = {}
+    for own, beside, end, way in ends:
+        edge_way = ring.way[edges[own]]
+        if abs(_cross(way, edge_way)) >= _RULES.same_way or way @ edge_way < 0:
+            continue
         outward = np.array([way[1], -way[0]])
-        off = float((other[0] - one[-1]) @ outward)
-        if abs(_cross(way, following)) < _RULES.same_way and abs(off) > _RULES.step:
-            self.lines.append((other[0] if off > 0 else one[-1], outward * np.sign(off), one[-1]))
-
-    def add_edges(self, ring: _Ring, piece: _Piece, following: _Piece) -> None:
-        """Add the edges of the outline from the end of a row of walls to the start of the next one."""
-        count = len(ring.way)
-        first, last = ring.edge(piece.last), ring.edge(following.first)
-        n_between = (last - first) % count
-        if n_between == 0 and (following.first < piece.last or piece is following):
-            n_between = count
-        edges = [(first + k) % count for k in range(n_between + 1)]
-        points = {k: ring.corners[edge] for k, edge in enumerate(edges)}
-        ends = (
-            (0, 1, piece.corners[-1], _unit(piece.corners[-1] - piece.corners[-2])),
-            (len(edges) - 1, len(edges) - 2, following.corners[0], _unit(following.corners[1] - following.corners[0])),
-        )
-        steps: dict[int, tuple] = {}
-        for own, beside, end, way in ends:
-            edge_way = ring.way[edges[own]]
-            if abs(_cross(way, edge_way)) >= _RULES.same_way or way @ edge_way < 0:
-                continue
-            outward = np.array([way[1], -way[0]])
-            off = float((points[own] - end) @ outward)
-            if abs(off) > _RULES.eaves:
-                steps[own] = (end, outward * np.sign(off) * (1 if own == 0 else -1), end)
-                continue
-            # The wall takes the place of the edge; the edge beside it passes through the end of the wall if that is
-            # the corner.
-            del points[own]
-            if beside in points and _ends_at(end, way if own == 0 else -way, points[beside], ring.way[edges[beside]]):
-                points[beside] = end
-        for k, edge in enumerate(edges):
-            if k in steps and k == 0:
-                self.lines.append(steps[k])
-            if k in points:
-                self.lines.append((points[k], ring.way[edge], ring.corners[edge]))
-            if k in steps and k > 0:
-                self.lines.append(steps[k])
-
-    def ring(self) -> np.ndarray:
-        """Return the closed ring (m, 2) of the lines."""
-        return ring_of_lines(*(np.array(part) for part in zip(*self.lines)))
+        off = float((points[own] - end) @ outward)
+        if abs(off) > _RULES.eaves:
+            steps[own] = [(end, outward * np.sign(off) * (1 if own == 0 else -1), end)]
+            continue
+        # The wall takes the place of the edge; the edge beside it passes through the end of the wall if that is
+        # the corner.
+        del points[own]
+        if beside in points and _ends_at(end, way if own == 0 else -way, points[beside], ring.way[edges[beside]]):
+            points[beside] = end
+    kept = [(points[k], ring.way[edge], ring.corners[edge]) for k, edge in enumerate(edges) if k in points]
+    return [*steps.pop(0, []), *kept, *steps.pop(len(edges) - 1, [])]
 
 
 def _ends_at(end: np.ndarray, way: np.ndarray, point: np.ndarray, edge_way: np.ndarray) -> bool:
