@@ -48,21 +48,14 @@ class Relief:
     #: (k, 3): hills: wave numbers across and along (rad/m) and phase (rad)
     waves: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 
-    def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:
-        """Return positions across and along the town (m) of points (m)."""
-        return self._frame.local(x, y)
-
-    def world(self, across, along) -> tuple[np.ndarray, np.ndarray]:
-        """Return the points (m) at positions across and along the town (m)."""
-        return self._frame.at(across, along)
-
     @property
-    def _frame(self) -> Rect:
+    def frame(self) -> Rect:
+        """The town as a rectangle, whose length is across it and whose width along it."""
         return Rect(self.size / 2, self.size / 2, self.size, self.size, self.angle)
 
     def plane(self, x, y) -> np.ndarray:
         """Elevation (m) of the plane that the ground follows on the whole."""
-        return self.gradient * (self.local(x, y)[0] - (self.river or 0.0))
+        return self.gradient * (self.frame.local(x, y)[0] - (self.river or 0.0))
 
     @property
     def plane_gradient(self) -> tuple[float, float]:
@@ -81,7 +74,7 @@ class Relief:
 
     def ground(self, x, y) -> np.ndarray:
         """Elevation (m) of the ground, under water that of the river bed."""
-        across, along = self.local(x, y)
+        across, along = self.frame.local(x, y)
         distance = across if self.river is None else across - self.river
         rise = distance
         if self.river is not None:
@@ -99,7 +92,7 @@ class Relief:
         if self.river is None:
             return np.zeros(np.shape(x), bool)
         # The channel's profile decides: over level ground it is below the water this far from the axis.
-        return np.abs(self.local(x, y)[0] - self.river) < CHANNEL - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
+        return np.abs(self.frame.local(x, y)[0] - self.river) < CHANNEL - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
 
     def tangent(self, x: float, y: float) -> np.ndarray:
         """Return (a, b, c) of the plane z = a x + b y + c that touches the ground at a point (m)."""

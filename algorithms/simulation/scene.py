@@ -91,7 +91,7 @@ class Scene:
         """Which points (m) lie in the channel of the river or on its banks."""
         if self.relief.river is None:
             return np.zeros(np.shape(x), bool)
-        return np.abs(self.relief.local(x, y)[0] - self.relief.river) < CHANNEL
+        return np.abs(self.relief.frame.local(x, y)[0] - self.relief.river) < CHANNEL
 
 
 def footprint_layer(buildings: list[Building], corners: bool = False) -> LayerFeatures:

@@ -92,7 +92,7 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
     for street, side, i in itertools.product(_street_lines(scene), (1, -1), range(-n_half, n_half)):
         # A side street of half a plot's width follows every block.
         across = (i + 0.5 * (i // _PLOTS_PER_BLOCK)) * _PLOT[0]
-        x, y = relief.world(across, street + side * (_STREET_WIDTH + _PLOT[1]) / 2)
+        x, y = relief.frame.at(across, street + side * (_STREET_WIDTH + _PLOT[1]) / 2)
         plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
         on_river = relief.river is not None and abs(across - relief.river) < VALLEY + _PLOT[0] / 2
         corners = plot.corners()
@@ -117,7 +117,7 @@ def _build_bridges(scene: Scene, river: float) -> None:
     """Carry every street over the river."""
     relief = scene.relief
     for street in _street_lines(scene):
-        x, y = relief.world(river, street)
+        x, y = relief.frame.at(river, street)
         deck = Rect(float(x), float(y), 2 * VALLEY - 8.0, 6.0, relief.angle)
         if np.abs(deck.corners() - scene.size / 2).max() > scene.size / 2:
             continue
@@ -169,7 +169,7 @@ def _string_wires(scene: Scene) -> None:
     relief, height, span, sag = scene.relief, 8.5, 34.0, 0.8
     along = float(_street_lines(scene)[len(_street_lines(scene)) // 2]) + _STREET_WIDTH / 2 - 0.4
     across = np.arange(-scene.size, scene.size, span)
-    x, y = relief.world(across, along)
+    x, y = relief.frame.at(across, along)
     # No pole is in the bed of the river.
     inside = (np.minimum(x, y) > 1.0) & (np.maximum(x, y) < scene.size - 1.0) & ~scene.near_water(x, y)
     feet = np.column_stack([x, y, relief.ground(x, y)])[inside]

@@ -77,7 +77,7 @@ def _plots(scene: Scene) -> list[Rect]:
     reach, n_half = int(scene.size // _STREETS) + 1, int(scene.size // _PLOT[0])
     for street, side, i in itertools.product(range(-reach, reach), (1, -1), range(-n_half, n_half)):
         along = (street + 0.5) * _STREETS + side * (_STREET_WIDTH + _PLOT[1]) / 2
-        x, y = relief.world((i + 0.5) * _PLOT[0], along)
+        x, y = relief.frame.at((i + 0.5) * _PLOT[0], along)
         plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
         if plot.corners().min() > 1.0 and plot.corners().max() < scene.size - 1.0:
             found.append(plot)
