@@ -283,6 +283,7 @@ def _described(
     columns = {
         "id": np.arange(1, len(kept) + 1),
         "line": of_line + 1,
+        "kind": [],
         "slope": slope,
         **dict(zip("xyz", middle.T)),
         "height": height,
