@@ -64,10 +64,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Angular step (°)&lt;/b&gt;: Angle between neighboring beams of a scanner. &lt;i&gt;(at least 0.05° and at most 5°; default 0.25°)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>&lt;b&gt;BRANCHES&lt;/b&gt;: Stems and branches, with the attributes:</source>
         <translation type="unfinished"></translation>
     </message>
@@ -309,10 +305,6 @@
     </message>
     <message>
         <source>&lt;b&gt;EARLIER&lt;/b&gt;: Footprints of the earlier survey, a layer of polygons. Buildings of the earlier survey, cut to the area of both.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;EDGE_FACTOR_USED&lt;/b&gt;: the value that was used, given or automatic.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -760,19 +752,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Line rate (1/s)&lt;/b&gt;: Scan lines of each scanner. &lt;i&gt;(at least 1 1/s and at most 200 1/s; default 40 1/s)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>&lt;b&gt;Line rate (1/s)&lt;/b&gt;: Scan lines of each scanner. &lt;i&gt;(at least 1 1/s and at most 500 1/s; default 100 1/s)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Line width (m)&lt;/b&gt;: Width of an artificial scan line. Automatic: 3 times the point spacing. &lt;i&gt;(greater than 0 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Line rate (1/s)&lt;/b&gt;: Scan lines of each scanner. &lt;i&gt;(at least 1 1/s and at most 500 1/s; default 40 1/s)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Longest edge&lt;/b&gt;: Triangles with an edge longer than this many point spacings are removed from the boundary inward. Automatic: 4 for straight edges; 1.5 for key points, as published. &lt;i&gt;(at least 1 and at most 20; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Line width (m)&lt;/b&gt;: Width of an artificial scan line. Automatic: 3 times the point spacing. &lt;i&gt;(greater than 0 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1616,10 +1604,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Pulse density (pulses/m²)&lt;/b&gt;: Laser pulses on average. &lt;i&gt;(at least 0.5 pulses/m² and at most 100 pulses/m²; default 8 pulses/m²)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>&lt;b&gt;Pulse density (pulses/m²)&lt;/b&gt;: Laser pulses on average; on open ground each of them gives a point, in trees several, on water few. &lt;i&gt;(at least 0.5 pulses/m² and at most 100 pulses/m²; default 8 pulses/m²)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
@@ -2025,10 +2009,6 @@
     </message>
     <message>
         <source>&lt;b&gt;TOLERANCE_USED, DISTANCE_BIN_USED, SLOPE_BIN_USED, WINDOW_SIZE_USED, MAX_GAP_USED, MIN_AREA_USED, N_NEIGHBORS_USED&lt;/b&gt;: the value that was used, given or automatic.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;TOLERANCE_USED, EDGE_FACTOR_USED&lt;/b&gt;: the value that was used, given or automatic.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3789,10 +3769,6 @@
     </message>
     <message>
         <source>Automatic: 3.1 times the roughness: the root of the sum of the squares of the surface noise, at least 0.025 m, and of 0.065 point spacings.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Automatic: 4 for straight edges; 1.5 for key points, as published.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5756,10 +5732,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Laser pulses on average.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -5873,10 +5845,6 @@
     </message>
     <message>
         <source>Local: points are accepted near the plane of the surface around the nearest of its points, so that smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). None: at any distance from a plane.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Longest edge</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8461,10 +8429,6 @@
     </message>
     <message>
         <source>Triangles with a longer edge belong to no surface: they lie across walls and gaps.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Triangles with an edge longer than this many point spacings are removed from the boundary inward.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
