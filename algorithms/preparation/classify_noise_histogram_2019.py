@@ -22,9 +22,8 @@ _MIN_BIN_HEIGHT = 1.0
 # Least height of a bin in point spacings.
 _BIN_SPACINGS = 2.0
 
-# Width (m) of the surroundings that decide on a point: a cell borrows the histograms of the cells around it. These are
-# as wide at 40 points/m², and wider in sparser clouds.
-_REACH = 10.0
+# Width (m) of the surroundings that decide on a point: its cell, at 1 point/m². It is narrower in denser clouds.
+_REACH = 64.0
 
 
 @stage(
@@ -32,7 +31,7 @@ _REACH = 10.0
     group="Preparation",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,CH filter,Carrilho",
     writes=("classification",),
-    reach=_REACH,
+    reach=lambda tunables: tunables["cell_size"] or _REACH,
 )
 def classify_noise_histogram_2019(
     xyz,

@@ -144,6 +144,22 @@ def in_blocks_of(pipeline, cloud, folder):
     return in_order(map(read_cloud, made.tiles), "classification")[0]
 
 
+def test_cells_of_a_histogram_are_whole_in_blocks(tmp_path, monkeypatch):
+    """Cells of 4,000 points are 45 m wide at 2 points/m². Five birds share a bin with one that is in another block."""
+    random = np.random.default_rng(3)
+    xyz = random.uniform(0, 1, (int(2 * SIZE**2), 3)) * [SIZE, SIZE, 0.9]
+    birds = np.column_stack([[4, 6, 8, 10, 12, 37], np.full((6, 1), 20), np.full((6, 1), 30.5)])
+    xyz = np.round(np.concatenate([xyz, birds]) + CORNER, 3)
+    cloud = create_cloud({"xyz": xyz, "gps_time": np.arange(len(xyz)) * 1e-5}, "EPSG:28992")
+    alone = Pipeline("alone", "Alone", "Tests", "", "", "", "", (Step("noise", "classify_noise_histogram_2019"),))
+    monkeypatch.setitem(PIPELINES, "alone", alone)
+    found = in_blocks_of(alone, cloud, tmp_path)
+    np.testing.assert_array_equal(found[-6:], 0)
+    np.testing.assert_array_equal(
+        found, in_order([run_pipeline(alone, cloud.copy(), kept=()).cloud], "classification")[0]
+    )
+
+
 def test_blocks_take_what_a_step_measures_from_the_whole(cloud, tmp_path, middle):
     """Where half of the cloud is a slope, each block would have a value of its own."""
     whole = in_order([run_pipeline(middle, cloud.copy(), kept=()).cloud], "classification")[0]
