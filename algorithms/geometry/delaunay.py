@@ -25,7 +25,7 @@ from .groups import components
 _TILE_POSITIONS = 3000
 
 # Up to this number of positions, one triangulation takes less time than tiles.
-_FEW = 30_000
+_FEW = 12_000
 
 # Surroundings of a tile, in distances between positions: nearly all circles on its border end there.
 _MARGIN = 3.0
