@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.grid import distinct
+from ..geometry.groups import least_of
 from ..neighborhoods.covariance import dimensionality, shannon_entropy, smallest_eigenvectors, symmetric_eigenvalues
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from .space_cells import SpaceCells, covariances
@@ -109,9 +110,8 @@ def _columns(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.nd
     values, of_cell = distinct(north * (int(east.max()) + 1) + east)
     column, of, level = of_cell[cells.cell], of_cell[chosen], cells.centers[chosen, 2]
     z, count = points.xyz[:, 2], np.bincount(column, minlength=len(values))
-    top, bottom, height = (np.full(len(values), start) for start in (-np.inf, np.inf, -np.inf))
-    np.maximum.at(top, column, z)
-    np.minimum.at(bottom, column, z)
+    top, bottom = -least_of(-z, column, len(values)), least_of(z, column, len(values))
+    height = np.full(len(values), -np.inf)
     # Of topmost points of the same elevation the one highest above ground, whatever their order in the cloud.
     topmost = np.flatnonzero(z == top[column])
     np.maximum.at(height, column[topmost], points.height[topmost])

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cloud.reasons import Reason
+from ..geometry.groups import least_of
 from ..packages import ndimage
 
 Cell = tuple[np.ndarray, np.ndarray]
@@ -134,8 +135,8 @@ def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np
         Cells that roofs cover.
     """
     row, column = cell
-    top = np.full(covered.shape, -np.inf)
-    np.maximum.at(top, (row[is_roof], column[is_roof]), elevation[is_roof])
+    number = row[is_roof] * covered.shape[1] + column[is_roof]
+    top = -least_of(-elevation[is_roof], number, covered.size).reshape(covered.shape)
     nearest = ndimage.distance_transform_edt(~np.isfinite(top), return_distances=False, return_indices=True)
     return top[tuple(nearest)]
 

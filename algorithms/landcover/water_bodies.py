@@ -8,6 +8,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.grid import raster_cells, refuse_sparse
+from ..geometry.groups import least_of
 from ..packages import ndimage
 from ..stage import Monitor
 
@@ -63,11 +64,11 @@ def water_levels(
     size = max(_RULES.least_cell, _RULES.cell_spacings * spacing)
     refuse_sparse(xyz, size)
     row, column = raster_cells(xyz, size, 0)
-    lowest = np.full((row.max() + 1, column.max() + 1), np.inf)
-    np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
+    shape = int(row.max()) + 1, int(column.max()) + 1
+    cell = row * shape[1] + column
+    lowest = least_of(xyz[is_ground, 2], cell[is_ground], shape[0] * shape[1]).reshape(shape)
     has_ground = np.isfinite(lowest)
     monitor.progress(0.3)
-    cell = row * lowest.shape[1] + column
     is_seen = (np.bincount(cell, minlength=lowest.size) > 0).reshape(lowest.shape)
     pulses = np.bincount(cell[is_pulse], minlength=lowest.size).reshape(lowest.shape).astype(float)
     is_sparse = _sparse(pulses, is_seen, size)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.grid import distinct, find_cells, fixed_grid_over, plan_box
-from ..geometry.groups import components
+from ..geometry.groups import components, least_of
 from ..packages import spatial
 from ..stage import Monitor
 from .points_under_ground import mask_of, near_cells
@@ -167,8 +167,7 @@ def _is_open(xyz: np.ndarray, is_loose: np.ndarray, rows: np.ndarray, link: floa
     grid = fixed_grid_over(xyz, link / 2)
     cells, which = distinct(grid.number(xyz))
     scene = np.flatnonzero(mask_of(len(cells), near_cells(grid, cells, which[rows]))[which] & ~is_loose)
-    top = np.full(len(cells), -np.inf)
-    np.maximum.at(top, which[scene], xyz[scene, 2])
+    top = -least_of(-xyz[scene, 2], which[scene], len(cells))
     highest = np.full(len(rows), -np.inf)
     for step in (0, *grid.around):
         beside, found = find_cells(cells, cells[which[rows]] + step)

@@ -8,6 +8,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, lattice
+from ..geometry.groups import least_of
 from ..sampling.closed_surface import CLOSED
 from ..sampling.density import DENSITY
 from ..terrain.free_standing import FREE
@@ -180,8 +181,7 @@ def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarra
     # Sorted by cells, so that the groups in a point's cell are found by searching.
     pairs, which = distinct(cell[member].astype(np.int64) * count + group[member])
     where, owner = np.divmod(pairs, count)
-    bottom = np.full(len(pairs), np.inf)
-    np.minimum.at(bottom, which, xyz[member, 2])
+    bottom = least_of(xyz[member, 2], which, len(pairs))
     first = np.searchsorted(where, cell)
     groups_there = np.searchsorted(where, cell, "right") - first
     beneath = np.zeros(len(pairs), np.int64)

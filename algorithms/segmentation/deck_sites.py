@@ -7,6 +7,7 @@ import numpy as np
 from ..geometry.adjacent_cells import DIRECTIONS
 from ..geometry.components import connect
 from ..geometry.grid import raster_cells, refuse_sparse
+from ..geometry.groups import least_of
 from ..packages import ndimage, spatial
 from ..sampling.kinds import LASER
 from ..stage import Monitor
@@ -59,9 +60,7 @@ def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, deck
 
 def _lowest(cell: np.ndarray, height: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """Return the lowest of the heights in each cell, m; infinite without any."""
-    lowest = np.full(shape[0] * shape[1], np.inf)
-    np.minimum.at(lowest, cell, height)
-    return lowest.reshape(shape)
+    return least_of(height, cell, shape[0] * shape[1]).reshape(shape)
 
 
 def _count(cell: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.grid import fixed_grid_over, raster_cells, refuse_sparse
+from ..geometry.groups import least_of
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.closed_surface import CLOSED
@@ -54,8 +55,9 @@ class TopSurface:
         margin = 4
         self.cell = row, column = raster_cells(xyz, self.size, margin)
         shape = (int(row.max()) + margin + 1, int(column.max()) + margin + 1)
-        self.elevation, self.height = np.full((2, *shape), -np.inf)
-        np.maximum.at(self.elevation, (row[counted], column[counted]), xyz[counted, 2])
+        cell = row[counted] * shape[1] + column[counted]
+        self.elevation = -least_of(-xyz[counted, 2], cell, shape[0] * shape[1]).reshape(shape)
+        self.height = np.full(shape, -np.inf)
         np.maximum.at(self.height, (row[counted], column[counted]), height[counted])
         distance, nearest = ndimage.distance_transform_edt(~np.isfinite(self.elevation), return_indices=True)
         is_near = distance <= TOP.filled

@@ -8,6 +8,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.grid import lattice, plan_box, refuse_sparse, turned_in_plan
+from ..geometry.groups import least_of
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
@@ -63,9 +64,7 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     row, column = ((lattice(axis, cell_size) - start).astype(np.int32) for axis, start in zip((x, y), first))
     shape = int(row.max()) + 1, int(column.max()) + 1
     cell = np.ravel_multi_index((row, column), shape)
-    least = np.full(shape, np.inf)
-    np.minimum.at(least.ravel(), cell, z)
-    as_low = np.flatnonzero(z == least.ravel()[cell])
+    as_low = np.flatnonzero(z == least_of(z, cell, shape[0] * shape[1])[cell])
     # The last one that is written stays: ties go to the least x, then y, whatever the order.
     as_low = as_low[np.lexsort((-y[as_low], -x[as_low]))]
     index = np.full(shape, -1, np.int64)

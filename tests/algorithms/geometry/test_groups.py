@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from lidar_buildings.algorithms.geometry.groups import (
     components,
     items,
+    least_of,
     members,
     ordered,
     run_starts,
@@ -27,6 +28,19 @@ def test_a_run_starts_where_the_number_before_is_another(values):
 def test_items_are_counted_from_0_in_each_group(counts):
     wanted = [(group, item) for group, count in enumerate(counts.tolist()) for item in range(count)]
     assert list(zip(*(part.tolist() for part in items(counts)))) == wanted
+
+
+@given(st.lists(st.tuples(st.integers(0, 4), st.integers(-3, 3)), max_size=30))
+def test_the_least_of_a_group_is_found_in_any_order(pairs):
+    group, values = np.array(pairs, np.int64).reshape(-1, 2).T
+    wanted = [min((value for own, value in pairs if own == one), default=np.inf) for one in range(5)]
+    assert least_of(values.astype(float), group, 5).tolist() == wanted
+
+
+@pytest.mark.parametrize("order", [slice(None), slice(None, None, -1)])
+def test_the_least_of_sorted_values_is_found(order):
+    values = np.arange(1000.0)[order]
+    assert least_of(values, np.zeros(1000, np.int64), 1).tolist() == [0.0]
 
 
 @given(numbers)
