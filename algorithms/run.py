@@ -175,6 +175,8 @@ class _RunSampling:
         self.given = given.get("") if isinstance(cloud, Cloud) else None
         self.points = cloud.points if isinstance(cloud, Cloud) else None
         self.counted: Optional[np.ndarray] = None
+        # Held, so that steps share the coordinates: decoding them takes as long as a small step.
+        self.xyz: Optional[np.ndarray] = None
         # Cells of all steps begin at the corner of the input, also where a step removes the points there.
         self.corner = _corner(cloud) if isinstance(cloud, Cloud) and self.given is None else None
 
@@ -185,7 +187,7 @@ class _RunSampling:
 
     def of(self, cloud: Cloud) -> CloudSampling:
         """Return the sampling of a cloud, the same as for the step before if it has the same points that count."""
-        is_same = cloud.points is self.points
+        is_same, self.xyz = cloud.points is self.points, cloud.get("xyz")
         if is_same and self.given is not None:
             return self.given
         used = counted(cloud)

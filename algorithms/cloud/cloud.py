@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Callable, Optional, cast
+from weakref import ReferenceType, ref
 
 import numpy as np
 
@@ -29,8 +30,8 @@ class Cloud:
     """A point cloud: the records of a file, and what stages have set.
 
     Memory: the records as they are in the file take 20 to 67 bytes per point plus extra bytes. Each array that was set
-    takes 1 to 12 bytes per point. ``get("xyz")`` makes a new array of 24 bytes per point each time; keep it no longer
-    than needed.
+    takes 1 to 12 bytes per point. ``get("xyz")`` makes an array of 24 bytes per point, which all share that hold it;
+    keep it no longer than needed.
 
     Attributes
     ----------
@@ -57,6 +58,8 @@ class Cloud:
         self.wkt = wkt_of(header)
         self.files = files or []
         self._changes: dict[str, np.ndarray] = {}
+        # The coordinates made last, as long as someone holds them, and the records and the origin that they are of.
+        self._shared: Optional[tuple[ReferenceType[np.ndarray], np.ndarray, np.ndarray]] = None
         low = np.array([points[axis].min() for axis in "XY"]) * (header.scale[:2] * units.horizontal)
         low += header.offset[:2] * units.horizontal
         self.origin = np.append(np.floor(low / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
@@ -82,7 +85,7 @@ class Cloud:
         """Return a dimension by its Python name, (n,) or (n, 3), in the dtype and unit of ``dimensions.py``.
 
         ``xyz`` is float64, meters from ``origin``. What was set comes back as it
-        was set; the array may be a view, so don't change it. Heights and areas
+        was set. Others may hold the array, so don't change it. Heights and areas
         that the file holds in its own unit (also under an alias, with its scale) come in meters.
 
         Raises
@@ -103,12 +106,18 @@ class Cloud:
         return parts[0] if len(parts) == 1 else np.stack(parts, axis=1)
 
     def _xyz(self) -> np.ndarray:
+        if self._shared is not None:
+            reference, points, origin = self._shared
+            shared = reference()
+            if shared is not None and points is self.points and np.array_equal(origin, self.origin):
+                return shared
         xyz = np.empty((len(self), 3))
         scale = self.header.scale * self.units.factors
         shift = self.header.offset * self.units.factors - self.origin
         for i, axis in enumerate("XYZ"):
             np.multiply(self.points[axis], scale[i], out=xyz[:, i])
             xyz[:, i] += shift[i]
+        self._shared = ref(xyz), self.points, self.origin.copy()
         return xyz
 
     def _extra(self, dimension: Dimension, component: int) -> np.ndarray:

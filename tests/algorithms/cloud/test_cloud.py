@@ -290,6 +290,19 @@ def test_points_moved_out_of_the_file_are_refused(town, far):
     assert cloud.points is before
 
 
+def test_coordinates_are_shared_by_those_that_hold_them_until_points_move(town):
+    cloud = create_cloud(town)
+    held = cloud.get("xyz")
+    assert cloud.get("xyz") is held
+    assert cloud.copy().get("xyz") is held
+    east = held + [1.0, 0.0, 0.0]
+    cloud.set("xyz", east)
+    np.testing.assert_allclose(cloud.get("xyz"), east, rtol=0, atol=1e-3)
+    before = cloud.get("xyz")
+    cloud.origin = cloud.origin + [10.0, 0.0, 0.0]
+    np.testing.assert_allclose(cloud.get("xyz"), before - [10.0, 0.0, 0.0], rtol=0, atol=1e-6)
+
+
 def test_a_copy_is_changed_apart(town):
     cloud = create_cloud(town)
     copy = cloud.copy()
