@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED
-from ..geometry.grid import connected_cells, find_cells, fixed_grid_over, plan_box
+from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
 from ..geometry.polygon_overlap import meeting_boxes
 from ..geometry.ring_directions import N_STEPS, RingPieces, main_directions, weights_of_pieces
@@ -297,10 +297,9 @@ def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list
     of buildings shows for both where their roofs end.
     """
     grid = fixed_grid_over(np.concatenate([building, non_building]), apart)
-    cell = grid.number(building)
-    cells = np.unique(cell)
+    cells, cell = distinct(grid.number(building))
     count, group = connected_cells(grid, cells)
-    own = group[np.searchsorted(cells, cell)]
+    own = group[cell]
     # Non-building points lie in a cell of a group or beside one.
     non_building_cell = grid.number(non_building)
     pairs = [np.zeros(0, np.int64)]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.grid import find_cells, fixed_grid_over, grid_over
+from ..geometry.grid import distinct, find_cells, fixed_grid_over, grid_over
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
@@ -62,7 +62,7 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
     """
     grid = fixed_grid_over(xyz, spacing)
     # One number for cell and cluster; a cluster's cells are as far from the next one's as the grid is large.
-    number = np.unique(cluster, return_inverse=True)[1].ravel()
+    number = distinct(cluster)[1].astype(np.int64)
     cell = grid.number(xyz) + number * (grid.rows * grid.columns)
     order = np.lexsort((xyz[:, 2], cell))
     last = np.flatnonzero(np.diff(cell[order], append=-1))
@@ -135,7 +135,7 @@ def find_non_building_points(
     """
     reach = REACH * spacing
     grid = grid_over(xyz, reach)
-    cells = np.unique(grid.number(xyz[roof]))
+    cells = distinct(grid.number(xyz[roof]))[0]
     near = np.unique(np.concatenate([cells, *(cells + step for step in grid.around)]))
     other = np.flatnonzero(~np.isin(classification, (PointClass.BUILDING, *NOISE)))
     other = other[find_cells(near, grid.number(xyz[other]))[1]]
@@ -160,7 +160,7 @@ def is_under_roof(positions: np.ndarray, tree: Any, spacing: float) -> np.ndarra
     count = tree.query_ball_point(positions, _AROUND * spacing, return_length=True, workers=n_threads())
     _, nearest = tree.query(positions, min(_NEAREST, tree.n), workers=n_threads())
     nearest = nearest.reshape(len(positions), -1)
-    beside, row = np.unique(nearest, return_inverse=True)
+    beside, row = distinct(nearest.ravel())
     usual = tree.query_ball_point(tree.data[beside], _AROUND * spacing, return_length=True, workers=n_threads())
     # Bushes beside a roof that are taken for it are thinner than a roof.
     least = _DENSE * np.pi * _AROUND**2
