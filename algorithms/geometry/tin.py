@@ -186,8 +186,9 @@ class Tin:
     def elevation(self, xyz: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the surface's elevation (n,) at points that lie in ``facet`` (n,)."""
         slope, level = self._planes
-        plan = xyz[:, :2] - self.shift[:2]
-        return np.einsum("ij,ij->i", slope[facet], plan) + level[facet]
+        east, north = slope.take(facet, axis=0).T
+        x, y = (xyz[:, axis] - self.shift[axis] for axis in (0, 1))
+        return (east * x + north * y) + level.take(facet)
 
     def slope_cosine(self) -> np.ndarray:
         """Return the cosine (f,) of each facet's slope, 1 where it is level."""

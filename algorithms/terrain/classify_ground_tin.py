@@ -253,7 +253,7 @@ def classify_ground_tin(
     xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing
     usable = in_plan_order(xyz, usable, spacing)
-    points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
+    points, last = xyz.take(usable, axis=0), last_returns(return_number, number_of_returns, usable)
     granularity, cell_size = _cell(granularity, cell_size, spacing)
     edge_length = 2 * cell_size if edge_length is None else edge_length
     size = _largest_building(terrain) if max_building_size is None and terrain else max_building_size

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.tin import CORNERS, Tin
-from .tin_densification import offset_and_angle
+from .tin_densification import offset_and_angle, to_nearest_node
 
 # Beyond a breakline the surface continues where it is less steep than this, °.
 _LEVEL = 20.0
@@ -47,7 +47,7 @@ def mirrored_angle(
     rows = rows[points[rows, 2] > tin.elevation(points[rows], facet[rows])]
     image = image[rows]
     other_facet = tin.locate_near(image, highest[rows])
-    offset, found = offset_and_angle(tin, other_facet, image)
+    offset, found = offset_and_angle(tin, other_facet, image, to_nearest_node(tin, other_facet, image))
     level = (tin.slope_cosine() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
     fits = (offset <= _MIRROR_SHARE * distance) & level[other_facet]
     angle[rows[fits]] = found[fits]

@@ -99,7 +99,7 @@ class Surface:
     @property
     def nodes(self) -> np.ndarray:
         """The nodes (m, 3), m."""
-        return self.points[self.is_node]
+        return self.points.compress(self.is_node, axis=0)
 
     def add(self, joining: np.ndarray) -> None:
         """Let the points with these indices become nodes."""
@@ -159,7 +159,7 @@ def grow(
     candidates = np.flatnonzero(may_join & ~surface.is_node)
     is_last = False
     while not is_last:
-        n_nodes, step = len(surface.nodes), step + 1
+        n_nodes, step = int(surface.is_node.sum()), step + 1
         open_candidates, joining = _joining(surface, candidates, distance, angle, rules, len(start))
         surface.add(joining)
         candidates = np.setdiff1d(candidates if rules.is_exhaustive else open_candidates, joining, assume_unique=True)
@@ -177,10 +177,11 @@ def _joining(
     # Small facets mostly get smaller, and a point beside a node makes a sliver and adds no information.
     is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]
-    apart = _to_nearest_node(tin, facet, surface.points[candidates]) > DENSIFICATION.node_distance * rules.edge_length
-    candidates, facet = candidates[apart], facet[apart]
-    here = surface.points[candidates]
-    offset, angle = offset_and_angle(tin, facet, here)
+    here = surface.points.take(candidates, axis=0)
+    nearest = to_nearest_node(tin, facet, here)
+    apart = nearest > DENSIFICATION.node_distance * rules.edge_length
+    candidates, facet, here = candidates[apart], facet[apart], here.compress(apart, axis=0)
+    offset, angle = offset_and_angle(tin, facet, here, nearest[apart])
     fits = (offset <= distance) & (angle <= max_angle) & _is_terrain(tin, facet, here, rules.terrain_angle)
     if rules.beyond is not None:
         others = np.flatnonzero(~fits)
@@ -193,20 +194,31 @@ def _joining(
     return candidates, joining
 
 
-def offset_and_angle(tin: Tin, facet: np.ndarray, here: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance (m) of points to their facets, and the largest angle (°) to the nodes of these."""
+def offset_and_angle(
+    tin: Tin, facet: np.ndarray, here: np.ndarray, nearest: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distance (m) of points to their facets, and the largest angle (°) to the nodes of these.
+
+    ``nearest`` (n,) is their distance (m) to the nearest of these.
+    """
     offset = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.slope_cosine()[facet]
-    nearest = _to_nearest_node(tin, facet, here)
     return offset, np.degrees(np.arcsin(np.clip(offset / np.maximum(nearest, 1e-9), 0, 1)))
 
 
 def _is_terrain(tin: Tin, facet: np.ndarray, here: np.ndarray, terrain_angle: float) -> np.ndarray:
     """Return whether no line from a point to the nodes of its facet is steeper than ``terrain_angle`` (°)."""
+    if terrain_angle >= 90.0:
+        return np.ones(len(here), bool)
     lines = tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None]
     slopes = np.arctan2(np.abs(lines[..., 2]), np.linalg.norm(lines[..., :2], axis=2))
     return np.degrees(slopes).max(axis=1) <= terrain_angle
 
 
-def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarray:
+def to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarray:
     """Return the distance (m) to the nearest node of each point's facet: the largest angle is there."""
-    return np.linalg.norm(tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None], axis=2).min(axis=1)
+    here, least = here - tin.shift, np.full(len(here), np.inf)
+    for node in tin.facets.take(facet, axis=0).T:
+        # Column by column: numpy is slow on rows of three.
+        x, y, z = (tin.nodes.take(node, axis=0) - here).T
+        least = np.minimum(least, x * x + y * y + z * z)
+    return np.sqrt(least)
