@@ -71,7 +71,7 @@ def restore_classes(
         return classes, None
     sampling = sampling or CloudSampling.of(xyz, classification)
     gap = max(DENSITY.link * sampling.spacing, DENSITY.least_link)
-    points = xyz[is_building]
+    points = xyz.compress(is_building, axis=0)
     number = np.zeros(len(xyz), np.int32)
     number[is_building] = 1 + connect(points, gap, 1 + float(np.ptp(points[:, 2])), monitor)
     return classes, number
