@@ -13,6 +13,7 @@ from ..geometry.cell_polygons import cell_polygons, connected_cells
 from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.ring_directions import along_two_directions
 from ..geometry.ring_drawing import Edge, Prices, aligned, draw_ring
+from ..geometry.rings import sides_of_rings
 from ..geometry.subdivision import Subdivision
 from ..packages import ndimage
 from ..threads import ROWS_AT_ONCE
@@ -270,7 +271,7 @@ def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.n
 
 def _is_straight(rings: list[np.ndarray], edges: list[Edge]) -> bool:
     """Return whether most of the length of rings was drawn along one main direction and square to it."""
-    start, end = (np.concatenate([ring[part] for ring in rings]) for part in (slice(None, -1), slice(1, None)))
+    start, end = np.moveaxis(sides_of_rings(rings), 1, 0)
     length, angle = np.hypot(*(end - start).T), np.degrees(np.arctan2(*(end - start).T[::-1]))
     is_main = _are_drawn(start, end, [edge for edge in edges if edge.is_main])
     return along_two_directions(length[is_main], angle[is_main]) > _MOST * length.sum()

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.reasons import ADDED, Reason
 from ..geometry.groups import split_groups
-from ..geometry.rings import perimeter, signed_area
+from ..geometry.rings import along_sides, perimeter, sides_of_rings, signed_area
 from ..packages import ndimage, spatial
 from ..stage import Field
 from ..threads import searchers
@@ -180,18 +180,8 @@ class _Owners:
 
     def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return positions (b, 2) along an outline, and which (b,) are not on a border with another; all if none is."""
-        positions, outward = [], []
-        for start, end in zip(
-            *(np.concatenate([ring[part] for ring in rings]) for part in (slice(-1), slice(1, None)))
-        ):
-            length = float(np.hypot(*(end - start)))
-            share = np.arange(0.5, max(1.0, length / self.spacing)) / max(1.0, length / self.spacing)
-            positions.append(start + share[:, None] * (end - start))
-            outward.append(
-                np.tile(np.array([end[1] - start[1], start[0] - end[0]]) / max(length, 1e-9), (len(share), 1))
-            )
-        along, across = np.concatenate(positions), np.concatenate(outward)
-        beyond = self.face[self.lattice.nearest(along + self.spacing * across)]
+        along, _, outward = along_sides(sides_of_rings(rings), self.spacing)
+        beyond = self.face[self.lattice.nearest(along + self.spacing * outward)]
         is_outer = (beyond < 0) | (beyond == face)
         return along, is_outer if is_outer.any() else np.ones(len(along), bool)
 

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .groups import items
+
 
 def signed_area(ring: np.ndarray) -> float:
     """Return the area (m²) within a ring, negative when it runs clockwise."""
@@ -17,3 +19,28 @@ def signed_area(ring: np.ndarray) -> float:
 def perimeter(ring: np.ndarray) -> float:
     """Return the length (m) of a ring."""
     return float(np.hypot(*np.diff(ring, axis=0).T).sum())
+
+
+def sides_of_rings(rings: list[np.ndarray]) -> np.ndarray:
+    """Return start and end (k, 2, 2) of the sides of rings, one ring after the other."""
+    return np.concatenate([np.zeros((0, 2, 2)), *(np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings)])
+
+
+def sampled_rings(rings: list[np.ndarray], step: float) -> np.ndarray:
+    """Return positions (n, 2) along rings, at most ``step`` (m) apart, vertices among these."""
+    start, end = np.moveaxis(sides_of_rings(rings), 1, 0)
+    side, number = items(np.ceil(np.hypot(*(end - start).T) / step).astype(np.int64).clip(1))
+    return start[side] + (number / np.bincount(side)[side])[:, None] * (end - start)[side]
+
+
+def along_sides(sides: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return positions (p, 2), m, at equal distances of about ``step`` (m) along sides (k, 2, 2), none at their ends.
+
+    Further the side (p,) of each, and the unit vector (p, 2) to its right. Sides without a length have no position.
+    """
+    ways = sides[:, 1] - sides[:, 0]
+    length = np.hypot(*ways.T)
+    count = np.where(length > 0, np.maximum(1, np.rint(length / step)), 0).astype(np.int64)
+    side, number = items(count)
+    positions = sides[side, 0] + ((number + 0.5) / count[side])[:, None] * ways[side]
+    return positions, side, np.column_stack([ways[side, 1], -ways[side, 0]]) / length[side, None]

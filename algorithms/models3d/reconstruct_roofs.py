@@ -9,7 +9,7 @@ from typing import Annotated, Any, Callable, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..geometry.rings import signed_area
+from ..geometry.rings import sampled_rings, signed_area
 from ..packages import spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
@@ -342,19 +342,10 @@ def _ground_heights(ground: np.ndarray) -> Callable[[list], tuple[float, float]]
     tree = spatial.cKDTree(ground[:, :2])
 
     def ground_of(rings: list) -> tuple[float, float]:
-        z = ground[tree.query(_along(rings[0]))[1], 2]
+        z = ground[tree.query(sampled_rings(rings[:1], _GROUND_STEP))[1], 2]
         return float(np.percentile(z, _GROUND_PERCENTILE)), float(np.median(z))
 
     return ground_of
-
-
-def _along(ring: np.ndarray) -> np.ndarray:
-    """Return positions (k, 2) along a ring, its vertices and as many as needed between them."""
-    parts = []
-    for start, end in zip(ring[:-1], ring[1:]):
-        count = max(1, int(np.ceil(np.hypot(*(end - start)) / _GROUND_STEP)))
-        parts.append(start + (end - start) * np.arange(count)[:, None] / count)
-    return np.concatenate(parts)
 
 
 def _building_layer(models: list[NamedModel]) -> LayerFeatures:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.points_in_polygons import are_within
+from ..geometry.rings import sides_of_rings
 from ..geometry.subdivision import SNAP, Subdivision
 from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
@@ -47,7 +48,7 @@ class Partition:
 
 def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:
     """Return which positions (n, 2) a polygon holds."""
-    return are_within(xy, np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings]))
+    return are_within(xy, sides_of_rings(rings))
 
 
 def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarray]:
@@ -55,7 +56,7 @@ def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarra
     every = np.concatenate(rings)
     low, high = every.min(axis=0) - 1.0, every.max(axis=0) + 1.0
     cells = Subdivision(low, high, xy)
-    pieces = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+    pieces = sides_of_rings(rings)
     length = np.hypot(*(pieces[:, 1] - pieces[:, 0]).T)
     for start, end in pieces[np.argsort(-length, kind="stable")]:
         cells.cut(start, end, _SNAP_OUTLINE)

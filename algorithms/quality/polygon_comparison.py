@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.groups import items
 from ..geometry.line_segments import nearest_edge_distances
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.ring_directions import along_two_directions
+from ..geometry.rings import sampled_rings, sides_of_rings
 from ..stage import Monitor
 
 # Step (m) of the samples between which the distance of two outlines is measured: below the accuracy of outlines.
@@ -90,21 +90,13 @@ def _farthest(rings: list[np.ndarray], others: list[np.ndarray]) -> float:
 
 def distances_from(positions: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     """Return the distances (n,), m, of positions (n, 2) from rings."""
-    starts, ends = (np.concatenate([ring[part] for ring in rings]) for part in (slice(None, -1), slice(1, None)))
+    starts, ends = np.moveaxis(sides_of_rings(rings), 1, 0)
     return nearest_edge_distances(positions, starts, ends)
 
 
 def positions_along(rings: list[np.ndarray]) -> np.ndarray:
     """Return positions (n, 2) along closed rings, at most 0.1 m apart, vertices among these."""
-    return np.concatenate([_sampled(ring) for ring in rings])
-
-
-def _sampled(ring: np.ndarray) -> np.ndarray:
-    """Return positions (n, 2) along a ring, vertices among them."""
-    step = np.diff(ring, axis=0)
-    edge, number = items(np.ceil(np.hypot(*step.T) / _STEP).astype(np.int64).clip(1))
-    share = number / np.bincount(edge)[edge]
-    return ring[edge] + share[:, None] * step[edge]
+    return sampled_rings(rings, _STEP)
 
 
 def squareness(rings: list[np.ndarray]) -> float:

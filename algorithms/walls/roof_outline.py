@@ -11,7 +11,7 @@ import numpy as np
 from ..footprints.drawn_blocks import Drawing, draw_block
 from ..footprints.outline_pieces import blocks_of, pieces_alone
 from ..footprints.soft_shares import LEAST_SPACING
-from ..geometry.rings import signed_area
+from ..geometry.rings import sides_of_rings, signed_area
 from .surroundings import without_nested
 
 # Area of the smallest part and of the smallest courtyard (square spacings).
@@ -32,8 +32,7 @@ class RoofOutline:
     @cached_property
     def sides(self) -> np.ndarray:
         """Start and end (m) of the sides (k, 2, 2) of the largest part, drawn more finely, the roof to the left."""
-        rings = [ring for part in self.drawn(_FINE)[:1] for ring in part]
-        return np.concatenate([np.zeros((0, 2, 2)), *(np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings)])
+        return sides_of_rings([ring for part in self.drawn(_FINE)[:1] for ring in part])
 
 
 def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
-from ..geometry.groups import items, run_starts
+from ..geometry.groups import run_starts
 from ..geometry.line_segments import are_inside
-from ..geometry.rings import signed_area
+from ..geometry.rings import along_sides, signed_area
 from ..packages import ndimage
 from ..sampling.cloud_sampling import CloudSampling
 
@@ -117,16 +117,12 @@ class Surroundings:
 
     def is_party(self, sides: np.ndarray, number: int) -> np.ndarray:
         """Return beside which sides (k, 2, 2) of roof ``number``, which lies to their left, other roofs begin."""
-        step = sides[:, 1] - sides[:, 0]
-        length = np.hypot(*step.T)
-        count = np.where(length > 0, np.maximum(1, np.rint(length / _STEP)), 0).astype(np.int64)
-        side, position = items(count)
-        along = sides[side, 0] + ((position + 0.5) / count[side])[:, None] * step[side]
-        outward = np.column_stack([step[side, 1], -step[side, 0]]) / length[side, None]
+        along, side, outward = along_sides(sides, _STEP)
         is_beside = np.zeros(len(side), bool)
         for distance in _OUTWARD:
             roof = self._at(along + distance * outward)[1]
             is_beside |= (roof > 0) & (roof != number)
+        count = np.bincount(side, minlength=len(sides))
         return np.bincount(side, is_beside, len(sides)) >= _SHARED * np.maximum(count, 1)
 
 
