@@ -113,11 +113,6 @@ class OutlineCells:
         is_touched_twice = before & after & (left_before != left_after)
         return np.where(is_touched_twice, 2, before != after)
 
-    def line_costs(self, inside: np.ndarray) -> np.ndarray:
-        """Return the cost of the edges of an outline on each line (lines,)."""
-        cut = self.is_cut(inside)
-        return np.bincount(self.edges.line[cut], self.cost[cut], len(self.lines))
-
     def is_used(self, inside: np.ndarray) -> np.ndarray:
         """Return which lines (lines,) an outline runs along."""
         return np.bincount(self.edges.line[self.is_cut(inside)], minlength=len(self.lines)) > 0
@@ -228,34 +223,22 @@ class Simplification:
 
     def __init__(self, cells: OutlineCells) -> None:
         self.cells = cells
-        self.every = np.ones(len(cells.lines), bool)
-        self.inside = cells.improved(np.zeros(cells.cells.count, bool), self.every)
+        self.inside = cells.improved(np.zeros(cells.cells.count, bool), np.ones(len(cells.lines), bool))
         self.is_open = cells.is_used(self.inside)
         self.total = cells.total(self.inside)
 
     def run(self, monitor: Monitor) -> np.ndarray:
-        """Return the cells (cells,), bool, of the cheapest outline found."""
-        # The descent can end at a chord over a corner: lines that cost more than one are also left out from the start.
-        doubtful = np.flatnonzero(self.cells.line_costs(self.inside) > _CORNER_COST + _SKEW_COST)
-        self._descend(self.is_open, monitor.part(0.0, 0.5))
-        for done, line in enumerate(doubtful.tolist()):
-            self._restart_without(
-                line, monitor.part(0.5 + done / len(doubtful) / 2, 0.5 + (done + 1) / len(doubtful) / 2)
-            )
-        return self.inside
-
-    def _descend(self, is_tried: np.ndarray, monitor: Monitor) -> None:
-        """Leave out the lines that aren't worth their corners, of those ``is_tried`` (lines,), the worst first."""
+        """Leave out the lines that aren't worth their corners, the worst first; return the cells (cells,), bool."""
         # What leaving out a line saved when it was last tried, and whether nothing has changed near it since.
-        saving = np.where(is_tried & self.is_open, np.inf, -np.inf)
-        is_known = np.isneginf(saving)
+        saving = np.where(self.is_open, np.inf, -np.inf)
+        is_known = ~self.is_open
         latest = -1
         while self.is_open.sum() > 3 and (saving.max() > 0 or not is_known.all()):
             if saving.max() <= 0:
                 saving[~is_known] = np.inf
             line = int(np.argmax(saving))
             if line != latest:
-                inside, latest = self._without(line, self.is_open), line
+                inside, latest = self._without(line), line
                 total = self.cells.total(inside)
             if is_known[line] and total < self.total:
                 near = self._near(self.inside, inside) & self.is_open
@@ -265,13 +248,14 @@ class Simplification:
             else:
                 saving[line], is_known[line] = self.total - total, True
             monitor.progress(1 - self.is_open.mean())
+        return self.inside
 
-    def _without(self, line: int, is_open: np.ndarray) -> np.ndarray:
+    def _without(self, line: int) -> np.ndarray:
         """Return the outline with what runs along a line chosen anew from the open ones."""
         own = np.flatnonzero((self.cells.edges.line == line) & self.cells.is_cut(self.inside))
         if not len(own):
             return self.inside
-        return self.cells.improved(self.inside, is_open, self.cells.boxes(own, _NEARBY), line)
+        return self.cells.improved(self.inside, self.is_open, self.cells.boxes(own, _NEARBY), line)
 
     def _near(self, before: np.ndarray, after: np.ndarray) -> np.ndarray:
         """Return which lines (lines,) have edges near those that two outlines have not in common."""
@@ -281,13 +265,3 @@ class Simplification:
         for low_x, low_y, high_x, high_y in changed.tolist():
             meets |= (own[:, 2] > low_x) & (own[:, 0] < high_x) & (own[:, 3] > low_y) & (own[:, 1] < high_y)
         return np.bincount(self.cells.edges.line[edges[meets]], minlength=len(self.is_open)) > 0
-
-    def _restart_without(self, line: int, monitor: Monitor) -> None:
-        """Choose what runs along a line from all others, simplify that, and keep it if it is cheaper."""
-        best = self.inside, self.is_open, self.total
-        self.inside = self._without(line, self.every)
-        self.is_open, self.total = best[1] | self.cells.is_used(self.inside), self.cells.total(self.inside)
-        self.is_open[line] = False
-        self._descend(self._near(best[0], self.inside), monitor)
-        if self.total >= best[2]:
-            self.inside, self.is_open, self.total = best

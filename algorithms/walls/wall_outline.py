@@ -35,9 +35,6 @@ _EAVE_ANGLE = np.deg2rad(3.0)
 # Largest distance (m) of the eave of a wall from where the overhang makes it likely.
 _EAVE = 0.3
 
-# Largest distance (m) at which it counts as lying right there.
-_AS_EXPECTED = 0.15
-
 
 @dataclass(frozen=True)
 class WallOutline:
@@ -111,7 +108,7 @@ def outline_walls(
 def _expectation(line: WallLine, sides: np.ndarray, overhangs: np.ndarray) -> WallLine:
     """Return a wall, marked as expected where it lies as a side of the roof says that it should."""
     walls = (_expected(side, overhang, []) for side, overhang in zip(sides, overhangs))
-    return replace(line, expected=any(_is_eave_of(line, wall, _AS_EXPECTED) for wall in walls))
+    return replace(line, expected=any(_is_eave_of(line, wall) for wall in walls))
 
 
 def _expected(side: np.ndarray, overhang: float, seen: list[WallLine]) -> WallLine:
@@ -129,10 +126,10 @@ def _like_walls(direction: np.ndarray, seen: list[WallLine]) -> np.ndarray:
     return best if best @ direction > np.cos(_LIKE) else direction
 
 
-def _is_eave_of(wall: WallLine, line: WallLine, within: float) -> bool:
-    """Return whether a wall is the one that is expected on a ``line``, to ``within`` (m)."""
+def _is_eave_of(wall: WallLine, line: WallLine) -> bool:
+    """Return whether a wall is the one that is expected on a ``line``."""
     parallel = abs(wall.direction @ line.direction) >= np.cos(_EAVE_ANGLE)
-    return bool(parallel and abs(float(wall.across(line.point[None])[0])) <= within)
+    return bool(parallel and abs(float(wall.across(line.point[None])[0])) <= _EAVE)
 
 
 def _from_roof(
@@ -144,7 +141,7 @@ def _from_roof(
     # A long side meets more points than its remainder beyond a notch, which would be taken for the whole side.
     for number in np.argsort(-length, kind="stable"):
         line = _expected(sides[number], float(overhangs[number]), seen)
-        if not any(_is_eave_of(wall, line, _EAVE) for wall in [*seen, *lines]):
+        if not any(_is_eave_of(wall, line) for wall in [*seen, *lines]):
             lines.append(_through_few(line, float(length[number]) / 2, walls, scale))
     return lines
 
