@@ -40,9 +40,3 @@ class RoofCover:
         inside, outside = ndimage.distance_transform_edt(self.mask), ndimage.distance_transform_edt(~self.mask)
         self.depth = np.where(self.mask, inside - 0.5, 0.5 - outside) * self.cell
         self.high = self.low + np.array(mask.shape[::-1]) * self.cell
-
-    def depth_at(self, xy: np.ndarray) -> np.ndarray:
-        """Return the depth (n,) of positions (n, 2) within the raster, m; that of its edge for positions beyond."""
-        column, row = np.floor((xy - self.low) / self.cell).astype(np.int64).T
-        rows, columns = self.depth.shape
-        return self.depth[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]

@@ -23,9 +23,6 @@ _FEW = 5
 # Least share of the length of this wall that they cover.
 _LEAST_COVERED = 0.2
 
-# Largest distance (m) of a wall beyond the roof: that of noise.
-_FLUSH = 0.2
-
 # Largest angle (radians) between a side of the roof and walls that are seen, whose direction the side then takes.
 _LIKE = np.deg2rad(8.0)
 
@@ -86,7 +83,6 @@ def outline_walls(
     scale = wall_scale(len(walls), perimeter(exterior), limits.tolerance)
     cover = RoofCover(roof, courtyards)
     seen = find_lines(walls, scale, limits.min_length, rng, monitor.part(0.0, 0.3))
-    seen = [line for line in seen if np.median(cover.depth_at(walls[line.points])) > -_FLUSH]
     seen = square_up(merge_lines(seen, walls, scale), walls)
     # Where no wall is seen, the sides are not drawn.
     if not seen or not len(outline.sides):
