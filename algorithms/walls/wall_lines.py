@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Optional
+from typing import Optional
 
 import numpy as np
 
-from ..packages import spatial
+from ..neighborhoods.covariance import MIN_NEIGHBORS, Shapes, Within, reduce_neighborhoods
 from ..stage import Monitor
 
 # Hypotheses for each line: where a wall holds a tenth of the points, one pair in a hundred lies on it.
@@ -51,10 +51,6 @@ _LONGER = 2.0
 
 # Cosine of the largest angle between the direction at a point and its wall: at bushes and corners any angle occurs.
 _ALONG = np.cos(np.deg2rad(30.0))
-
-# Pairs of near points in memory at once, about 80 bytes each: in plan the points of a wall lie on top of one another,
-# so that each has hundreds around it.
-_PAIRS_AT_ONCE = 500_000
 
 # Lines are one wall if one line fits the points of both with this deviation (times the tolerance).
 _ONE_WALL = 0.45
@@ -192,32 +188,17 @@ def find_lines(
 
 def _ways(xy: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the unit vector (n, 2) along which the points around each point lie; 0 where they lie along none."""
-    tree = spatial.cKDTree(xy)
     ways = np.empty((len(xy), 2))
-    pairs = np.cumsum(tree.query_ball_point(xy[tree.indices], _AROUND, return_length=True))
-    parts = np.split(tree.indices, np.searchsorted(pairs, np.arange(_PAIRS_AT_ONCE, pairs[-1], _PAIRS_AT_ONCE)))
-    for done, rows in enumerate(parts, start=1):
-        if len(rows):
-            ways[rows] = _ways_of(rows, xy, tree)
-        monitor.progress(done / len(parts))
+
+    def keep(rows: np.ndarray, shapes: Shapes) -> None:
+        x, y, _, xy_, _, _ = shapes.covariances.T
+        # Half the angle of (x - y, 2 xy) is that of the larger eigenvector.
+        angle, apart = np.arctan2(2 * xy_, x - y) / 2, np.hypot(x - y, 2 * xy_)
+        is_line = (shapes.counts >= MIN_NEIGHBORS) & (x + y + apart >= _LONGER**2 * (x + y - apart))
+        ways[rows] = np.column_stack([np.cos(angle), np.sin(angle)]) * is_line[:, None]
+
+    reduce_neighborhoods(np.column_stack([xy, np.zeros(len(xy))]), Within(_AROUND), keep, monitor=monitor)
     return ways
-
-
-def _ways_of(rows: np.ndarray, xy: np.ndarray, tree: Any) -> np.ndarray:
-    """Return what :func:`_ways` does for some of the points; ``tree`` is that of all."""
-    pairs = spatial.cKDTree(xy[rows]).sparse_distance_matrix(tree, _AROUND, output_type="ndarray")
-    point, offset = pairs["i"], xy[pairs["j"]] - xy[rows[pairs["i"]]]
-    count = np.bincount(point, minlength=len(rows))
-    mean = [np.bincount(point, offset[:, k], len(rows)) / count for k in (0, 1)]
-    xx, xy_, yy = (
-        np.bincount(point, offset[:, a] * offset[:, b], len(rows)) / count - mean[a] * mean[b]
-        for a, b in ((0, 0), (0, 1), (1, 1))
-    )
-    # Half the angle of (xx - yy, 2 xy) is that of the larger eigenvector.
-    angle, apart = np.arctan2(2 * xy_, xx - yy) / 2, np.hypot(xx - yy, 2 * xy_)
-    along, across = (xx + yy + apart) / 2, (xx + yy - apart) / 2
-    is_line = (count >= 3) & (along >= _LONGER**2 * across)
-    return np.column_stack([np.cos(angle), np.sin(angle)]) * is_line[:, None]
 
 
 def _best_line(

@@ -54,14 +54,6 @@ def test_memory_follows_the_points_and_not_their_pairs(rng):
     assert peak < 60e6
 
 
-def test_walls_are_the_same_however_many_pairs_are_held(rng, monkeypatch):
-    xy = np.concatenate([wall(rng, (0, 0), (6, 0), 40), wall(rng, (0, 3), (5, 4), 40), rng.uniform(0, 6, (100, 2))])
-    at_once = found_in(xy)
-    monkeypatch.setattr(wall_lines, "_PAIRS_AT_ONCE", 500)
-    in_parts = found_in(xy)
-    assert [line.points.tolist() for line in in_parts] == [line.points.tolist() for line in at_once]
-
-
 def test_scattered_points_are_no_wall(rng):
     bush = rng.normal(0, 0.6, (200, 2))
     assert found_in(bush) == []
