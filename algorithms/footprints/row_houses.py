@@ -11,7 +11,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.groups import components, split_groups
+from ..geometry.groups import components
 from ..geometry.line_segments import edge_distances, segments_meet
 from ..packages import ndimage, spatial
 from ..rules import rule
@@ -512,38 +512,16 @@ def _pieces(pairs: np.ndarray, count: int) -> np.ndarray:
 def _crossed(ends: np.ndarray, segments: np.ndarray) -> list:
     """Return for each party wall the segments (n, 2, 2) that lead across it."""
     middle, step = segments.mean(axis=1), ends[:, 1] - ends[:, 0]
-    length = np.hypot(*step.T)
-    unit = step / length[:, None]
+    length, (east, north) = np.hypot(*step.T), np.ascontiguousarray(middle.T)
     half = np.hypot(*(segments[:, 1] - segments[:, 0]).T).max(initial=0.0) / 2
     found = []
-    for start, (x, y), size, beside in zip(ends[:, 0], unit, length, _beside_lines(ends[:, 0], unit, middle, half)):
-        own = np.sort(beside)
+    for start, (x, y), size in zip(ends[:, 0], step / length[:, None], length):
+        # Few segments are as near as half of their length.
+        own = np.flatnonzero(np.abs(x * (north - start[1]) - y * (east - start[0])) <= half)
         offset = segments[own] - start
         side = x * offset[..., 1] - y * offset[..., 0] > 0
         along = (middle[own] - start) @ [x, y]
         found.append(own[(side[:, 0] != side[:, 1]) & (along >= 0) & (along <= size)])
-    return found
-
-
-def _beside_lines(start: np.ndarray, unit: np.ndarray, positions: np.ndarray, within: float) -> list:
-    """Return for each line, from a start (w, 2) in a direction (w, 2), the positions (n, 2) not farther than that (m).
-
-    Lines in few directions: along each of these, positions are sorted once.
-    """
-    found = [np.zeros(0, np.int64)] * len(unit)
-    # From the first start, so that what rounding of the direction leads away by is less than the room left for it.
-    _, group = np.unique(np.round(unit, 9), axis=0, return_inverse=True)
-    for own in split_groups(group.ravel(), int(group.max()) + 1):
-        normal = np.array([-unit[own[0], 1], unit[own[0], 0]])
-        across = (positions - start[0]) @ normal
-        at, room = (start[own] - start[0]) @ normal, within + 1e-6
-        # Few positions lie near any line: only these are sorted.
-        lines = np.append(np.sort(at), np.inf)
-        near = np.flatnonzero(lines[np.searchsorted(lines, across - 2 * room)] <= across + 2 * room)
-        order = near[np.argsort(across[near])]
-        low, high = np.searchsorted(across[order], [at - room, at + room])
-        for line, first, last in zip(own.tolist(), low.tolist(), high.tolist()):
-            found[line] = order[first:last]
     return found
 
 

@@ -100,7 +100,7 @@ class Levels:
         return a * plan[0] + b * plan[1] + c
 
     def _move_to_intersection(self, vertex: int, planes: list[int]) -> None:
-        """Move a vertex to where planes intersect, on the outline if it lies on that, or else by less."""
+        """Move a vertex to where planes intersect, on the outline if it lies on that."""
         plan = self.plan[vertex]
         meeting = self._meeting(planes, plan)
         if not meeting or meeting[-1][0] < _EXACT:
@@ -108,16 +108,10 @@ class Levels:
         near = sorted({plane for _, _, pair in meeting for plane in pair})
         if len(near) > _IN_A_POINT and vertex not in self._outline:
             step = self._nearest_point(near, plan)
-            if math.hypot(*step) <= _MEET and self._keeps_cells(vertex, (plan[0] + step[0], plan[1] + step[1])):
-                self.plan[vertex] = plan[0] + step[0], plan[1] + step[1]
+            if math.hypot(*step) <= _MEET and self._move(vertex, step):
                 return
         along = [self._across(plan, self.plan[other]) for other in self._outline.get(vertex, ())]
-        for lines, farthest in ((along, _MEET), ([], SNAP)) if along else (([], _MEET),):
-            step = _common_step([*lines, *(line for _, line, _ in meeting)], farthest)
-            moved = plan[0] + step[0], plan[1] + step[1]
-            if step != (0.0, 0.0) and self._keeps_cells(vertex, moved):
-                self.plan[vertex] = moved
-                return
+        self._move(vertex, _common_step([*along, *(line for _, line, _ in meeting)]))
 
     def _meeting(self, planes: list[int], plan: tuple[float, float]) -> list[tuple[float, _Line, tuple[int, int]]]:
         """Return the lines in which planes intersect near a position, each with its distance (m); nearest first."""
@@ -148,12 +142,14 @@ class Levels:
         length = math.hypot(x, y)
         return -y / length, x / length, 0.0
 
-    def _keeps_cells(self, vertex: int, moved: tuple[float, float]) -> bool:
-        """Return whether the cells around a vertex keep their orientation when it is moved."""
-        before, self.plan[vertex] = self.plan[vertex], moved
+    def _move(self, vertex: int, step: tuple[float, float]) -> bool:
+        """Move a vertex by a step (m) if the cells around it keep their orientation; return whether it was moved."""
+        x, y = before = self.plan[vertex]
+        self.plan[vertex] = x + step[0], y + step[1]
         loops = [self.cells.loops[self.cells.cell_of[vertex, other]] for other in self._spokes[vertex]]
         kept = all(loop_area([self.plan[v] for v in loop]) > 0 for loop in loops)
-        self.plan[vertex] = before
+        if not kept:
+            self.plan[vertex] = before
         return kept
 
     def _join_close_vertices(self) -> None:
@@ -306,10 +302,10 @@ def turns_around(heights: list[float]) -> int:
     return sum(a * b < 0 for a, b in zip(steps, [*steps[1:], *steps[:1]]))
 
 
-def _common_step(lines: list[_Line], farthest: float) -> tuple[float, float]:
+def _common_step(lines: list[_Line]) -> tuple[float, float]:
     """Return the shortest step (m) onto lines (nx, ny, offset), in this order; those that it can't reach are left out.
 
-    Steps are not longer than ``farthest``.
+    Steps are no longer than planes meet in a vertex.
     """
     first, step, is_point = None, (0.0, 0.0), False
     for line in lines:
@@ -327,7 +323,7 @@ def _common_step(lines: list[_Line], farthest: float) -> tuple[float, float]:
             if abs(turn) < _LEAST_TURN:
                 continue
             wanted = (other * ny - offset * my) / turn, (mx * offset - nx * other) / turn
-        if math.hypot(*wanted) <= farthest:
+        if math.hypot(*wanted) <= _MEET:
             step, is_point = wanted, first is not None
             first = first or line
     return step

@@ -19,9 +19,6 @@ _SCORED = 1500
 # Least distance (m) between the two points of a hypothesis: the direction of nearer ones is noise.
 _LEAST_PAIR = 0.5
 
-# Hypotheses that are compared with all points at once, so that the table of both stays in the cache.
-_LINES_AT_ONCE = 50
-
 # A wall goes on over a gap of this length (m): bushes, cars and holes.
 _GAP = 1.5
 
@@ -222,10 +219,12 @@ def _longest_stretches(
     xy: np.ndarray, ways: np.ndarray, starts: np.ndarray, directions: np.ndarray, scale: Scale
 ) -> np.ndarray:
     """Return for each line how many bins of its longest stretch hold points; a stretch goes on over small gaps."""
-    line, point, least = _near_lines(xy, starts, directions, scale.tolerance)
+    normals = np.column_stack([-directions[:, 1], directions[:, 0]])
+    across = normals @ xy.T - np.einsum("ij,ij->i", normals, starts)[:, None]
+    line, point = np.nonzero(np.abs(across) <= scale.tolerance)
     runs_along = np.abs(np.einsum("ij,ij->i", directions[line], ways[point])) >= _ALONG
     line, point = line[runs_along], point[runs_along]
-    along = np.einsum("ij,ij->i", directions[line], xy[point])
+    along, least = np.einsum("ij,ij->i", directions[line], xy[point]), (directions @ xy.T).min()
     # Rounding can put the first point before the least position.
     bins = np.maximum(np.floor((along - least) / scale.bin).astype(np.int64), 0)
     count = int(bins.max(initial=0)) + 1
@@ -236,23 +235,6 @@ def _longest_stretches(
     best = np.zeros(len(starts), np.int64)
     np.maximum.at(best, line[runs], np.diff(runs, append=len(line)))
     return best
-
-
-def _near_lines(
-    xy: np.ndarray, starts: np.ndarray, directions: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return the pairs of line and point (k,) within a tolerance (m), and the least position of any along its line."""
-    normals = np.column_stack([-directions[:, 1], directions[:, 0]])
-    offset, columns, least = np.einsum("ij,ij->i", normals, starts), np.ascontiguousarray(xy.T), np.inf
-    pairs = []
-    for first in range(0, len(directions), _LINES_AT_ONCE):
-        some = slice(first, first + _LINES_AT_ONCE)
-        table = normals[some] @ columns
-        table -= offset[some, None]
-        near = np.flatnonzero(np.abs(table, out=table) <= tolerance)
-        pairs.append(near + first * len(xy))
-        least = min(least, float(np.matmul(directions[some], columns, out=table).min()))
-    return (*np.divmod(np.concatenate(pairs), len(xy)), least)
 
 
 def _fitted(

@@ -124,8 +124,7 @@ def test_a_short_wall_without_anything_else_keeps_its_own_direction(rng):
     assert angle_between(square_up(raw, xy)[2], raw[0]) == pytest.approx(84, abs=1.0)
 
 
-def test_hypotheses_held_against_the_points_in_portions_are_scored_as_by_brute_force(rng, monkeypatch):
-    monkeypatch.setattr(wall_lines, "_LINES_AT_ONCE", 7)
+def test_hypotheses_are_scored_as_by_brute_force(rng):
     xy, heading = rng.uniform(0, 6, (120, 2)), rng.uniform(0, np.pi, 40)
     directions, starts = np.column_stack([np.cos(heading), np.sin(heading)]), xy[:40]
     scale = wall_scale(120, 60.0, 0.3)
