@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Optional
 
 import numpy as np
@@ -125,15 +126,16 @@ def model_building(
     return model
 
 
+@dataclass(frozen=True)
 class _Top:
     """What the partitions of one building are made of."""
 
-    def __init__(
-        self, xyz: np.ndarray, is_low: np.ndarray, rings: list, planes: RoofPlanes, settings: Settings, base: float
-    ) -> None:
-        self.xyz, self.is_low, self.rings = xyz, is_low, rings
-        self.planes, self.settings, self.base = planes, settings, base
-        self._roof: Optional[Partition] = None
+    xyz: np.ndarray
+    is_low: np.ndarray
+    rings: list
+    planes: RoofPlanes
+    settings: Settings
+    base: float
 
     @property
     def is_roof(self) -> np.ndarray:
@@ -141,22 +143,18 @@ class _Top:
         on_plane = self.planes.label >= 0
         return on_plane if on_plane.any() else np.ones(len(self.xyz), bool)
 
-    @property
+    @cached_property
     def roof(self) -> Optional[Partition]:
         """The footprint divided among the planes, None without planes."""
-        if self._roof is None and len(self.planes):
-            s = self.settings
-            self._roof = divide_footprint(
-                self.xyz, ~self.is_low, self.planes, self.rings, s.spacing, s.tolerance, self.base
-            )
-        return self._roof
+        if not len(self.planes):
+            return None
+        spacing, tolerance = self.settings.spacing, self.settings.tolerance
+        return divide_footprint(self.xyz, ~self.is_low, self.planes, self.rings, spacing, tolerance, self.base)
 
 
 def _single_top(top: _Top) -> tuple[Optional[Partition], str]:
     """Return the footprint under one level top."""
     roof = top.xyz[top.is_roof]
-    if not len(roof):
-        return None, "it has no points"
     height = max(float(np.percentile(roof[:, 2], top.settings.percentile)), top.base + 0.5)
     cells, inside = empty_partition(top.rings, top.xyz[:, :2])
     if not inside.any():
