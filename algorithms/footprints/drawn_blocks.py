@@ -129,26 +129,26 @@ def _by_house(
 
     A cell is of the house that most of its nodes are of.
     """
-    found, of_label = label.copy(), building.tolist()
+    found, of_label, nodes = label.copy(), building.tolist(), _nodes_of(cells, lattice)
     for at, number in enumerate(building.tolist()):
         if number not in houses or len(houses[number].walls) == 0:
             continue
         house = np.zeros(lattice.shape, np.int64)
         _copy_overlap(house, lattice, shares[number].lattice, houses[number].house)
-        house = spread_out(house)
-        flat = house.ravel()
+        flat = spread_out(house).ravel()
         for cell in np.flatnonzero(label == at):
-            nodes = cells.members[cell]
-            own = flat[nodes] if len(nodes) else _at_middle(cells, cell, house, lattice)
-            found[cell] = len(of_label) - 1 + np.bincount(own).argmax()
+            found[cell] = len(of_label) - 1 + np.bincount(flat[nodes[cell]]).argmax()
         of_label += [number] * int(house.max())
     return found, np.array(of_label)
 
 
-def _at_middle(cells: Subdivision, cell: int, values: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Return the value (1,) or (..., 1) at the node next to the middle of a cell."""
-    row, column = lattice.nearest(np.mean([cells.vertices[v] for v in cells.loops[cell]], axis=0))
-    return values[..., row, column][..., None]
+def _nodes_of(cells: Subdivision, lattice: Lattice) -> list[np.ndarray]:
+    """Return the nodes of the lattice in each cell, the one nearest to its middle where it holds none."""
+    found = list(cells.members)
+    for cell in np.flatnonzero([len(nodes) == 0 for nodes in found]):
+        row, column = lattice.nearest(np.mean([cells.vertices[v] for v in cells.loops[cell]], axis=0))
+        found[cell] = np.array([row * lattice.shape[1] + column])
+    return found
 
 
 def _shares_of(
@@ -207,12 +207,7 @@ def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
 def _costs(cells: Subdivision, share: np.ndarray, lattice: Lattice) -> np.ndarray:
     """Return what each label costs in each cell (cells, labels), m²: the area that is something else."""
     flat = share.reshape(len(share), -1)
-    mean = np.empty((len(cells), len(share)))
-    for cell, nodes in enumerate(cells.members):
-        if len(nodes):
-            mean[cell] = flat[:, nodes].mean(axis=1)
-        else:
-            mean[cell] = _at_middle(cells, cell, share, lattice)[:, 0]
+    mean = np.array([flat[:, nodes].mean(axis=1) for nodes in _nodes_of(cells, lattice)], float)
     return cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)
 
 

@@ -199,11 +199,11 @@ def _numbered(surface: dict[str, Any], start: int) -> dict[str, Any]:
 
 def _plain(facts: dict[str, Any]) -> dict[str, Any]:
     """Return attributes as JSON has them: rounded, null where undefined."""
-    rounded = {name: round(value, _DIGITS) if isinstance(value, float) else value for name, value in facts.items()}
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in rounded.items()
-    }
+
+    def plain(value: Any) -> Any:
+        return (round(value, _DIGITS) if math.isfinite(value) else None) if isinstance(value, float) else value
+
+    return {name: plain(value) for name, value in facts.items()}
 
 
 def _dumped(value: Any) -> str:
