@@ -31,10 +31,8 @@ _SLIVER = 0.01
 # dormers, and no wider than the distance of points.
 _LEAST_AREA, _LEAST_WIDTH = 1.0, 0.4
 
-# How far (m) from a high corner it is cut off, and whether with its whole part: first as far as points count for its
-# height, and farther until the piece is not small. Parts do so where their edges turn from the middle of the corner by
-# an angle of at least this cosine: before blunt corners the cut would run along the edge.
-_CUTS, _SHARP = ((RADIUS, False), (RADIUS, True), (1.5 * RADIUS, True), (2 * RADIUS, True)), 0.3
+# Edges of a cell at a corner whose unit vectors have a mean shorter than this run on nearly straight.
+_STRAIGHT = 0.3
 
 
 @dataclass
@@ -254,7 +252,7 @@ class _Mending:
         for corner in corners.tolist():
             for cell in self._high_at(corner):
                 if cell in self._high_at(corner):
-                    piece, turned = self._cut_off(cell, corner)
+                    turned, piece = self._cut_off(cell, corner), np.array([cell])
                     self._take(piece, self._neighbors(piece), True, turned)
 
     def _lower(self, part: np.ndarray) -> bool:
@@ -277,58 +275,34 @@ class _Mending:
         is_high = a * x + b * y + c > self.highest[corner] + 10**-DECIMALS
         return cell[is_high], corner[is_high]
 
-    def _cut_off(self, cell: int, corner: int) -> tuple[np.ndarray, np.ndarray]:
-        """Cut the part that a cell is in around one of its corners; return the piece, and its plane turned down there.
+    def _cut_off(self, cell: int, corner: int) -> np.ndarray:
+        """Cut a cell as far from one of its corners as points count for the heights there.
 
-        The cut is as far from the corner as points count for the heights there, or as makes a piece that is not small.
+        Return the plane (3,) of what keeps the corner, turned down about the cut.
         """
-        at = self.positions[corner]
-        for reach, is_whole in _CUTS:
-            part = self._parts()
-            cells = np.flatnonzero(part == part[cell]).tolist() if is_whole else [cell]
-            way, least_cosine = self._way_in(cells, corner)
-            if is_whole and least_cosine < _SHARP:
-                break
-            inward = way
-            piece = self._cut_across(cell, cells, at + reach * inward, inward)
-            if not self._is_small(piece):
-                break
-        corners = np.unique(np.concatenate([self.loops[one] for one in piece]))
-        depth = reach - (self.positions[corners] - at) @ inward
-        deep = corners[depth > reach / 2]
-        plane = self.partition.coefficients[self.partition.label[cell]]
-        slope = (self._above(deep, plane) / depth[depth > reach / 2]).max()
-        return piece, plane + slope * np.array([*inward, -reach - at @ inward])
-
-    def _way_in(self, cells: list[int], corner: int) -> tuple[np.ndarray, float]:
-        """Return the unit vector (2,) from a corner into those of some cells that have it, and its least cosine there.
-
-        The cosine is that to their edges at the corner.
-        """
-        around = [self.positions[self.loops[cell]] - self.positions[corner] for cell in cells]
-        around = [ring for ring in around if not ring.any(axis=1).all()]
-        ends = np.concatenate([np.roll(ring, step, axis=0)[~ring.any(axis=1)] for ring in around for step in (1, -1)])
-        ends /= np.hypot(*ends.T)[:, None]
-        inward = ends.sum(axis=0)
-        if np.hypot(*inward) < _SHARP * len(ends):
-            inward = np.sum([ring.mean(axis=0) for ring in around], axis=0)
-        inward /= np.hypot(*inward)
-        return inward, float((ends @ inward).min())
-
-    def _cut_across(self, cell: int, cells: list[int], position: np.ndarray, inward: np.ndarray) -> np.ndarray:
-        """Cut cells across a direction; return those of them (k,) that are on one side together with the first one."""
-        partition = self.partition
-        for one in list(cells):
-            if partition.cells.cut_cell(one, position, np.array([-inward[1], inward[0]])):
-                cells.append(len(partition.label))
-                partition.label = np.append(partition.label, partition.label[one])
-                partition.cost = np.vstack([partition.cost, partition.cost[one]])
+        at, inward, partition = self.positions[corner], self._way_in(cell, corner), self.partition
+        # What keeps the corner lies to the left of the cut and keeps the number of the cell.
+        if partition.cells.cut_cell(cell, at + RADIUS * inward, np.array([-inward[1], inward[0]])):
+            partition.label = np.append(partition.label, partition.label[cell])
+            partition.cost = np.vstack([partition.cost, partition.cost[cell]])
         self._measure()
-        is_near = np.zeros(len(partition.label), bool)
-        is_near[cells] = (partition.cells.centers()[cells] - position) @ inward < 0
-        both = is_near[self.beside].all(axis=1)
-        _, group = components(self.beside[both, 0], self.beside[both, 1], len(is_near))
-        return np.flatnonzero(group == group[cell])
+        corners = self.loops[cell]
+        depth = RADIUS - (self.positions[corners] - at) @ inward
+        is_deep = depth > RADIUS / 2
+        plane = partition.coefficients[partition.label[cell]]
+        slope = (self._above(corners[is_deep], plane) / depth[is_deep]).max()
+        return plane + slope * np.array([*inward, -RADIUS - at @ inward])
+
+    def _way_in(self, cell: int, corner: int) -> np.ndarray:
+        """Return the unit vector (2,) from a corner into a cell, halfway between its edges there."""
+        ring = self.positions[self.loops[cell]] - self.positions[corner]
+        is_here = ~ring.any(axis=1)
+        ends = np.concatenate([np.roll(ring, step, axis=0)[is_here] for step in (1, -1)])
+        ends /= np.hypot(*ends.T)[:, None]
+        inward = ends.mean(axis=0)
+        if np.hypot(*inward) < _STRAIGHT:
+            inward = ring.mean(axis=0)
+        return inward / np.hypot(*inward)
 
     def relabel(self, faces: list[tuple[_Piece, int]], may_lower: bool) -> bool:
         """Give the smallest part beside each face another plane; return whether any had one to take.

@@ -59,8 +59,8 @@ def test_what_lies_around_a_corner_far_above_its_points_is_cut_off():
     assert parts.cells.areas()[parts.label == 0].sum() > 90
 
 
-def test_a_corner_of_narrow_cells_is_cut_off_with_its_whole_part():
-    """A piece of the cell of 0.3 m at the corner would join its neighbor again, and the corner would be high again."""
+def test_a_corner_of_narrow_cells_is_lowered():
+    """A piece of the cell of 0.3 m at the corner joins its neighbor again: the corner must not stay high by that."""
     xyz = level_points()
     is_low = (xyz[:, 0] > 10.9) & (xyz[:, 1] > 6.4)
     xyz[:, 2] = np.where(is_low, 11.0, 6.0 + 0.5 * xyz[:, 0])
