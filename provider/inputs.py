@@ -127,6 +127,18 @@ def extent_box(
     return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])
 
 
+def refuse_same(clouds: Sequence[Path], reference: Path) -> None:
+    """Refuse to compare a cloud with itself: a dialog begins with the same layer for both.
+
+    Raises
+    ------
+    ValueError
+        If the reference is one of the clouds.
+    """
+    if any(cloud.resolve() == reference.resolve() for cloud in clouds):
+        raise ValueError(f"{reference.name} is the point cloud and its reference at once; choose two clouds.")
+
+
 def subject_of(clouds: Sequence[Path], feedback: QgsProcessingFeedback) -> str:
     """Return what the results of a run are of, the name of its first cloud; "" for a step, which reads temporaries."""
     return subject_of_file(clouds[0]) if clouds and not is_step(feedback) else ""

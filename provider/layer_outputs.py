@@ -7,7 +7,7 @@ from qgis.core import QgsFeatureSink, QgsProcessingAlgorithm, QgsProcessingConte
 from ..algorithms.stage import Layer, LayerFeatures, Monitor
 from .outputs import through_memory
 from .places import Place
-from .styles import layer_style, show_on_load
+from .styles import layer_style, show_on_load, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
 
 # What an optional output is that nobody asks for: left out, or written without a value on the command line.
@@ -43,6 +43,8 @@ def write_layer(
         target = _fill_sink(algorithm, name, layer, features, place, redirected, context, monitor)
     target = final(target)
     show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
+    if not len(features):
+        switch_off(context, [target])
     return {name: target}
 
 

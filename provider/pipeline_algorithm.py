@@ -46,6 +46,7 @@ from .inputs import (
     input_parameter,
     input_paths,
     reference_parameter,
+    refuse_same,
     subject_of,
 )
 from .models import model_file, pipeline_parameters, step_label
@@ -187,6 +188,8 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             tunable_values(self, step.stage, given, context, named)
         clouds = input_paths(self, self.pipeline.merges, given, context) if self.pipeline.reads_cloud else []
         read_too = [cloud_path(self, REFERENCE, given, context)] if self.pipeline.compared else []
+        for reference in read_too:
+            refuse_same(clouds, reference)
         read = [
             *files_read([*clouds, *read_too]),
             *input_layer_files(self, self.pipeline.input_layers.values(), given, context),

@@ -46,6 +46,7 @@ from .inputs import (
     input_parameter,
     input_paths,
     reference_parameter,
+    refuse_same,
     subject_of,
     with_help,
 )
@@ -161,6 +162,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         is_given = self.stage.needs_reference or parameters.get(REFERENCE) not in (None, "")
         if self.stage.reads_reference and is_given:
             job.reference = cloud_path(self, REFERENCE, parameters, context)
+            refuse_same(job.inputs, job.reference)
         job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
         if job.inputs:
             job.box = extent_box(self, read_extent(job.inputs[0])[2] or job.crs.toWkt(FULL), parameters, context)

@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from qgis.core import (
+    QgsApplication,
     QgsFeatureRequest,
     QgsPointCloudLayer,
     QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
     QgsProcessingUtils,
+    QgsProject,
     QgsProperty,
     QgsVectorLayer,
     QgsVectorLayerCache,
@@ -173,9 +175,35 @@ def test_a_comparison_gives_a_page_and_plain_numbers(provider, context, log, tow
     assert "2.000" in page.read_text()
 
 
-def test_a_report_is_not_needed(provider, context, log, town_file):
-    result = run("toycompare", {"INPUT": str(town_file), "REFERENCE": str(town_file)}, context, log)
+def test_a_cloud_is_not_compared_with_itself(provider, context, town_file, tmp_path):
+    """The dialog begins with the same layer for both, and the page said that everything is right."""
+    link = tmp_path / "link.las"
+    link.symlink_to(town_file)
+    for reference in (town_file, link):
+        parameters = {"INPUT": str(town_file), "REFERENCE": str(reference)}
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("lidarbuildings:toycompare")
+        is_fine, why = algorithm.checkParameterValues(parameters, context)
+        assert not is_fine
+        assert why == f"{reference.name} is the point cloud and its reference at once; choose two clouds."
+
+
+def test_a_report_is_not_needed(provider, context, log, town_file, out):
+    copy = out / "copy.las"
+    copy.write_bytes(town_file.read_bytes())
+    result = run("toycompare", {"INPUT": str(town_file), "REFERENCE": str(copy)}, context, log)
     assert result == {"DIFFERENCE": 0.0, "POINTS": 400}
+
+
+@pytest.mark.parametrize(("least", "is_shown"), [(1, True), (1000, False)])
+def test_a_layer_without_features_is_loaded_switched_off(provider, context, log, town_file, out, least, is_shown):
+    target = shown(out / "a.gpkg", context)
+    run("extractfootprints", {"INPUT": str(town_file), "FOOTPRINTS": target, "MIN_AREA": least}, context, log)
+    (path,) = context.layersToLoadOnCompletion()
+    layer = QgsVectorLayer(path, "Footprints", "ogr")
+    QgsProject.instance().addMapLayer(layer)
+    context.layerToLoadOnCompletionDetails(path).postProcessor().postProcessLayer(layer, context, log)
+    assert (layer.featureCount() > 0) == is_shown
+    assert QgsProject.instance().layerTreeRoot().findLayer(layer.id()).itemVisibilityChecked() == is_shown
 
 
 def test_a_skipped_layer_is_not_written(provider, context, log, out):
