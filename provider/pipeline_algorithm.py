@@ -188,13 +188,13 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             tunable_values(self, step.stage, given, context, named)
         clouds = input_paths(self, self.pipeline.merges, given, context) if self.pipeline.reads_cloud else []
         read_too = [cloud_path(self, REFERENCE, given, context)] if self.pipeline.compared else []
-        for reference in read_too:
-            refuse_same(clouds, reference)
         read = [
             *files_read([*clouds, *read_too]),
             *input_layer_files(self, self.pipeline.input_layers.values(), given, context),
         ]
         check_targets(self.destinationParameterDefinitions(), given, read)
+        for reference in read_too:
+            refuse_same(clouds, reference)
         for cloud in (*clouds, *read_too):
             # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
             check_readable(cloud, crs_units)

@@ -162,12 +162,13 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         is_given = self.stage.needs_reference or parameters.get(REFERENCE) not in (None, "")
         if self.stage.reads_reference and is_given:
             job.reference = cloud_path(self, REFERENCE, parameters, context)
-            refuse_same(job.inputs, job.reference)
         job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
         if job.inputs:
             job.box = extent_box(self, read_extent(job.inputs[0])[2] or job.crs.toWkt(FULL), parameters, context)
         read = [*files_read(job.paths), *input_layer_files(self, self.stage.input_layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read)
+        if job.reference:
+            refuse_same(job.inputs, job.reference)
         if job.inputs:
             refuse_elsewhere(self, self.stage.input_layers, job.inputs, parameters, context)
         return job

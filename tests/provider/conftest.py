@@ -121,6 +121,14 @@ def town_file(town, tmp_path):
 
 
 @pytest.fixture
+def reference_file(town_file):
+    """A copy of the square, to compare it with."""
+    path = town_file.with_name("reference.laz")
+    path.write_bytes(town_file.read_bytes())
+    return path
+
+
+@pytest.fixture
 def out(tmp_path):
     """An empty folder for results."""
     folder = tmp_path / "out"

@@ -66,14 +66,18 @@ def contents(folder):
 
 def given(kind, town_file, folder):
     name, output, file = OUTPUTS[kind]
-    values = {"INPUT": str(town_file), "REFERENCE": str(town_file), output: str(folder / file)}
+    values = {
+        "INPUT": str(town_file),
+        "REFERENCE": str(town_file.with_name("reference.laz")),
+        output: str(folder / file),
+    }
     if name != "toycompare":
         del values["REFERENCE"]
     return name, values
 
 
 @pytest.mark.parametrize("kind", OUTPUTS)
-@pytest.mark.usefixtures("many_features", "no_look_ahead")
+@pytest.mark.usefixtures("many_features", "no_look_ahead", "reference_file")
 def test_writing_that_fails_leaves_the_older_outputs(provider, context, log, town_file, out, kind):
     name, values = given(kind, town_file, out)
     run(name, values, context, log)
@@ -107,7 +111,7 @@ def small_disk(tmp_path):
 
 
 @pytest.mark.parametrize("kind", OUTPUTS)
-@pytest.mark.usefixtures("many_features", "no_look_ahead")
+@pytest.mark.usefixtures("many_features", "no_look_ahead", "reference_file")
 def test_a_full_disk(provider, context, log, town_file, small_disk, kind):
     """As root in a container or a virtual machine; everyone has the limit above."""
     name, values = given(kind, town_file, small_disk)

@@ -46,8 +46,8 @@ def test_the_page_of_a_chain_names_its_cloud_and_the_values_of_automatic_paramet
     assert current_log() is None
 
 
-def test_a_page_of_one_stage_has_its_parameters(provider, context, log, town_file, out):
-    given = {"INPUT": str(town_file), "REFERENCE": str(town_file), "REPORT": str(out / "a.html")}
+def test_a_page_of_one_stage_has_its_parameters(provider, context, log, town_file, reference_file, out):
+    given = {"INPUT": str(town_file), "REFERENCE": str(reference_file), "REPORT": str(out / "a.html")}
     run("assessbuildings", given, context, log)
     page = (out / "a.html").read_text(encoding="utf-8")
     assert "town.laz and 1 more" in page

@@ -187,10 +187,8 @@ def test_a_cloud_is_not_compared_with_itself(provider, context, town_file, tmp_p
         assert why == f"{reference.name} is the point cloud and its reference at once; choose two clouds."
 
 
-def test_a_report_is_not_needed(provider, context, log, town_file, out):
-    copy = out / "copy.las"
-    copy.write_bytes(town_file.read_bytes())
-    result = run("toycompare", {"INPUT": str(town_file), "REFERENCE": str(copy)}, context, log)
+def test_a_report_is_not_needed(provider, context, log, town_file, reference_file):
+    result = run("toycompare", {"INPUT": str(town_file), "REFERENCE": str(reference_file)}, context, log)
     assert result == {"DIFFERENCE": 0.0, "POINTS": 400}
 
 
