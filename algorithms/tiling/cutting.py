@@ -97,7 +97,8 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
             for start, stop in zip(starts, [*starts[1:], len(records)]):
                 position = int(column[start]), int(row[start])
                 blocks.add(position)
-                with os_errors_as_messages(folder), (folder / Block(*position, side).name).open("ab") as heap:
+                # Of the tiles' folder: users don't see the hidden one in it.
+                with os_errors_as_messages(folder.parent), (folder / Block(*position, side).name).open("ab") as heap:
                     # numpy's own way does not say why it could not write.
                     heap.write(records[start:stop].tobytes())
     return [Block(column, row, side) for column, row in sorted(blocks, key=lambda position: position[::-1])]

@@ -1,5 +1,6 @@
 """Files that are tiles of one cloud: none gets points of another, and all have the units of the survey."""
 
+import errno
 import struct
 import subprocess
 import sys
@@ -156,6 +157,24 @@ def test_a_folder_that_links_to_its_files_lead_to_is_refused(tmp_path):
     with pytest.raises(ValueError, match="a.las is in the folder"):
         run([links], raw)
     assert [(one.name, one.read_bytes()) for one in raw.iterdir()] == [("a.las", before)]
+
+
+def test_a_full_disk_is_reported_of_the_folder_that_was_chosen(tmp_path, monkeypatch):
+    """The message named a hidden folder in it, which is gone after the run."""
+    open_file = Path.open
+
+    def opened(path, mode="r", *args, **kwargs):
+        if mode == "ab" and path.parent.parent == tmp_path / "cut":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return open_file(path, mode, *args, **kwargs)
+
+    path = tile(tmp_path / "a.las", (0, 0))
+    monkeypatch.setattr(Path, "open", opened)
+    with pytest.raises(ValueError, match="The disk is full") as raised:
+        cut_into_tiles(open_survey([path]), 10.0, tmp_path / "cut", "tile", False, Monitor())
+    sentence = f"The disk is full: {tmp_path / 'cut'} was not written; free some space or choose another folder."
+    assert str(raised.value) == sentence
+    assert not list((tmp_path / "cut").iterdir())
 
 
 KILLED = """
