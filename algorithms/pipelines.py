@@ -63,7 +63,8 @@ _PIPELINES = (
         name="detect_buildings",
         title="Detect buildings",
         group="Models",
-        tags="building,house,detection,roof,footprint,classification,entropy,k-means,las2building,lasclassify",
+        tags="building,house,detection,roof,footprint,classification,vegetation,tree,water,bridge,wire,power line,"
+        "entropy,k-means,las2building,lasclassify",
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
             "Noise, ground, bridges and heights come first, then roof surfaces and clusters of everything else "
@@ -96,7 +97,7 @@ _PIPELINES = (
         name="model_buildings",
         title="Model buildings",
         group="Models",
-        tags="3D,LoD2,LoD1,building,city model,roof,CityJSON,OBJ,solid",
+        tags="3D,LoD2,LoD1,building,city model,roof,CityJSON,CityGML,OBJ,solid",
         summary="Model the buildings of a point cloud in three dimensions: roofs and walls as layers and CityJSON.",
         description=(
             "Finds the buildings as 'Detect buildings' does, and models each on its footprint: the planes of its roof, "

@@ -476,6 +476,22 @@ def test_title_group_and_tags_are_there(stage):
     assert [tag for tag in stage.tags.split(",") if tag.strip()]
 
 
+@pytest.mark.parametrize(
+    ("word", "names"),
+    [
+        ("powerline", ["classify_wires"]),
+        ("citygml", ["reconstruct_roofs", "model_buildings"]),
+        ("vegetation", ["classify_vegetation", "detect_buildings"]),
+        ("water", ["classify_water", "detect_buildings"]),
+        ("bridge", ["classify_bridges", "detect_buildings"]),
+    ],
+)
+def test_toolbox_finds_what_users_type(word, names):
+    declared = {**STAGES, **PIPELINES}
+    for name in names:
+        assert word in declared[name].tags.lower().split(",")
+
+
 def quoted(path: Path) -> list[str]:
     """Return what the texts of a module put in single quotes with a capital: titles, as users read them."""
     nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))

@@ -34,7 +34,7 @@ _LEAST_REACH, _REACH_SPACINGS, _MOST_REACH = 8.0, 20.0, 15.0
 @stage(
     "Classify wires",
     group="Land cover",
-    tags="wire,power line,conductor,cable,catenary,span,pole,mast,pylon,tower,electricity,corridor,RANSAC",
+    tags="wire,power line,powerline,conductor,cable,catenary,span,pole,mast,pylon,tower,electricity,corridor,RANSAC",
     writes=("classification",),
     reach=_LEAST_REACH,
 )
