@@ -28,7 +28,7 @@ from lidar_buildings.tests.roof_shapes import SHAPES, RoofShape, moved  # noqa: 
 from lidar_buildings.tests.solid_validity import assert_valid_solid, shells_of  # noqa: E402
 
 DENSITIES, SEEDS, NOISE = (4, 8, 12, 20, 30), range(6), 0.03
-CLOUDS = (DELFT, "buildings/ahn-amsterdam-1", "buildings/ign-stbarth")
+CLOUDS = (DELFT, "buildings/ahn-amsterdam-1", "buildings/amsterdam-centre-10", "buildings/ign-stbarth")
 MAP = DATA / "footprints" / "delft-bgt.gpkg"
 
 
@@ -92,7 +92,8 @@ def on_map() -> list[Table]:
 
 def _table(name: str, first: str) -> Table:
     levels = [f"at level {level}" for level in ("2.2", "1.3", "1.2")]
-    figures = ("median rms, m", "worst tenth from, m", "explained, %", "solids", "valid", "per minute and core")
+    figures = ("median rms, m", "worst tenth from, m", "explained, %", "over 0.5 m off, %")
+    figures += ("type other", "solids", "valid", "per minute and core")
     return Table(name, first, "footprints", *levels, "worse than 1.3", *figures)
 
 
@@ -115,6 +116,8 @@ def _add(table: Table, name: str, xyz: np.ndarray, classes: np.ndarray, footprin
         float(np.median(rms)),
         float(np.percentile(rms, 90)),
         100 * float(np.mean(columns["explained"])),
+        100 * float(np.average(columns["off"], weights=columns["points"])),
+        columns["roof_type"].count("other"),
         solids,
         valid,
         60 * len(rms) / seconds,
