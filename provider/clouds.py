@@ -71,11 +71,11 @@ _LISTED = {"widget_wrapper": {"class": f"{__package__}.file_list.FilesWrapper"}}
 
 
 class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
-    """One point cloud or more, each a layer or the path of a file that QGIS itself may be unable to open."""
+    """Point clouds: layers, paths of files that QGIS itself may be unable to open, and of a survey also folders."""
 
     def __init__(self, name: str, description: str) -> None:
         super().__init__(name, description, Qgis.ProcessingSourceType.PointCloud)
-        self.setMinimumNumberInputs(2)
+        self.setMinimumNumberInputs(1)
         self.setMetadata(_LISTED)
 
     def clone(self) -> CloudsParameter:
@@ -85,24 +85,6 @@ class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
     def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
         """Return the clouds as a script and the log name them."""
         # QGIS writes down the layers that it can open, which leaves nothing of files that it can't.
-        names = names_of(value)
-        return super().valueAsPythonString(value, context) if names is None else repr(names)
-
-
-class SurveyParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
-    """The tiles of a survey: a folder, or any number of files and layers."""
-
-    def __init__(self, name: str, description: str) -> None:
-        super().__init__(name, description, Qgis.ProcessingSourceType.PointCloud)
-        self.setMinimumNumberInputs(1)
-        self.setMetadata(_LISTED)
-
-    def clone(self) -> SurveyParameter:
-        """Return a copy of this very type; the base class would return its own."""
-        return self._as_this(SurveyParameter(self.name(), self.description()))
-
-    def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
-        """Return the tiles as a script and the log name them."""
         names = names_of(value)
         return super().valueAsPythonString(value, context) if names is None else repr(names)
 
@@ -128,7 +110,7 @@ def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, c
     """
     title = algorithm.parameterDefinition(name).description()
     value = _plain(algorithm, name, parameters.get(name), context)
-    if value is None or value == "":
+    if not value:
         raise ValueError(f"{title} ({name}) is missing; choose a point cloud.")
     return _path(title, name, value, context)
 
@@ -137,27 +119,31 @@ def cloud_paths(
     algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
 ) -> list[Path]:
     """Return the files of the point clouds that a parameter gives, see :func:`cloud_path`; at least one."""
-    title = algorithm.parameterDefinition(name).description()
-    values = [_plain(algorithm, name, value, context) for value in _flat(parameters.get(name))]
-    paths = [_path(title, name, value, context) for value in values if value is not None and value != ""]
-    if not paths:
+    title, values = _several(algorithm, name, parameters, context)
+    if not values:
         raise ValueError(f"{title} ({name}) are missing; choose a point cloud.")
-    return paths
+    return [_path(title, name, value, context) for value in values]
 
 
 def survey_paths(
     algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
 ) -> list[Path]:
     """Return the folders and the files of the point clouds that a parameter gives, see :func:`cloud_path`."""
-    title = algorithm.parameterDefinition(name).description()
-    values = [_plain(algorithm, name, value, context) for value in _flat(parameters.get(name))]
-    given = [value for value in values if value is not None and value != ""]
-    if not given:
+    title, values = _several(algorithm, name, parameters, context)
+    if not values:
         raise ValueError(f"{title} ({name}) is missing; choose a folder or files of points.")
     return [
         Path(value) if isinstance(value, str) and Path(value).is_dir() else _path(title, name, value, context)
-        for value in given
+        for value in values
     ]
+
+
+def _several(
+    algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
+) -> tuple[str, list]:
+    """Return the title of a parameter, and the layers and texts that it gives, without empty ones."""
+    values = [_plain(algorithm, name, value, context) for value in _flat(parameters.get(name))]
+    return algorithm.parameterDefinition(name).description(), [value for value in values if value]
 
 
 def _flat(value: Any) -> list:

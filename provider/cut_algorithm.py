@@ -22,7 +22,7 @@ from ..algorithms.tiling.settings import CUT_SETTINGS
 from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_survey
 from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .algorithm import CheckedAlgorithm
-from .clouds import SurveyParameter, survey_paths
+from .clouds import CloudsParameter, survey_paths
 from .crs import crs_units
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
@@ -49,7 +49,7 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the size of tiles, and the folder."""
-        self.addParameter(with_setting(SurveyParameter(INPUT, ""), CUT_SETTINGS))
+        self.addParameter(with_setting(CloudsParameter(INPUT, ""), CUT_SETTINGS))
         number = Qgis.ProcessingNumberParameterType.Double
         side = QgsProcessingParameterNumber(SIDE, "", number, 500.0, False, 1.0, 100_000.0)
         side.setMetadata({"widget_wrapper": {"decimals": 1}})

@@ -69,7 +69,13 @@ def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monito
 
 
 def refuse_degrees(title: str, crs: QgsCoordinateReferenceSystem) -> None:
-    """Refuse a CRS in which nothing can be measured."""
+    """Refuse a CRS in which nothing can be measured.
+
+    Raises
+    ------
+    ValueError
+        If its coordinates are degrees.
+    """
     if crs.isValid() and crs.isGeographic():
         raise ValueError(
             f"The coordinates of {title} are degrees ({crs.userFriendlyIdentifier()}); "

@@ -38,7 +38,7 @@ from ..algorithms.tiling.tiled_run import TilesOptions, TilesOutcome
 from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
-from .clouds import SurveyParameter, survey_paths
+from .clouds import CloudsParameter, survey_paths
 from .crs import FULL, crs_units
 from .declared import on_command_line
 from .errors import as_processing_errors
@@ -107,7 +107,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the composite's parameters, how it is worked on, and the outputs."""
-        self.addParameter(with_setting(SurveyParameter(INPUT, ""), SETTINGS))
+        self.addParameter(with_setting(CloudsParameter(INPUT, ""), SETTINGS))
         for definition in pipeline_parameters(self.tiled.pipeline).values():
             self.addParameter(definition)
         for input_layer in self.tiled.pipeline.input_layers.values():

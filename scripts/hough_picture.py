@@ -31,8 +31,14 @@ NOISE, SPACING, SIDE = 0.03, 0.3, 3.0
 # Distance between the planes of a pair, in standard deviations of the noise.
 APART = 8.0
 
-# Planes or pairs of a scene, scattered points to each point of a plane, scenes.
-COUNT, CLUTTER, SCENES = 9, 14.0, 4
+# Planes, or pairs of planes, of a scene.
+COUNT = 9
+
+# Scattered points to each point of a plane.
+CLUTTER = 14.0
+
+# Scenes that each width is measured on.
+SCENES = 4
 
 # Other parameters of the stage, the same for all widths. With smaller slope bins the space of the smallest widths does
 # not fit into memory.
@@ -51,8 +57,7 @@ def clutter(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Return points (n, 3) of planes in random directions among scattered ones, and the plane of each, or -1."""
     parts = []
     for number in range(COUNT):
-        center = np.array([number % 3, number // 3, 0.0]) * 3 * SIDE
-        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        center, axes = _frame(number, rng)
         plane = center + _patch(rng) @ axes
         scattered = center + rng.uniform(-SIDE / 2, SIDE / 2, (round(CLUTTER * len(plane)), 3))
         parts += [(plane, number), (scattered, -1)]
@@ -63,19 +68,25 @@ def pairs(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Return points (n, 3) of pairs of parallel planes, and the plane of each."""
     parts = []
     for number in range(COUNT):
-        center = np.array([number % 3, number // 3, 0.0]) * 3 * SIDE
-        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        center, axes = _frame(number, rng)
         for side in (0, 1):
             parts.append((center + (_patch(rng) + [0.0, 0.0, side * APART * NOISE]) @ axes, 2 * number + side))
     return _joined(parts)
 
 
+def _frame(number: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return center (3,), m, and random axes (3, 3) of a plane; centers are three sides apart, three in a row."""
+    return np.array([number % 3, number // 3, 0.0]) * 3 * SIDE, np.linalg.qr(rng.normal(size=(3, 3)))[0]
+
+
 def _patch(rng: np.random.Generator) -> np.ndarray:
+    """Return points (n, 3), m, of a level plane around the origin."""
     count = round((SIDE / SPACING) ** 2)
     return np.column_stack([rng.uniform(-SIDE / 2, SIDE / 2, (count, 2)), rng.normal(0, NOISE, count)])
 
 
 def _joined(parts: list[tuple[np.ndarray, int]]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points of all parts, and the number of the part's plane for each."""
     return np.concatenate([xyz for xyz, _ in parts]), np.repeat([at for _, at in parts], [len(xyz) for xyz, _ in parts])
 
 

@@ -20,8 +20,6 @@ class CellPoints:
 
     Attributes
     ----------
-    goes_on : ndarray of shape (n,), bool, optional
-        Whether the pulse went on to another return.
     returns : tuple of two ndarrays of shape (n,), uint8, optional
         Return number and number of returns; None where no pulse has several.
     intensity : ndarray of shape (n,), optional

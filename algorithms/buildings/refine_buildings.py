@@ -255,7 +255,8 @@ class _Scene:
         refuse_sparse(self.xyz, size)
         cell = raster_cells(self.xyz, size, 1)
         building = np.zeros((cell[0].max() + 2, cell[1].max() + 2), np.int32)
-        building[tuple(of[self.is_building] for of in cell)] = self.cluster_id[self.is_building]
+        # Of several buildings in a cell the last one counts, whatever the order of their points.
+        np.maximum.at(building, tuple(of[self.is_building] for of in cell), self.cluster_id[self.is_building])
         outside, nearest = ndimage.distance_transform_edt(building == 0, return_indices=True)
         inside = ndimage.distance_transform_edt(building > 0)
         may_change = self.is_raised & (self.height > LASER.foot)

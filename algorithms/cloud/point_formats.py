@@ -12,9 +12,9 @@ from .extra_bytes import ExtraField
 from .laspy_library import need_laspy
 
 FORMATS = range(11)
-# Formats 6-10 count the scan angle in steps of 0.006 degrees, formats 0-5 in degrees.
+# Step of the scan angle in formats 6-10, degrees; formats 0-5 count degrees.
 _ANGLE_STEP = 0.006
-# In these steps: 180 degrees.
+# Largest scan angle of formats 6-10, in steps: 180 degrees.
 _LARGEST_ANGLE = 30_000
 # laspy has another name for the scan angle of the formats 0-5.
 _NAMES = {"scan_angle_rank": "scan_angle"}
@@ -23,6 +23,7 @@ _NAMES = {"scan_angle_rank": "scan_angle"}
 UPGRADED = {0: 6, 1: 6, 2: 7, 3: 7, 4: 9, 5: 10}
 # COPC allows 6, 7 and 8 only; waveform references have no field there.
 OF_COPC = {**UPGRADED, 4: 6, 5: 7, 6: 6, 7: 7, 8: 8, 9: 6, 10: 8}
+# Formats whose records refer to waveforms.
 WITH_WAVEFORMS = (4, 5, 9, 10)
 
 

@@ -249,7 +249,7 @@ def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.n
         piece = connected_cells(cells, label)
         size = np.bincount(piece, cells.areas())
         is_open = np.zeros(len(size), bool)
-        is_open[piece[cells.touch_rectangle()]] = True
+        is_open[piece[cells.is_on_rim()]] = True
         pairs, sides = cells.edges()
         vertices = np.array(cells.vertices)
         length = np.hypot(*(vertices[pairs[:, 1]] - vertices[pairs[:, 0]]).T)

@@ -17,11 +17,11 @@ _STRAIGHT = 0.002
 
 @dataclass(frozen=True)
 class CellPolygon:
-    """A polygon: its label, its cells, and its rings, closed, the exterior first."""
+    """A polygon of connected cells."""
 
-    label: int
-    cells: np.ndarray
-    rings: list[np.ndarray]
+    label: int  #: Label of its cells, at least 1
+    cells: np.ndarray  #: (k,), int64: its cells, ascending
+    rings: list[np.ndarray]  #: (m, 2) each, m: closed, the exterior first
 
 
 def cell_polygons(cells: Subdivision, label: np.ndarray) -> list[CellPolygon]:
@@ -104,7 +104,7 @@ def _loops(borders: list[tuple[int, int, int]], vertices: list[tuple[float, floa
     for number, start, end in borders:
         following.setdefault((number, start), []).append(end)
     for number, start, second in borders:
-        if second not in following.get((number, start), []):
+        if second not in following[number, start]:
             continue
         following[number, start].remove(second)
         loop, end = [start], second

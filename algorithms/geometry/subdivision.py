@@ -172,8 +172,8 @@ class Subdivision:
         xs, ys = zip(*(self.vertices[v] for v in loop))
         return min(xs), min(ys), max(xs), max(ys)
 
-    def touch_rectangle(self) -> np.ndarray:
-        """Return which cells (cells,) touch the rectangle around all."""
+    def is_on_rim(self) -> np.ndarray:
+        """Return which cells (cells,), bool, touch the rim of the rectangle."""
         boxes = np.array(self._boxes)
         low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         return (boxes[:, :2] == low).any(axis=1) | (boxes[:, 2:] == high).any(axis=1)

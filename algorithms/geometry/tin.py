@@ -31,7 +31,7 @@ _ROUNDING = 1e-9
 # Side of the cells of starts for walks, in mean distances of nodes: two cells for each node.
 _START_CELL = 0.7
 
-# The far corners come before the nodes.
+# Far corners around the nodes of a surface, which come before these.
 CORNERS = 4
 
 

@@ -65,7 +65,7 @@ def classify_vegetation(
         float,
         Param(
             "Minimum height",
-            "Points higher above the ground than this are vegetation; all others are unclassified.",
+            "Points at least this high above the ground are vegetation; all others are unclassified.",
             unit="m",
             low=0,
             high=10,
@@ -158,7 +158,7 @@ def classify_vegetation(
     monitor.resolved(medium_height=medium, high_height=high)
     sampling = sampling or CloudSampling.of(xyz, classification)
     is_open = np.isin(classification, _OPEN)
-    plants = np.flatnonzero(is_open & (height_above_ground > min_height))
+    plants = np.flatnonzero(is_open & (height_above_ground >= min_height))
     has_passed = np.zeros(len(plants), bool) if number_of_returns is None else number_of_returns[plants] > 1
     is_solid = find_solid_objects(xyz[plants], height_above_ground[plants], has_passed, sampling, monitor)
     classes[is_open] = PointClass.UNCLASSIFIED

@@ -70,7 +70,7 @@ def _are_inside(cells: Subdivision, rings: list) -> np.ndarray:
 
     Lines along a facade that are nearly in line leave wedges of millimeters between each other.
     """
-    is_rim = cells.touch_rectangle()
+    is_rim = cells.is_on_rim()
     inside = inside_rings(cells.centers(), rings) & ~is_rim
     for cell in np.flatnonzero((_mean_widths(cells) < _WEDGE) & ~is_rim):
         loop = cells.loops[cell]

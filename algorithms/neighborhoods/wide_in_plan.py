@@ -11,8 +11,11 @@ from .covariance import Nearest, nearest_offsets
 from .nearest_blocks import Shapes
 from .optimal_size import nested_covariances
 
-# A neighborhood is two-dimensional when it is at least so wide for its length; 60 points nearly always are.
-LEAST_WIDTH, MOST_ACROSS_LINES = 0.45, 60
+# Least width in plan, as a share of the length, of a neighborhood that is not a line.
+LEAST_WIDTH = 0.45
+
+# Most points of a neighborhood: this number is nearly always that wide, however it is spread.
+MOST_ACROSS_LINES = 60
 
 # It grows by this factor until it is.
 _GROWTH = 1.5
@@ -53,8 +56,8 @@ class Wide:
         """Return 16 neighbors (m, 16), centers (m, 3) and covariances (m, 6) of the points ``rows``."""
         neighbors, offsets = nearest_offsets(tree, rows, self._most)
         covariances, counts = self._smallest(offsets)
-        ranks = np.rint(np.linspace(0, 1, _NAMED) * (counts[:, None] - 1)).astype(np.intp)
         last = counts[:, None] - 1
+        ranks = np.rint(np.linspace(0, 1, _NAMED) * last).astype(np.intp)
         means = [np.take_along_axis(np.cumsum(offset, axis=1), last, axis=1)[:, 0] / counts for offset in offsets]
         return np.take_along_axis(neighbors, ranks, axis=1), tree.data[rows] + np.column_stack(means), covariances
 

@@ -27,7 +27,8 @@ _COLORS = {"unknown": GRAY, f"{SURE} and more": BLUE, f"{_EVEN} to {SURE}": YELL
 # Doubtful buildings that the page shows one by one: as many as fit two printed pages.
 _SHOWN = 10
 
-_NUMBERS = {"height": "m", "volume": "m³", "confidence": ""}
+# Attributes of footprints that are numbers.
+_NUMBERS = ("height", "volume", "confidence")
 
 
 def _shown(footprints: LayerFeatures) -> np.ndarray:
@@ -94,9 +95,10 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
         "volume": float(facts.volume.sum()),
         "doubtful": int((facts.confidence < SURE).sum()),
     }
-    # Birds would be the highest points.
-    surface = None if xyz is None else xyz[~np.isin(classification, NOISE)]
-    parts = [_map(footprints, facts, surface if surface is not None and len(surface) else None), _charts(facts)]
+    # Birds would be the highest points. Without other points there is no hillshade.
+    is_shown = np.zeros(0, bool) if xyz is None else ~np.isin(classification, NOISE)
+    surface = xyz[is_shown] if is_shown.any() else None
+    parts = [_map(footprints, facts, surface), _charts(facts)]
     monitor.progress(0.5)
     if xyz is not None and len(shown):
         views = Views(xyz, classification == PointClass.BUILDING)

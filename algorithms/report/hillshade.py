@@ -49,9 +49,7 @@ def topmost(xyz: np.ndarray, low: np.ndarray, cell: float) -> np.ndarray:
     """Return the greatest elevation (rows, columns) in each cell of a lattice from ``low`` on, NaN in empty ones, m."""
     column, row = ((xyz[:, :2] - low) / cell).astype(np.int64).T
     surface = np.full((int(row.max()) + 1, int(column.max()) + 1), np.nan)
-    order = np.argsort(xyz[:, 2], kind="stable")
-    # Of values that go to one cell the last one stays, which is the highest.
-    surface[row[order], column[order]] = xyz[order, 2]
+    np.fmax.at(surface, (row, column), xyz[:, 2])
     return surface
 
 

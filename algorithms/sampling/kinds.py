@@ -24,7 +24,7 @@ class CloudKind:
 
     @property
     def raised(self) -> float:
-        """Height (m) from which points may be of a roof, whose edge is lower than its mean by as much as a foot."""
+        """Height (m) from which points may be of a roof, whose edge is lower than its mean by the height of a foot."""
         return self.lowest_roof - self.foot
 
     def choose(self, laser: Choice, images: Choice) -> Choice:

@@ -76,11 +76,11 @@ def penetration(
     of a roof is small, but not zero. Cells hold the same number of points at any density, as larger numbers would raise
     the share.
     """
-    owner, _, beneath = _columns(xyz, group, DENSITY.filled_cell / np.sqrt(density))
-    beneath = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
+    owner, beneath = _columns(xyz, group, DENSITY.filled_cell / np.sqrt(density))
+    share = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
     if not _numbered(number_of_returns):
-        return beneath
-    return (beneath + non_last_return_share(group, return_number, number_of_returns)) / 2
+        return share
+    return (share + non_last_return_share(group, return_number, number_of_returns)) / 2
 
 
 def non_last_return_share(
@@ -98,6 +98,7 @@ def non_last_return_share(
 
 
 def _numbered(number_of_returns: Optional[np.ndarray]) -> bool:
+    """Whether a pulse is known to have several returns."""
     return number_of_returns is not None and number_of_returns.max(initial=0) > 1
 
 
@@ -175,8 +176,8 @@ def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid,
     return grid, owner, cells[position]
 
 
-def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the group of each cell of ``size`` (m) of a group, its points there, and the points well beneath them."""
+def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the group of each cell of ``size`` (m) of a group, and the points there well beneath that group's."""
     cell, member, count = distinct(fixed_grid_over(xyz, size).number(xyz))[1], group >= 0, int(group.max()) + 1
     # Sorted by cells, so that the groups in a point's cell are found by searching.
     pairs, which = distinct(cell[member].astype(np.int64) * count + group[member])
@@ -189,4 +190,4 @@ def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarra
         some = np.flatnonzero(groups_there > nth)
         pair = first[some] + nth
         beneath += np.bincount(pair[xyz[some, 2] < bottom[pair] - FREE.step], minlength=len(pairs))
-    return owner, np.bincount(which), beneath
+    return owner, beneath

@@ -39,7 +39,7 @@ def segment_clusters(
             low=0,
             high=100,
             open_low=True,
-            automatic="3 times the point spacing.",
+            automatic=f"{_RADIUS_SPACINGS:g} times the point spacing.",
         ),
     ] = None,
     min_points: Annotated[

@@ -56,8 +56,7 @@ def whole_plane(pieces: LayerFeatures, points: int) -> LayerFeatures:
     points : int
         Points of all of them.
     """
-    first, second, start = _frame(pieces.geometries[0])
-    axes = np.stack([first, second])
+    axes, start = _frame(pieces.geometries[0])
     flat = [[(ring - start) @ axes.T for ring in rings] for rings in pieces.geometries]
     polygons = as_polygons(flat)
     rest = np.arange(1, len(flat))
@@ -83,10 +82,11 @@ def _mean(pieces: LayerFeatures, name: str, power: int = 1) -> float:
     return float(np.average(np.asarray(pieces.columns[name], float) ** power, weights=pieces.columns["points"]))
 
 
-def _frame(rings: list) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return two unit vectors along the plane of a polygon, counterclockwise as its ring, and a point of it."""
+def _frame(rings: list) -> tuple[np.ndarray, np.ndarray]:
+    """Return two unit vectors (2, 3) along the plane of a polygon, counterclockwise as its ring, and a point of it."""
     normal = area_vector(rings[0])
-    return (*axes_across(normal / max(float(np.linalg.norm(normal)), 1e-12)), rings[0][:-1].mean(axis=0))
+    axes = axes_across(normal / max(float(np.linalg.norm(normal)), 1e-12))
+    return np.stack(axes), rings[0][:-1].mean(axis=0)
 
 
 def _outline(flat: list) -> list[np.ndarray]:

@@ -14,11 +14,17 @@ from ..sampling.surface_noise import SURFACES
 
 
 def usable_points(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
-    """Return the indices of the points that are not noise; refuse those that span no area in plan."""
+    """Return the indices (m,) of the points (n, 3), m, that are not noise, by their classes (n,).
+
+    Raises
+    ------
+    ValueError
+        If these are fewer than three, or span no area in plan.
+    """
     usable = np.flatnonzero(~np.isin(classification, NOISE))
     if len(usable) < PLANE_POINTS:
         raise ValueError(
-            f"Ground needs at least 3 points that are not noise, got {len(usable)}; choose a larger cloud."
+            f"Ground needs at least {PLANE_POINTS} points that are not noise, got {len(usable)}; choose a larger cloud."
         )
     # Column by column: numpy is slow on rows of two.
     centered = np.stack([column - column.mean() for column in (xyz[:, axis].take(usable) for axis in (0, 1))])

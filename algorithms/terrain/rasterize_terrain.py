@@ -20,7 +20,7 @@ _CELL_SPACINGS = 2.0
 # Least side of a cell (m) that is set automatically.
 _LEAST_CELL = 0.05
 
-# Largest side of a cell (m), that of the tunable.
+# Largest side of a cell (m): neighboring clouds have the same cells up to the kilometers at which these begin.
 _MOST_CELL = 1000.0
 
 # People choose cells of 1, 2 or 5 times a power of ten.
@@ -51,8 +51,9 @@ def rasterize_terrain(
             "Side of a cell of the rasters.",
             unit="m",
             low=0.01,
-            high=1000,
-            automatic="twice the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m.",
+            high=_MOST_CELL,
+            automatic=f"{_CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
+            f"least {_LEAST_CELL:g} m.",
         ),
     ] = None,
     gap_distance: Annotated[
@@ -63,7 +64,7 @@ def rasterize_terrain(
             unit="m",
             low=0,
             high=10_000,
-            automatic="5 cells.",
+            automatic=f"{_GAP_CELLS:g} cells.",
         ),
     ] = None,
     sampling: Optional[CloudSampling] = None,
@@ -144,7 +145,7 @@ def rasterize_terrain(
 
 
 def round_cell_size(size: float) -> float:
-    """Return the round number nearest in proportion, from 0.05 to 1000."""
+    """Return the round number nearest in proportion to a size, both in m, from 0.05 to 1000."""
     power = np.floor(np.log10(size))
     number = _ROUND[np.argmin(np.abs(np.log(_ROUND * 10**power / size)))]
     return float(np.clip(float(f"{number * 10**power:.0e}"), _LEAST_CELL, _MOST_CELL))
@@ -164,12 +165,9 @@ def _highest(elevation: np.ndarray, cell: np.ndarray, rows: int, columns: int) -
     ``cell`` (n, 2) are the column of each point and its row, counted from the south.
     """
     column, from_south = cell.T
-    number = (rows - 1 - from_south) * columns + column
-    order = np.argsort(number)
-    cell, start = np.unique(number[order], return_index=True)
-    highest = np.full(rows * columns, np.nan)
-    highest[cell] = np.maximum.reduceat(elevation[order], start)
-    return highest.reshape(rows, columns)
+    highest = np.full((rows, columns), np.nan)
+    np.fmax.at(highest, (rows - 1 - from_south, column), elevation)
+    return highest
 
 
 def _fill_gaps(surface: np.ndarray, middle: np.ndarray, reach: float, monitor: Monitor) -> None:

@@ -18,7 +18,7 @@ from ..stage import Monitor
 
 @dataclass(frozen=True)
 class DensificationRules:
-    """When points join the TIN, and when rounds end."""
+    """Constants of all ground filters that grow a TIN."""
 
     deviations: float = rule(
         8.0, "robust deviations", "of the nodes, of distances and of angles, within which points join"
@@ -32,7 +32,7 @@ DENSIFICATION = DensificationRules()
 
 @dataclass(frozen=True)
 class JoinRules:
-    """When a point joins the TIN."""
+    """When a point joins the TIN, and when rounds end: what differs between filters and clouds."""
 
     max_angle: float  #: Largest angle between the facet and the lines to its nodes, °
     max_distance: Optional[float]  #: Largest distance from the facet, m; None is estimated in each round
@@ -87,6 +87,7 @@ class Surface:
     facet : ndarray of shape (n,), int32
         The facet under each.
     is_node : ndarray of shape (n,), bool
+        Which points are nodes.
     """
 
     def __init__(self, points: np.ndarray, start: np.ndarray, monitor: Monitor) -> None:

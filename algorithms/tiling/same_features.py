@@ -15,13 +15,18 @@ from .blocks import feature_boxes
 # Two features of different blocks are the same one if they share more than this part of the smaller one.
 _SAME = 0.5
 
-# Pieces of one feature overlap around the edge between their blocks: by more than this part of the smaller one, or by
-# more than this length or area (m, m²). Features that merely touch do not.
-_PIECES, _SHARED = 0.1, 1.0
+# Pieces of one feature overlap around the edge between their blocks by more than this part of the smaller one. Features
+# that merely touch do not.
+_PIECES = 0.1
 
-# Largest distance between planes in space that are the same one: in root mean square distances of their points,
-# and its least value (m), for planes of points without noise.
-_DEVIATIONS, _LEAST = 3.0, 0.005
+# Length (m) or area (m²) of the overlap by which large pieces are known, too.
+_SHARED = 1.0
+
+# Largest distance between planes in space that are the same one, in root mean square distances of their points.
+_DEVIATIONS = 3.0
+
+# Added to that distance (m), for planes of points without noise.
+_LEAST = 0.005
 
 # Largest distance between axes or centers that are the same one, and largest difference of their radii (of the smaller
 # radius). Shapes of the same points differ by less, and pipes in insulation or next to each other by more.

@@ -72,8 +72,9 @@ def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:
     found = {}
     for step in pipeline.steps:
         for layer in step.stage.layers:
-            for field in (field for field in layer.fields if field.of):
-                found[names[step.name, layer.name]] = field.name, _named(names, step, field.of)
+            for field in layer.fields:
+                if field.of:
+                    found[names[step.name, layer.name]] = field.name, _named(names, step, field.of)
     return found
 
 

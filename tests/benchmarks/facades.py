@@ -46,11 +46,15 @@ DOORS = {
 BLOCKS = (1, 2, 3, 4)
 OFF = np.array([1.3, -0.8, 0.4])
 
-# A corner was seen if at least this number of points of its facade lie within this distance (m).
+# A corner was seen if at least this number of points of its facade lie within this distance (m), which is also how far
+# an opening may be off the plane of its facade.
 SEEN, NEAR = 10, 0.3
 
-# Points of an opening that was seen.
-LEAST = 100
+# Least number of points on a facade and in an opening that were seen.
+LEAST_OF_FACADE, LEAST = 1000, 100
+
+# An opening that shares less with each true one (intersection over union) is invented.
+TOUCHED = 0.1
 
 
 def streets() -> list[Table]:
@@ -80,14 +84,14 @@ def streets() -> list[Table]:
         _, holes = extract_openings(xyz, segment_id)
         seconds = time.perf_counter() - start
         owner = [np.bincount(true[segment_id == k], minlength=len(facades) + 1) for k in found.columns["id"]]
-        is_right = [(count[1:].max() > 0.5 * count.sum()) for count in owner]
+        is_right = [count[1:].max() > 0.5 * count.sum() for count in owner]
         reached = {int(count[1:].argmax()) for count, right in zip(owner, is_right) if right}
         off = _corner_distances(xyz, true, corners, found)
         seen, matched, invented, edges = _openings(points, facades, openings, holes)
         table.add(
             f"{seed}{', with clutter' if clutter else ''}",
             len(xyz) / 1e6,
-            int((np.bincount(true, minlength=len(facades) + 1)[1:] > 1000).sum()),
+            int((np.bincount(true, minlength=len(facades) + 1)[1:] > LEAST_OF_FACADE).sum()),
             len(reached),
             int(len(found) - np.sum(is_right)),
             100 * off.mean(),
@@ -117,19 +121,18 @@ def _corner_distances(xyz: np.ndarray, true: np.ndarray, corners, found) -> np.n
 
 
 def _openings(points: dict, facades, openings, holes) -> tuple[int, int, int, np.ndarray]:
-    """Return openings seen, found and invented, and how far (m) the edges of those found are off."""
+    """Return the number of openings seen, found and invented, and how far (m) the edges of those found are off."""
     count = np.bincount(points["cluster_id"], minlength=len(openings) + 1)[1:]
-    seen, used, edges = 0, set(), []
-    matched = 0
+    seen, matched, used, edges = 0, 0, set(), []
     for i, (ring,) in enumerate(openings.geometries):
         own = facades.geometries[openings.columns["facade"][i] - 1][0]
         frame = frame_on(own)
         boxes = np.array([box_on(frame, hole) for (hole,) in holes.geometries]).reshape(-1, 4)
-        near = [abs(frame.local(hole)[:, 2]).max() < 0.3 for (hole,) in holes.geometries]
+        near = [abs(frame.local(hole)[:, 2]).max() < NEAR for (hole,) in holes.geometries]
         box = box_on(frame, ring)
         share = np.array([union_share(box, other) if is_near else 0.0 for other, is_near in zip(boxes, near)])
         best = int(np.argmax(share)) if len(share) else -1
-        used |= set(np.flatnonzero(share > 0.1).tolist())
+        used |= set(np.flatnonzero(share > TOUCHED).tolist())
         if count[i] < LEAST:
             continue
         seen += 1
@@ -252,7 +255,7 @@ def blocks() -> list[Table]:
 
 
 def _outer_corners(outlines) -> np.ndarray:
-    """Return the corners (m, 2) of houses in plan that are not those of a neighbor, too."""
+    """Return the corners (m, 2) of houses in plan that are not those of a neighbor, within 5 cm."""
     corners = np.concatenate([ring[:-1, :2] for (ring,) in outlines.geometries])
     near = np.linalg.norm(corners[:, None] - corners, axis=2) < 0.05
     return corners[near.sum(axis=1) == 1]

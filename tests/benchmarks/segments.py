@@ -35,30 +35,42 @@ METHODS: dict[str, tuple[str, dict[str, Any]]] = {
     "Segment TIN planes": ("segment_tin_planes", {}),
     "Model industry": ("model_industry", {}),
 }
+# Methods for the scene "lines" alone: they need the lines of the scanner, here from the order of the points.
+IN_LINES: dict[str, tuple[str, dict[str, Any]]] = {
+    "Segment recorded lines": ("segment_recorded_lines", {}),
+}
+# Measures of Hoover et al.
 MATCHES = ("correct", "over", "under", "missed", "noise")
+
+
+# Sides of a house (m), the ridge along the first; pitches (°) of the roofs; deviation of elevations (m).
+SIDES, PITCHES, NOISE = (14, 9), (15, 22, 30, 35, 42, 50), 0.02
 
 
 def gables() -> tuple[np.ndarray, np.ndarray]:
     """Return points of six gable houses, 12 per m², and the roof (from 1) that each lies on."""
-    rng, parts, ids = np.random.default_rng(3), [], []
-    for house, pitch in enumerate((15, 22, 30, 35, 42, 50)):
-        xy = rng.uniform(0, [14, 9], (round(14 * 9 * 12), 2))
-        z = 6 + np.tan(np.radians(pitch)) * (4.5 - np.abs(xy[:, 1] - 4.5)) + rng.normal(0, 0.02, len(xy))
-        parts.append(np.column_stack([xy[:, 0] + 25 * (house % 3), xy[:, 1] + 20 * (house // 3), z]))
-        ids.append(2 * house + 1 + (xy[:, 1] > 4.5))
-    return np.concatenate(parts), np.concatenate(ids)
+    return _houses(lambda rng: rng.uniform(0, SIDES, (round(SIDES[0] * SIDES[1] * 12), 2)))
 
 
 def lines() -> tuple[np.ndarray, np.ndarray]:
     """Return points of the same houses in the order of a scanner's lines, 0.29 m apart across the ridges."""
+    return _houses(_scanned)
+
+
+def _scanned(rng: np.random.Generator) -> np.ndarray:
+    """Return positions (n, 2), m, on a house in lines: a mirror that turns begins each line on the same side."""
+    x, y = (along.ravel() for along in np.meshgrid(*(np.arange(0, side, 0.29) for side in SIDES), indexing="ij"))
+    return np.column_stack([x + 0.01 * y, y]) + rng.normal(0, 0.01, (len(x), 2))
+
+
+def _houses(positions: Callable[[np.random.Generator], np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return points of six houses, three in a row, and their roofs; ``positions`` draws those on one, m."""
     rng, parts, ids = np.random.default_rng(3), [], []
-    for house, pitch in enumerate((15, 22, 30, 35, 42, 50)):
-        x, y = np.meshgrid(np.arange(0, 14, 0.29), np.arange(0, 9, 0.29), indexing="ij")
-        # A mirror that turns: each line begins on the same side.
-        xy = np.column_stack([x.ravel() + 0.01 * y.ravel(), y.ravel()]) + rng.normal(0, 0.01, (x.size, 2))
-        z = 6 + np.tan(np.radians(pitch)) * (4.5 - np.abs(xy[:, 1] - 4.5)) + rng.normal(0, 0.02, len(xy))
+    for house, pitch in enumerate(PITCHES):
+        xy, middle = positions(rng), SIDES[1] / 2
+        z = 6 + np.tan(np.radians(pitch)) * (middle - np.abs(xy[:, 1] - middle)) + rng.normal(0, NOISE, len(xy))
         parts.append(np.column_stack([xy[:, 0] + 25 * (house % 3), xy[:, 1] + 20 * (house // 3), z]))
-        ids.append(2 * house + 1 + (xy[:, 1] > 4.5))
+        ids.append(2 * house + 1 + (xy[:, 1] > middle))
     return np.concatenate(parts), np.concatenate(ids)
 
 
@@ -73,10 +85,6 @@ SCENES: dict[str, Callable[[], tuple[np.ndarray, np.ndarray]]] = {
     "gables": gables,
     "lines": lines,
     "plant": plant,
-}
-# Methods that need the lines of the scanner, here from the order of the points, and the scene that has them.
-IN_LINES: dict[str, tuple[str, dict[str, Any]]] = {
-    "Segment recorded lines": ("segment_recorded_lines", {}),
 }
 
 

@@ -175,6 +175,15 @@ def test_the_order_of_points_and_their_position_change_nothing(village, rng):
     assert (moved[0] == found).mean() > 0.9999
 
 
+def test_the_building_of_added_points_does_not_depend_on_the_order_of_points(village, rng):
+    """In every cell of one house are points of two buildings."""
+    village.cluster_id[(village.cluster_id == 6) & (rng.random(len(village.xyz)) < 0.5)] = 17
+    (found, number, *_), _ = village.refine()
+    assert (found[village.strip] == 6).any()
+    order = rng.permutation(len(found))
+    np.testing.assert_array_equal(village.refine(order)[0][1], number[order])
+
+
 def test_other_colors_of_the_beam_are_no_obstacle(village):
     """Without returns and with an intensity that is the same everywhere shape alone decides."""
     village.number_of_returns[:] = 1

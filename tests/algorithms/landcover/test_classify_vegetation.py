@@ -83,6 +83,10 @@ def test_limits_of_heights_are_those_chosen():
     assert not (made == 4).any()
     made, _, _ = classified(min_height=1.0)
     assert (made[plant & (height < 1.0)] == 1).all()
+    # Bounds are inclusive: the lowest leaf of the trees is of them.
+    lowest = height[kind == TREE].min()
+    made, _, _ = classified(min_height=float(lowest))
+    assert (made[(kind == TREE) & (height == lowest)] >= 3).all()
 
 
 def test_high_vegetation_is_not_lower_than_medium():

@@ -205,5 +205,5 @@ def test_a_wedge_at_the_edge_of_the_rectangle_stays_outside():
     for turn in np.deg2rad(np.arange(0, 90, 7)):
         turned = ring @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
         cells, inside = empty_partition([turned], np.zeros((0, 2)))
-        assert not (inside & cells.touch_rectangle()).any()
+        assert not (inside & cells.is_on_rim()).any()
         assert cells.areas()[inside].sum() == pytest.approx(96.07, abs=0.1)
