@@ -53,6 +53,7 @@ class CheckedAlgorithm(DeclaredAlgorithm):
         """
         with as_processing_errors():
             self._checked(parameters, context)
+            # Those made last while something refers to them.
             self._made = make_in_main_thread(self.systems())
         return super().prepareAlgorithm(self.completed(parameters), context, feedback)  # type: ignore[misc]
 

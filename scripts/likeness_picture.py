@@ -26,7 +26,10 @@ COLORS = {"real": ("#004488", "#4aa3df"), "simulated": ("#bb5566", "#ddaa33")}
 
 @dataclass(frozen=True)
 class Panel:
-    """A chart: curves by the name of the cloud, None where a value is unknown."""
+    """A chart: titles of it and its axes, positions across with their texts, and values by the name of the cloud.
+
+    A value is None where it is unknown.
+    """
 
     title: str
     across: str
@@ -34,7 +37,7 @@ class Panel:
     positions: list[float]
     names: list[str]
     curves: dict[str, list[float | None]]
-    is_logarithmic: bool
+    is_logarithmic: bool = False
 
 
 def panels(folder: Path) -> list[Panel]:
@@ -48,38 +51,21 @@ def panels(folder: Path) -> list[Panel]:
         names = [key for key in rows[0] if key.endswith(" m")]
         curves = {row["cloud"]: [row[name] for name in names] for row in rows}
         widths = [float(name.split()[0]) for name in names]
-        made.append(
-            Panel(
-                f"Roughness of {surface}",
-                "window (m)",
-                "deviation from planes (m)",
-                widths,
-                [f"{width:g}" for width in widths],
-                curves,
-                True,
-            )
-        )
+        axes = "window (m)", "deviation from planes (m)"
+        texts = [f"{width:g}" for width in widths]
+        made.append(Panel(f"Roughness of {surface}", *axes, widths, texts, curves, is_logarithmic=True))
     for surface in ("roofs", "plants"):
         rows = [row for row in slopes if row["surface"] == surface]
         names = [key for key in rows[0] if key.endswith("°")]
         curves = {row["cloud"]: [row[name] for name in names] for row in rows if any(row[name] for name in names)}
         middles = [(float(name.split()[0]) + float(name.split()[2][:-1])) / 2 for name in names]
-        made.append(
-            Panel(
-                f"Slopes of {surface}, by the meter",
-                "slope (°)",
-                "share (%)",
-                middles,
-                [f"{middle:g}" for middle in middles],
-                curves,
-                False,
-            )
-        )
+        texts = [f"{middle:g}" for middle in middles]
+        made.append(Panel(f"Slopes of {surface}, by the meter", "slope (°)", "share (%)", middles, texts, curves))
     names = [key for key in depths[0] if key.startswith("deeper")] + ["seen through", "empty"]
     curves = {row["cloud"]: [row[name] for name in names] for row in depths}
     short = [name.replace("deeper than ", "> ") for name in names]
     positions = [float(number) for number in range(len(names))]
-    made.append(Panel("Cells: depth, seen through, empty", "", "share (%)", positions, short, curves, False))
+    made.append(Panel("Cells: depth, seen through, empty", "", "share (%)", positions, short, curves))
     return made
 
 
@@ -158,9 +144,10 @@ def _draw_chart(painter: QPainter, chart: Panel, pens: dict[str, QPen]) -> None:
     for name, curve in chart.curves.items():
         painter.setPen(pens[name])
         known = [at(position, value) for position, value in zip(chart.positions, curve) if value is not None]
-        painter.drawPolyline(QPolygonF(known)) if len(known) > 1 else painter.drawEllipse(
-            known[0], 3, 3
-        ) if known else None
+        if len(known) > 1:
+            painter.drawPolyline(QPolygonF(known))
+        elif known:
+            painter.drawEllipse(known[0], 3, 3)
 
 
 def _ticks(low: float, high: float, is_logarithmic: bool) -> list[float]:

@@ -34,6 +34,7 @@ class PointClass(IntEnum):
 
 
 NOISE = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
+VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
 
 
 def parse_classes(text: str, label: str = "Ignored classes") -> np.ndarray:

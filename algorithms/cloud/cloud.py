@@ -11,19 +11,20 @@ from weakref import ReferenceType, ref
 import numpy as np
 
 from .dimensions import DIMENSIONS, Dimension
-from .header import Header
+from .header import LARGEST_STEP, Header
 from .point_formats import OF_COPC, Layout
 from .point_records import PointRecords, find_extra, unit_factor
 from .printable import shown
 from .units import Units, crs_records, units_of, wkt_of
 
+# Origins are multiples of this (m): coordinates from there keep their digits, and neighboring clouds have the same one.
 _ORIGIN_STEP = 1000.0
+
+# Scale of new clouds (m): more precise than any scanner.
 _NEW_SCALE = 0.001
 
 # Steps of the scale by which the sum of large coordinates may miss a half.
 _HALF = 1e-4
-
-_LARGEST_INT = 2**31 - 1
 
 
 class Cloud:
@@ -161,9 +162,9 @@ class Cloud:
             steps /= step[i]
             # Round half up, as the center of two points often is a half: half to even would depend on the offset.
             np.floor(steps + (0.5 + _HALF), out=steps)
-            if not max(steps.max(), -steps.min()) <= _LARGEST_INT:
+            if not max(steps.max(), -steps.min()) <= LARGEST_STEP:
                 raise ValueError(
-                    f"Points are moved too far for the file, which reaches {_LARGEST_INT * abs(step[i]):.0f} m from "
+                    f"Points are moved too far for the file, which reaches {LARGEST_STEP * abs(step[i]):.0f} m from "
                     f"its offset in {axis} at a scale of {abs(step[i]):g} m; check the coordinates."
                 )
             points[axis] = steps
@@ -318,7 +319,7 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     coordinates = xyz / units.factors
     header.offset = np.floor(coordinates.min(axis=0) / _ORIGIN_STEP) * _ORIGIN_STEP
     steps = np.rint((coordinates - header.offset) / _NEW_SCALE)
-    if steps.max() > _LARGEST_INT:
+    if steps.max() > LARGEST_STEP:
         raise ValueError(
             f"The cloud spans {np.ptp(xyz, axis=0).max():.0f} m, more than a file of millimeters can hold."
         )

@@ -9,14 +9,19 @@ import numpy as np
 
 from .laspy_library import need_laspy
 
+# Bytes of a descriptor.
 _SIZE = 192
-# Offsets in a descriptor: the number that means "no data", then minimum and maximum, of 8 bytes for up to 3 axes each.
-_NO_DATA, _RANGE = slice(40, 48), slice(64, 112)
-# Name and description.
+# Where a descriptor has the number that means "no data", of the first of up to 3 axes.
+_NO_DATA = slice(40, 48)
+# Where it has minimum and maximum of 3 axes.
+_RANGE = slice(64, 112)
+# Where it has name and description.
 _TEXTS = (slice(4, 36), slice(160, 192))
-# Options; "no data" of all axes; scales and offsets.
+# Where it has what the numbers mean: options; "no data" of all axes; scales and offsets.
 _MEANING = (slice(3, 4), slice(40, 64), slice(112, 160))
+# Largest number of a type; types from 11 on are the vectors of earlier versions.
 _LARGEST_TYPE = 30
+# Most bytes of unknown meaning that one descriptor holds: their number is stored in a byte.
 _LONGEST_UNDOCUMENTED = 255
 
 
@@ -124,6 +129,7 @@ def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:
 
 
 def _field(raw: bytes) -> ExtraField:
+    """Return the field that a descriptor describes."""
     descriptor = _parsed(raw)
     if not 1 <= descriptor.data_type <= _LARGEST_TYPE:
         # Type 0 keeps its number of bytes where the others keep their options.

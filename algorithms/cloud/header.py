@@ -15,25 +15,36 @@ from .extra_bytes import fields_of, payload_of
 from .laspy_library import need_laspy
 from .point_formats import FORMATS, WITH_WAVEFORMS, Layout
 
-# Header size, offset to the points, number of VLRs, point format, record length and 32-bit number of points.
+# Where a header has its size, offset to the points, number of VLRs, point format, record length and 32-bit number of
+# points.
 _SIZES_AT, _START_SIZES = 94, struct.Struct("<HIIBHI")
+# Where it has the minor version, the number of VLRs, and the 32-bit numbers of points.
 _MINOR_AT, _VLRS_AT, _OLD_COUNTS_AT = 25, 100, 107
+# Where it has the system that made the points, and the date.
 _SYSTEM, _DATE = slice(26, 58), slice(90, 94)
 # Numbers of points by return, which are counted anew; laspy 2.5 has 32 bits for each.
 _OLD_RETURNS, _RETURNS = slice(111, 131), slice(255, 375)
+# Reserved bytes, user id, record id, length and description before the payload of a VLR and of an EVLR.
 _VLR = struct.Struct("<2s16sHH32s")
 _EVLR = struct.Struct("<2s16sHQ32s")
+# Size of the header of each minor version.
 SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
 # The first minor version of LAS that has a point format; laspy supports versions from 1.1 on.
 _FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 
+# Bits of the encoding: the CRS is a WKT; waveforms are in the file, in a file of their own.
 WKT_BIT = 16
 _WAVEFORMS_INSIDE, _WAVEFORMS_OUTSIDE = 2, 4
+# Bit of the point format of compressed records.
 _COMPRESSED = 128
+# Most points that 32 bits count, and most bytes of the payload of a VLR.
 _LARGEST_OLD_COUNT = 2**32 - 1
 _LARGEST_VLR = 65_535
+# Largest coordinate of a record, in steps of the scale from the offset.
+LARGEST_STEP = 2**31 - 1
 # Payloads of more bytes (waveforms) stay in their file until they are copied.
 _KEPT_IN_MEMORY = 2**24
+# Bytes of a payload that are copied at once.
 _COPIED_AT_ONCE = 2**24
 # Doubles may be this many steps of the scale apart; some files are written with far too fine a scale.
 _COARSEST = 1000.0
@@ -41,6 +52,7 @@ _COARSEST = 1000.0
 _LEAST_STEP = float(np.sqrt(np.finfo(float).tiny))
 # The name of the writing program, in the header of every file written here.
 SOFTWARE = "LiDAR Buildings"
+# User id and record id of VLRs.
 LASZIP = (b"laszip encoded", 22204)
 EXTRA_BYTES = (b"LASF_Spec", 4)
 WAVEFORMS = (b"LASF_Spec", 65535)

@@ -12,21 +12,21 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..stage import Monitor
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
+from .header import COPC_HIERARCHY, COPC_INFO, LARGEST_STEP, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import convert, merged_layout
 from .points import open_header, points_within, read_chunks
 from .printable import shown
 from .units import crs_identity, wkt_of
 
-_LARGEST_INT = 2**31 - 1
+# Bit of the header's encoding that says how GPS time is counted.
 _GPS_TIME_BIT = 1
 _DATA_ROLE = "data"
 # Memory that the content of a virtual point cloud may take (bytes): enough for 4,000 tiles with the statistics of all
 # their dimensions, of 20 kB each.
 _MOST_MEMORY = 450_000_000
-# Memory that one value of JSON takes at most (bytes), a text of a few characters beyond ASCII. One of four characters
-# precedes it, which texts may hold too. Texts take 1 byte for a character of ASCII, and at most 4 for another.
+# Memory that one value of JSON takes at most beside its characters (bytes): that of a text beyond ASCII. The values are
+# bounded by the number of the four signs that may precede one, some of which may be characters of texts.
 _BYTES_PER_VALUE = 90
 _EXTENSIONS = (
     "https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json",
@@ -70,14 +70,16 @@ def _content(path: Path) -> bytes:
         If it would take more.
     """
     size = path.stat().st_size
+    # The bytes, and the text with at least a byte for each.
     needed = 2 * size
     if needed <= _MOST_MEMORY:
         raw = path.read_bytes()
         n_values = sum(map(raw.count, (b"[", b"{", b",", b":")))
+        # Other text than ASCII has up to four bytes for a character.
         needed = len(raw) * (2 if raw.isascii() else 5) + n_values * _BYTES_PER_VALUE
     if needed > _MOST_MEMORY:
         raise ValueError(
-            f"{path.name} ({size / 1e6:.0f} MB) is larger than a virtual point cloud of a thousand tiles; "
+            f"{path.name} ({size / 1e6:.0f} MB) is larger than a virtual point cloud of thousands of tiles; "
             "build it of fewer tiles."
         )
     return raw
@@ -299,9 +301,9 @@ def _grid(headers: list[Header], what: str) -> tuple[np.ndarray, np.ndarray]:
     low = np.min([header.low for header in headers], axis=0)
     high = np.max([header.high for header in headers], axis=0)
     offset = headers[0].offset.copy()
-    far = np.maximum(np.abs(low - offset), np.abs(high - offset)) > scale * _LARGEST_INT
+    far = np.maximum(np.abs(low - offset), np.abs(high - offset)) > scale * LARGEST_STEP
     offset[far] = np.round((low + high)[far] / 2)
-    if (np.maximum(offset - low, high - offset) > scale * _LARGEST_INT).any():
+    if (np.maximum(offset - low, high - offset) > scale * LARGEST_STEP).any():
         raise ValueError(
             f"The {what} span {(high - low).max():.0f} units, too far for their scale {scale.min():g}; take fewer."
         )
@@ -309,10 +311,11 @@ def _grid(headers: list[Header], what: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _rescale(chunk: np.ndarray, tile: Header, merged: Header, out: np.ndarray) -> None:
+    """Write the coordinates of records of a tile in steps of the merged cloud."""
     for i, axis in enumerate("XYZ"):
         if tile.scale[i] == merged.scale[i] and tile.offset[i] == merged.offset[i]:
             continue
         steps = np.rint((chunk[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
-        if len(steps) and not np.abs(steps).max() <= _LARGEST_INT:
+        if len(steps) and not np.abs(steps).max() <= LARGEST_STEP:
             raise ValueError("A tile has points outside the bounds in its header; repair its header first.")
         out[axis] = steps

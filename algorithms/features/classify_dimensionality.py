@@ -32,7 +32,7 @@ def classify_dimensionality(linearity, planarity, scattering, *, monitor=None):
 
     Parameters
     ----------
-    linearity, planarity, scattering : ndarray of shape (n,)
+    linearity, planarity, scattering : ndarray of shape (n,), float32
         Shares of the three, 0 to 1; NaN where undefined.
 
     Returns

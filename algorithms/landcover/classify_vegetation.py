@@ -6,19 +6,13 @@ from typing import Annotated, NamedTuple, Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
+from ..cloud.asprs import VEGETATION, PointClass
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
 from .solid_objects import REACH, find_solid_objects
 
 # Points of these classes may be vegetation; all others stay.
-_OPEN = (
-    PointClass.NEVER_CLASSIFIED,
-    PointClass.UNCLASSIFIED,
-    PointClass.LOW_VEGETATION,
-    PointClass.MEDIUM_VEGETATION,
-    PointClass.HIGH_VEGETATION,
-)
+_OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, *VEGETATION)
 
 
 class Heights(NamedTuple):
@@ -164,6 +158,6 @@ def classify_vegetation(
     classes[is_open] = PointClass.UNCLASSIFIED
     plants = plants[~is_solid]
     layer = np.searchsorted([medium, high], height_above_ground[plants], side="right")
-    classes[plants] = np.array(_OPEN[2:], np.uint8)[layer]
+    classes[plants] = np.array(VEGETATION, np.uint8)[layer]
     monitor.progress(1.0)
     return classes

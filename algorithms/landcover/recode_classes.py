@@ -6,13 +6,11 @@ from typing import Annotated
 
 import numpy as np
 
-from ..cloud.asprs import PointClass, parse_classes
+from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes
 from ..stage import Param, stage
 
 _ASPRS = "ASPRS"
-_VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
 _WIRES = (PointClass.WIRE_CONDUCTOR, PointClass.TRANSMISSION_TOWER)
-_NOISE = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
 _OTHER = int(PointClass.UNCLASSIFIED)
 
 # What agencies write for classes of ASPRS; classes that are not named keep their code.
@@ -20,13 +18,13 @@ CODES: dict[str, dict[int, int]] = {
     _ASPRS: {},
     # Civil works are 26; plants and noise are "other", wires 14 and their masts "other".
     "AHN (Netherlands)": {
-        **{int(one): _OTHER for one in (0, *_VEGETATION, *_NOISE, PointClass.TRANSMISSION_TOWER)},
+        **{int(one): _OTHER for one in (0, *VEGETATION, *NOISE, PointClass.TRANSMISSION_TOWER)},
         int(PointClass.BRIDGE_DECK): 26,
     },
     # Lasting objects above the ground are 64, artefacts 65.
-    "IGN LiDAR HD (France)": {0: _OTHER, **{int(one): 64 for one in _WIRES}, **{int(one): 65 for one in _NOISE}},
+    "IGN LiDAR HD (France)": {0: _OTHER, **{int(one): 64 for one in _WIRES}, **{int(one): 65 for one in NOISE}},
     # The base specification has no class for plants and wires; buildings are an optional one.
-    "USGS 3DEP (United States)": {int(one): _OTHER for one in (0, *_VEGETATION, *_WIRES)},
+    "USGS 3DEP (United States)": {int(one): _OTHER for one in (0, *VEGETATION, *_WIRES)},
 }
 
 

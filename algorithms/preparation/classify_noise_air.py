@@ -6,9 +6,9 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
+from ..cloud.asprs import PointClass
 from ..geometry.grid import plan_box
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import stage
 from .points_in_the_air import in_the_air
 
@@ -65,7 +65,7 @@ def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling]
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
-    used = np.flatnonzero(~np.isin(made, NOISE))
+    used = not_noise(made)
     if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
         return made

@@ -7,12 +7,12 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
+from ..cloud.asprs import PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..packages import spatial
 from ..params import MinFrequency
 from ..rules import rule
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..stage import Monitor, Param, stage
@@ -140,7 +140,7 @@ def classify_noise_histogram(
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
-    used = np.flatnonzero(~np.isin(made, NOISE))
+    used = not_noise(made)
     if not len(used) or not np.ptp(plan_box(xyz.take(used, axis=0)), axis=0).any():
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
         return made

@@ -6,10 +6,10 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
+from ..cloud.asprs import PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..params import MinFrequency
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
 from .height_histograms import Histogram, own_histogram, pooled_histogram, with_borrowed_ranges
 
@@ -46,7 +46,7 @@ def classify_noise_histogram_2019(
             unit="m",
             low=0.1,
             high=10_000,
-            automatic="cells of 4,000 points on average.",
+            automatic=f"cells of {_POINTS_PER_CELL:,} points on average.",
             advanced=True,
         ),
     ] = None,
@@ -58,7 +58,7 @@ def classify_noise_histogram_2019(
             unit="m",
             low=0.01,
             high=1000,
-            automatic="twice the point spacing, at least 1 m.",
+            automatic=f"{_BIN_SPACINGS:g} times the point spacing, at least {_MIN_BIN_HEIGHT:g} m.",
             advanced=True,
         ),
     ] = None,
@@ -110,7 +110,7 @@ def classify_noise_histogram_2019(
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     classes = classification.astype(np.uint8)
-    used = np.flatnonzero(~np.isin(classes, NOISE))
+    used = not_noise(classes)
     if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
         return classes
@@ -130,9 +130,10 @@ def classify_noise_histogram_2019(
         monitor.warn(f"No noise was found: no bin of the histograms has {min_frequency} points.")
         return classes
     at = np.searchsorted(cells, cell)
-    classes[used[level < low[at]]] = PointClass.LOW_NOISE
-    classes[used[level > high[at]]] = PointClass.HIGH_NOISE
-    monitor.resolved(low_noise=int((level < low[at]).sum()), high_noise=int((level > high[at]).sum()))
+    is_low, is_high = level < low[at], level > high[at]
+    classes[used[is_low]] = PointClass.LOW_NOISE
+    classes[used[is_high]] = PointClass.HIGH_NOISE
+    monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
     monitor.progress(1.0)
     return classes
 

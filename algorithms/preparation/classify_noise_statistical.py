@@ -6,10 +6,10 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
+from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, plan_box
 from ..packages import spatial
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
 from ..threads import n_threads
 from .points_in_the_air import in_the_air, link_length
@@ -114,7 +114,7 @@ def classify_noise_statistical(
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
-    used = np.flatnonzero(~np.isin(made, NOISE))
+    used = not_noise(made)
     points = xyz[used]
     if len(points) <= n_neighbors:
         monitor.warn(f"No noise was looked for: {len(points)} points are not enough for {n_neighbors} neighbors.")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..cloud.asprs import PointClass, parse_classes
+from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes
 from ..params import IgnoredClasses
 from ..report.charts import draw_matrix
 from ..report.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, draw_table, percent
@@ -17,7 +17,7 @@ from .point_matching import compared_points
 # Classes that have an output of their own, by the names of these.
 _KINDS = {
     "ground": (PointClass.GROUND,),
-    "vegetation": (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION),
+    "vegetation": VEGETATION,
     "building": (PointClass.BUILDING,),
     "water": (PointClass.WATER,),
     "wires": (
@@ -27,7 +27,7 @@ _KINDS = {
         PointClass.WIRE_CONNECTOR,
     ),
     "bridges": (PointClass.BRIDGE_DECK,),
-    "noise": (PointClass.LOW_NOISE, PointClass.HIGH_NOISE),
+    "noise": NOISE,
 }
 _UNCLASSIFIED = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
 

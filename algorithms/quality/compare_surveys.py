@@ -125,7 +125,8 @@ def compare_surveys(
             unit="m",
             low=0,
             high=100,
-            automatic="three times the median distance between the outlines of both surveys, 1 to 4 m.",
+            automatic=f"{RULES.deviations:g} times the median distance between the outlines of both surveys, "
+            f"{RULES.least_outline:g} to {RULES.most_outline:g} m.",
         ),
     ] = None,
     height_tolerance: Annotated[
@@ -136,7 +137,8 @@ def compare_surveys(
             unit="m",
             low=0,
             high=100,
-            automatic="three times the median difference between the heights of both surveys, 0.5 to 3 m.",
+            automatic=f"{RULES.deviations:g} times the median difference between the heights of both surveys, "
+            f"{RULES.least_height:g} to {RULES.most_height:g} m.",
         ),
     ] = None,
     monitor=None,
@@ -231,6 +233,7 @@ class _Changes:
 
 
 def _groups(overlap: Overlap, min_overlap: float) -> _Groups:
+    """Return groups of buildings that share at least ``min_overlap`` of the smaller one with another of the group."""
     same = overlap.of_smaller >= rounded_down(min_overlap)
     n = len(overlap.area)
     count, group = components(overlap.one[same], n + overlap.other[same], n + len(overlap.other_area))

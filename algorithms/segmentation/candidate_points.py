@@ -13,7 +13,9 @@ NO_OBJECTS = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, Point
 
 
 def candidates(classification: np.ndarray, height_above_ground: Optional[np.ndarray], min_height: float) -> np.ndarray:
-    """Return the indices of the points that are neither ground, water, bridge deck nor noise, and high enough.
+    """Return the indices (m,) of the points whose class may be an object's, at least ``min_height`` (m) high.
+
+    At a ``min_height`` of 0 the heights (n,), m, are not looked at.
 
     Raises
     ------

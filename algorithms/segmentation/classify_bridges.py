@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
+from ..cloud.asprs import VEGETATION, PointClass
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..sampling.kinds import LASER
@@ -16,13 +16,7 @@ from .bridge_decks import Decks
 from .deck_sites import deck_sites
 
 # No deck is of these classes.
-_NO_DECK = (
-    PointClass.LOW_VEGETATION,
-    PointClass.MEDIUM_VEGETATION,
-    PointClass.HIGH_VEGETATION,
-    PointClass.BUILDING,
-    PointClass.WATER,
-)
+_NO_DECK = (*VEGETATION, PointClass.BUILDING, PointClass.WATER)
 
 # Where bridges are looked for.
 _EVERYWHERE, _OVER_GAPS = "everywhere", "gaps in the ground"

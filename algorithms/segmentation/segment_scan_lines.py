@@ -52,7 +52,7 @@ def segment_scan_lines(
             low=0,
             high=1000,
             open_low=True,
-            automatic="3 times the point spacing.",
+            automatic=f"{_WIDTH_SPACINGS:g} times the point spacing.",
         ),
     ] = None,
     distance: Annotated[
@@ -64,7 +64,7 @@ def segment_scan_lines(
             low=0,
             high=1000,
             open_low=True,
-            automatic="9 times the point spacing.",
+            automatic=f"{_DISTANCE_SPACINGS:g} times the point spacing.",
         ),
     ] = None,
     max_slope: Annotated[
@@ -85,7 +85,7 @@ def segment_scan_lines(
             unit="m",
             low=0,
             high=100,
-            automatic="4 standard deviations of the surface noise.",
+            automatic=f"{_NOISE_STEP:g} standard deviations of the surface noise.",
         ),
     ] = None,
     max_obstacle: Annotated[

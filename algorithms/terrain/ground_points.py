@@ -6,9 +6,10 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
+from ..cloud.asprs import PointClass
 from ..geometry.grid import grid_over
 from ..geometry.tin import PLANE_POINTS
+from ..sampling.cloud_sampling import not_noise
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from ..sampling.surface_noise import SURFACES
 
@@ -21,7 +22,7 @@ def usable_points(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
     ValueError
         If these are fewer than three, or span no area in plan.
     """
-    usable = np.flatnonzero(~np.isin(classification, NOISE))
+    usable = not_noise(classification)
     if len(usable) < PLANE_POINTS:
         raise ValueError(
             f"Ground needs at least {PLANE_POINTS} points that are not noise, got {len(usable)}; choose a larger cloud."

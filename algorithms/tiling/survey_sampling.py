@@ -14,13 +14,20 @@ from ..stage import Monitor, ProgressOnly
 from .survey import Survey
 from .tiled_steps import in_blocks, measuring, part_of, preparing, tunables_of
 
-# How a survey was sampled is measured on all its points up to this many, else on windows of that side (m) at most, as
-# many in each direction.
+# Most points that the sampling is measured on: all points of small surveys, else those of windows.
 _SAMPLED_WHOLE = 3_000_000
-_SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 
-# Values that steps measure on their results, and blocks take of the whole, are measured on as many of these windows as
-# hold this many points, one at least. A core takes a second for each 60,000 of *Detect buildings*.
+# Windows along each side of a survey.
+_SAMPLES_ACROSS = 4
+
+# Largest side of a window, m.
+_SAMPLE_SIDE = 100.0
+
+# Share of the windows that must have points; else windows are put around points of the survey.
+_LEAST_FILLED = 0.25
+
+# Most points that values are measured on that steps find in their results and blocks take of the whole, if more than
+# one window: a core takes a second for each 60,000 of *Detect buildings*.
 _MEASURED = 1_500_000
 
 
@@ -48,13 +55,13 @@ def samplings_of(
     ValueError
         If the survey has no points within its extent, or a step refuses its points.
     """
-    sampling = monitor.part(0, 0.3)
+    reading = monitor.part(0, 0.3)
     boxes, corner = _sample_boxes(survey), survey.corner
-    clouds, survey = _sampled(survey, boxes, sampling)
-    if len(clouds) < len(boxes) / 4:
+    clouds, survey = _sampled(survey, boxes, reading)
+    if len(clouds) < _LEAST_FILLED * len(boxes):
         # The survey fills little of its extent, as a corridor or a coast does.
-        positions = survey.positions(_SAMPLES_ACROSS**2, sampling.part(1.0, 1.0))
-        clouds, _ = _sampled(survey, _squares_around(positions, _sample_side(survey)), sampling.part(1.0, 1.0))
+        positions = survey.positions(_SAMPLES_ACROSS**2, reading.part(1.0, 1.0))
+        clouds, _ = _sampled(survey, _squares_around(positions, _sample_side(survey)), reading.part(1.0, 1.0))
     if not clouds:
         raise ValueError("The survey has no points within the extent; choose another extent.")
     samplings = {"": _sampling_of(clouds, corner)}
@@ -68,7 +75,7 @@ def samplings_of(
         # All parts, until the points are those that the others work on.
         if any(later in prepares for later in steps[done:]):
             parts = [part.part(at / len(clouds), (at + 1) / len(clouds)) for at in range(len(clouds))]
-            made = [_made(alone, cloud, before, tunables, heard) for cloud, heard in zip(clouds, parts)]
+            made = [_made(alone, cloud, before, tunables, own) for cloud, own in zip(clouds, parts)]
             clouds = [one for one in made if one is not None]
             if step in prepares:
                 samplings[step.name] = _sampling_of(clouds, corner)
@@ -88,6 +95,7 @@ def _sample_boxes(survey: Survey) -> list[np.ndarray]:
     """Return the boxes (2, 2), m, that the sampling is measured on: the whole survey, or squares spread over it."""
     low, high = survey.box
     if survey.expected <= _SAMPLED_WHOLE:
+        # A box lacks its upper edge.
         return [np.array([low, high + 1.0])]
     across = (np.arange(_SAMPLES_ACROSS) + 0.5) / _SAMPLES_ACROSS
     centers = np.array([low + (high - low) * (x, y) for x in across for y in across])
@@ -147,7 +155,7 @@ def _measured(
             tables.setdefault(name, []).append(table)
     sampling.found.clear()
     sampling.samples.clear()
-    measured: dict[str, Any] = {name: float(np.median(all_)) for name, all_ in values.items()}
+    measured: dict[str, Any] = {name: float(np.median(of_parts)) for name, of_parts in values.items()}
     for name, parts in tables.items():
         measured[name] = parts[0][1](np.concatenate([table for table, _ in parts]))
     return [one for one in made if one is not None], measured

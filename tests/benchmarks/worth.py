@@ -57,17 +57,17 @@ CHAIN = PIPELINES["detect_buildings"]
 PACKAGE = "lidar_buildings.algorithms"
 # Modules whose constants describe memory, rounding, files, pages and codes of classes rather than buildings.
 TECHNICAL = (
-    *(
-        "stage.",
-        "cloud.",
-        "report.",
-        "geometry.",
-        "threads",
-        "params",
-        "landcover.recode_classes",
-        "landcover.keep_classes",
-    ),
-    *("neighborhoods.nearest_blocks", "neighborhoods.covariance", "neighborhoods.optimal_size"),
+    "stage.",
+    "cloud.",
+    "report.",
+    "geometry.",
+    "threads",
+    "params",
+    "landcover.recode_classes",
+    "landcover.keep_classes",
+    "neighborhoods.nearest_blocks",
+    "neighborhoods.covariance",
+    "neighborhoods.optimal_size",
     # When Newton's method ends, and the rows of a product: a fifth more or less of each changes no point.
     "buildings.logistic_regression",
     # The last step of the chain: colors and length of a page on buildings that are final.
@@ -75,9 +75,12 @@ TECHNICAL = (
 )
 # Factors by which constants are moved.
 MOVED = (0.8, 1.2)
+# Endings of the names of rules that move a constant so.
 _ENDS = tuple(f" {100 * (factor - 1):+.0f} %" for factor in MOVED)
-# A rule is deleted if that costs less, in the mean of all clouds and on each (%): less than clouds vary when turned.
-LEAST_MEAN, LEAST_ANYWHERE = 0.1, 0.5
+# A rule is deleted if that costs less than this (%) in the mean of all clouds, and less than that on each: less than
+# results vary when clouds are turned.
+LEAST_MEAN = 0.1
+LEAST_ANYWHERE = 0.5
 # Changes (%) that are chance.
 CHANCE = 0.05
 # Steps that decide what is building, and those that are left out unless they are asked for.
@@ -186,6 +189,7 @@ class Rule:
 
 
 def _loaded() -> list[Any]:
+    """Return all modules of the algorithms that have been imported."""
     return [module for name, module in sys.modules.items() if name.startswith(PACKAGE) and module is not None]
 
 
@@ -238,6 +242,7 @@ def constants(
 
 
 def _assigned(node: ast.stmt) -> list[str]:
+    """Return the names that a statement assigns to, none where it gives another name to a constant."""
     if isinstance(getattr(node, "value", None), (ast.Attribute, ast.Tuple)) and not any(
         isinstance(part, (ast.Constant, ast.Call)) for part in ast.walk(node.value)
     ):
@@ -266,13 +271,10 @@ def _with(value: Any, part: str, factor: float) -> Any:
     """Return a value of which one number, see :func:`constants`, is multiplied."""
     if not part:
         moved = value * factor
-        return (
-            moved
-            if isinstance(value, float)
-            else round(moved)
-            if round(moved) != value
-            else value + (factor > 1) * 2 - 1
-        )
+        if isinstance(value, float):
+            return moved
+        # Small counts are moved by one at least.
+        return round(moved) if round(moved) != value else value + (1 if factor > 1 else -1)
     first, _, rest = part.partition(".")
     if dataclasses.is_dataclass(value):
         return dataclasses.replace(value, **{first: _with(getattr(value, first), rest, factor)})
@@ -319,6 +321,7 @@ def _nowhere_of_points(surface: Any, xyz: np.ndarray, *_: Any) -> np.ndarray:
 
 
 def _out(name: str, where: str, value: Any) -> Rule:
+    """Return a rule that is left out by another value of one attribute."""
     return Rule(name, ((where, value),))
 
 
@@ -511,7 +514,7 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON file")
     chosen = parser.parse_args()
     if chosen.count or chosen.list:
-        _ = [print(line) for line in (_counted() if chosen.count else [rule.name for rule in rules()])]
+        print("\n".join(_counted() if chosen.count else [rule.name for rule in rules()]))
     elif chosen.page:
         rows = [row for path in chosen.page for row in json.loads(path.read_text("utf-8"))["rows"]]
         (ROOT / "docs" / "rules.md").write_text(page(rows), encoding="utf-8")
@@ -621,6 +624,7 @@ def _counted() -> list[str]:
 
 
 def _measure(chosen: argparse.Namespace) -> None:
+    """Measure the rules on the clouds that were chosen, print the tables and write that of the rules."""
     names = [rule.name for rule in rules() if chosen.rule is None or any(part in rule.name for part in chosen.rule)]
     wanted = chosen.clouds or ["*"]
     scenes = [scene for scene in SCENES if any(fnmatchcase(str(scene), pattern) for pattern in wanted)]
