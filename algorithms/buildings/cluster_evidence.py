@@ -91,7 +91,7 @@ def with_penetration(
     Returns
     -------
     Decisions
-        The clusters that are buildings, with their confidence.
+        Confidence of each cluster, above 0.5 for buildings, and the reason.
     """
     confidence = by_entropy.confidence
     undefined = by_entropy.reasons == Reason.WITHOUT_ENTROPY

@@ -10,26 +10,36 @@ import numpy as np
 from ..geometry.groups import run_starts
 from ..stage import Monitor
 from .copc_index import ENTRY, INFO
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
+from .header import (
+    COPC_HIERARCHY,
+    COPC_INFO,
+    EVLR,
+    LASZIP,
+    WAVEFORMS,
+    WAVEFORMS_INSIDE,
+    WAVEFORMS_OUTSIDE,
+    WKT_BIT,
+    Header,
+    Vlr,
+)
 from .laspy_library import need_lazrs
 from .points import AT_ONCE
 from .units import has_wkt
 
 # A node with no more points than this holds them all and has no children.
 _LEAF_POINTS = 65_536
-# Levels of the grid within a node: 2^7 = 128 cells along its side, one point of each is shown at the node's level.
+# Levels of the grid within a node: 2^7 = 128 cells along its side. One point of each is shown at the node's level.
 _GRID_LEVELS = 7
 # Bits per axis of a position in the root cube; three of them fill a 64-bit Morton code.
 _BITS = 21
 # Points are sorted within the cubes of the second level, one at a time.
 _TOP_BITS = 6
+# Level of the smallest nodes, whose grid is the finest one.
 _DEEPEST = _BITS - _GRID_LEVELS
-_EVLR_HEAD = 60
 # Seed of the random choice of the points that a level shows.
 _SEED = 0
 # The index of LAStools counts points in the order of the old file.
 _LAX = (b"LAStools", 30)
-_WAVEFORM_BITS = 2 | 4
 
 
 @dataclass(frozen=True)
@@ -69,6 +79,7 @@ def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree
 
 
 def _cube(points: np.ndarray, header: Header) -> tuple[np.ndarray, float]:
+    """Return the least corner (3,) and the side of the root cube, in coordinates of the file."""
     ends = np.array([[points[axis].min(), points[axis].max()] for axis in "XYZ"], float).T
     low, high = np.sort(ends * header.scale + header.offset, axis=0)
     # One step wider, so that the largest coordinate lies inside the last cell.
@@ -97,6 +108,7 @@ def _sorted(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
     return order
 
 
+# Steps in which the bits of a number are spread: how far a copy is shifted, and the bits that stay.
 _SPREAD = (
     (32, 0x1F00000000FFFF),
     (16, 0x1F0000FF0000FF),
@@ -156,7 +168,7 @@ def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarra
 def copc_header(header: Header) -> Header:
     """Return ``header`` in the form of COPC: LAS 1.4, the info record first, no waveforms, no LAStools index."""
     kept = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS, _LAX)
-    encoding = kept.encoding & ~_WAVEFORM_BITS | (WKT_BIT if has_wkt(kept) else 0)
+    encoding = kept.encoding & ~(WAVEFORMS_INSIDE | WAVEFORMS_OUTSIDE) | (WKT_BIT if has_wkt(kept) else 0)
     info = Vlr(*COPC_INFO, bytes(INFO.size), description=b"COPC info")
     return replace(kept, minor=4, user_bytes=b"", gap=b"", waveforms_at=0, encoding=encoding, vlrs=[info, *kept.vlrs])
 
@@ -231,7 +243,7 @@ def _describe(stream: BinaryIO, header: Header, octree: Octree, sizes: np.ndarra
     entries["offset"] = header.points_at + 8 + np.cumsum(sizes) - sizes
     hierarchy = Vlr(*COPC_HIERARCHY, entries.tobytes(), description=b"EPT hierarchy")
     header.evlrs = [hierarchy, *header.evlrs]
-    at = stream.seek(0, 2) + _EVLR_HEAD
+    at = stream.seek(0, 2) + EVLR.size
     center = octree.low + octree.side / 2
     info = INFO.pack(*center, octree.side / 2, octree.spacing, at, len(hierarchy), *times, *(0,) * 11)
     header.vlrs = [replace(header.vlrs[0], data=info), *header.vlrs[1:]]

@@ -17,9 +17,11 @@ from .outputs import COPC, LAS, same_file
 
 # What the header of a view says of the program that wrote it.
 VIEW_SOFTWARE = "LiDAR Buildings view"
-# Positions in the header of LAS 1.4; the project id (GUID) of a view holds the digest.
+# Position and size (bytes) of the project id (GUID) in the header of LAS 1.4, which holds the digest of a view.
 _DIGEST_AT, _DIGEST_SIZE = 8, 16
+# Positions of the writing program, of where points and EVLRs begin, and the size of the header.
 _SOFTWARE_AT, _POINTS_AT, _EVLRS_AT, _HEADER_SIZE = 58, 96, 235, 375
+# Bytes that are digested at once.
 _BLOCK = 1 << 20
 
 

@@ -26,7 +26,7 @@ _SYSTEM, _DATE = slice(26, 58), slice(90, 94)
 _OLD_RETURNS, _RETURNS = slice(111, 131), slice(255, 375)
 # Reserved bytes, user id, record id, length and description before the payload of a VLR and of an EVLR.
 _VLR = struct.Struct("<2s16sHH32s")
-_EVLR = struct.Struct("<2s16sHQ32s")
+EVLR = struct.Struct("<2s16sHQ32s")
 # Size of the header of each minor version.
 SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
 # The first minor version of LAS that has a point format; laspy supports versions from 1.1 on.
@@ -34,7 +34,7 @@ _FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 
 # Bits of the encoding: the CRS is a WKT; waveforms are in the file, in a file of their own.
 WKT_BIT = 16
-_WAVEFORMS_INSIDE, _WAVEFORMS_OUTSIDE = 2, 4
+WAVEFORMS_INSIDE, WAVEFORMS_OUTSIDE = 2, 4
 # Bit of the point format of compressed records.
 _COMPRESSED = 128
 # Most points that 32 bits count, and most bytes of the payload of a VLR.
@@ -82,7 +82,7 @@ class Vlr:
 
     def write(self, stream: BinaryIO, extended: bool) -> None:
         """Write the record as an EVLR (``extended``) or VLR."""
-        head = _EVLR if extended else _VLR
+        head = EVLR if extended else _VLR
         stream.write(head.pack(self.reserved, self.user_id, self.record_id, len(self), self.description))
         if self.path is None or self.data is not None:
             stream.write(self.data or b"")
@@ -121,7 +121,7 @@ class Header:
     @property
     def has_waveforms_outside(self) -> bool:
         """Whether the points refer to waveforms in a file of their own (.wdp)."""
-        return self.layout.point_format in WITH_WAVEFORMS and bool(self.encoding & _WAVEFORMS_OUTSIDE)
+        return self.layout.point_format in WITH_WAVEFORMS and bool(self.encoding & WAVEFORMS_OUTSIDE)
 
     def find(self, key: tuple[bytes, int]) -> Optional[Vlr]:
         """Return the first VLR or EVLR of that user and record id, or None."""
@@ -199,7 +199,7 @@ class Header:
         las.start_of_first_evlr = stream.seek(0, 2) if self.evlrs else 0
         las.number_of_evlrs = len(self.evlrs)
         for record in self.evlrs:
-            if record.key == WAVEFORMS and self.encoding & _WAVEFORMS_INSIDE:
+            if record.key == WAVEFORMS and self.encoding & WAVEFORMS_INSIDE:
                 las.start_of_waveform_data_packet_record = stream.tell()
             record.write(stream, extended=True)
         bounds = np.sort([bound * self.scale + self.offset for bound in (las.mins, las.maxs)], axis=0)
@@ -307,17 +307,17 @@ class _Reader:
         header.vlrs = [self._record(_VLR, self.points_at) for _ in range(self.n_vlrs)]
         header.gap = self.stream.read(self.points_at - self.stream.tell())
         n_evlrs, start = las.number_of_evlrs, las.start_of_first_evlr
-        if n_evlrs * _EVLR.size > max(self.total - start, 0):
+        if n_evlrs * EVLR.size > max(self.total - start, 0):
             raise truncated(self.path, f"{n_evlrs} EVLRs should start at byte {start} of {self.total}")
         # Without EVLRs, some writers store an invalid position.
         if n_evlrs:
             self.stream.seek(start)
-            header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]
-        if header.waveforms_at and header.encoding & _WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
+            header.evlrs = [self._record(EVLR, self.total) for _ in range(n_evlrs)]
+        if header.waveforms_at and header.encoding & WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
             if header.waveforms_at > self.total:
                 raise truncated(self.path, f"waveforms should start at byte {header.waveforms_at} of {self.total}")
             self.stream.seek(header.waveforms_at)
-            record = self._record(_EVLR, self.total)
+            record = self._record(EVLR, self.total)
             if record.key == WAVEFORMS:
                 header.evlrs.append(record)
             else:

@@ -375,6 +375,7 @@ def os_errors_as_messages(path: Path) -> Iterator[None]:
 
 
 def _sentence(path: Path, error: OSError) -> str:
+    """Return why a file can't be written, and what to do."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return f"The disk is full: {path} was not written; free some space or choose another folder."
     if isinstance(error, PermissionError) or error.errno == errno.EROFS:

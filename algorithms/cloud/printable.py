@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-_LONGEST = 60
 
-
-def shown(text: str, longest: int = _LONGEST) -> str:
+def shown(text: str, longest: int = 60) -> str:
     """Return a text as a sentence may show it: printable, in one line, at most ``longest`` characters.
 
     In damaged files texts hold control characters and halves of characters.

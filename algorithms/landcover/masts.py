@@ -19,14 +19,11 @@ class _Rules:
     #: Distance from where spans end within which their mast is looked for, as a share of its height: wires hang from
     #: arms, and end some meters before them where points are few
     arms: float = 0.2
-    #: radius, spread: Radius (m) of poles with their fittings, and of towers as a share of their height
-    radius: float = 0.6
-    spread: float = 0.08
+    radius: float = 0.6  #: Radius (m) of poles with their fittings
+    spread: float = 0.08  #: Radius of towers, as a share of their height
     above: float = 2.0  #: Height (m) over the highest wire up to which a mast reaches: insulators and the tip
-    #: part, filled: Height (m) of the parts of a mast, and least share of those of its upper and of its lower half that
-    #: hold points
-    part: float = 1.5
-    filled: float = 0.5
+    part: float = 1.5  #: Height (m) of the parts in which points are counted
+    filled: float = 0.5  #: Least share of the parts with points, of those of the upper and of the lower half
     #: Shares of the height between which a mast has no arms and a tree has its crown: around it there are fewer points
     #: than in it
     trunk: tuple[float, float] = (0.25, 0.65)

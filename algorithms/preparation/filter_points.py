@@ -135,23 +135,26 @@ def filter_points(
     monitor.progress(0.3)
     if height_above_ground is None and (min_height is not None or max_height is not None):
         raise ValueError("Limits of the height need HeightAboveGround; run 'Height above ground' first or set none.")
-    kept &= _within(height_above_ground, min_height, max_height, ("min_height", "max_height"), monitor)
+    if height_above_ground is not None:
+        kept &= _within(height_above_ground, min_height, max_height, ("min_height", "max_height"), monitor)
     monitor.progress(0.6)
     if values is None and (low is not None or high is not None):
         raise ValueError(
             "Minimum and maximum value are limits of a dimension; name it (Intensity, NormalZ) or set none."
         )
-    kept &= _within(values, low, high, ("low", "high"), monitor)
+    if values is not None:
+        kept &= _within(values, low, high, ("low", "high"), monitor)
     monitor.progress(1.0)
     return np.flatnonzero(~kept if invert else kept)
 
 
 def _within(
-    values: Optional[np.ndarray], low: Optional[float], high: Optional[float], names: tuple[str, str], monitor: Monitor
+    values: np.ndarray, low: Optional[float], high: Optional[float], names: tuple[str, str], monitor: Monitor
 ) -> np.ndarray:
-    """Return which values (n,) lie between two limits, all without limits; log the range that they have."""
-    if values is None:
-        return np.array(True)
+    """Return which values (n,) lie between two limits, all without limits; log the range that they have.
+
+    ``names`` are those of the limits. One that is not set is logged as the least or the greatest value.
+    """
     defined = values[np.isfinite(values)]
     for name, limit, found in zip(names, (low, high), (defined.min, defined.max)):
         if limit is None and len(defined):

@@ -28,9 +28,12 @@ _MEASURES = {
     "seen_through": ("share seen through", ""),
 }
 
-# A cloud without second returns is one closed surface when no more than this share of it is seen through. It must be so
-# dense (points/m²) that ten points share a cell in which that is measured. Between the two kinds of clouds, see there.
-_MOST_SEEN_THROUGH, _LEAST_DENSITY = 0.02, 8.0
+# Largest share of a closed surface that is seen through: between those of matched images and of laser clouds without
+# second returns, see :func:`.closed_surface.seen_through_share`.
+_MOST_SEEN_THROUGH = 0.02
+
+# Least density (points/m²) at which that is measured: ten points share a cell then.
+_LEAST_DENSITY = 8.0
 
 # Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
 _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
@@ -216,6 +219,7 @@ class CloudSampling:
 
 
 def _no_points() -> np.ndarray:
+    """Refuse to give the points of a sampling that has numbers alone."""
     raise RuntimeError("A sampling without points has all its measures.")
 
 

@@ -37,7 +37,7 @@ _VoxelSize = Annotated[
         unit="m",
         low=0.001,
         high=1000,
-        automatic="2 times the point spacing on surfaces.",
+        automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces.",
     ),
 ]
 
@@ -176,8 +176,6 @@ def segment_voxels(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from lidar_buildings.algorithms.segmentation.segment_voxels import segment_voxels
     >>> xyz = np.array([[0.0, 0, 0], [1.2, 1.1, 0], [5.0, 0, 0]])
     >>> segment_voxels(xyz, np.ones(3, np.uint8), voxel_size=1.0)[0].tolist()
     [1, 1, 2]
@@ -217,18 +215,20 @@ def segment_voxels(
     of_component = np.zeros(len(component) + 1, np.int32)
     of_component[of_point] = segment_id[used]
 
-    layer_count, layer_value = np.zeros(len(cells), np.int64), np.zeros(len(cells))
-    layer_count[where[where >= 0]] = count[where >= 0]
-    position = locate_voxels(cells, filled)
-    layer_value[position[position >= 0]] = value[position >= 0]
-    distance = distance_to_background(cells) * voxel_size
+    columns = {
+        "segment_id": of_component[component],
+        "count": _in_voxels(count, where, len(cells)),
+        "filtered": _in_voxels(value, locate_voxels(cells, filled), len(cells)),
+        "distance": distance_to_background(cells) * voxel_size,
+    }
     shown = skeleton(cells, monitor.part(0.8, 1)) if thin else np.ones(len(cells), bool)
     centers = (cells[shown] + 0.5) * voxel_size + low
-    columns = {
-        "segment_id": of_component[component[shown]],
-        "count": layer_count[shown],
-        "filtered": layer_value[shown],
-        "distance": distance[shown],
-    }
     monitor.progress(1.0)
-    return segment_id, LayerFeatures(list(centers), columns)
+    return segment_id, LayerFeatures(list(centers), {name: values[shown] for name, values in columns.items()})
+
+
+def _in_voxels(values: np.ndarray, where: np.ndarray, n_voxels: int) -> np.ndarray:
+    """Return the values (n_voxels,) of voxels, of those at the positions ``where`` (k,), -1 for none; else 0."""
+    found = np.zeros(n_voxels, values.dtype)
+    found[where[where >= 0]] = values[where >= 0]
+    return found

@@ -44,15 +44,14 @@ def without_nested(found: list[Found]) -> list[Found]:
     order = sorted(range(len(found)), key=lambda n: (-len(found[n].points), int(found[n].points[0])))
     kept: list[int] = []
     for number in order:
-        middle = found[number].ends.mean(axis=0)
-        if not any(_is_within(found[number], middle, found[other]) for other in kept):
+        if not any(_is_within(found[number], found[other]) for other in kept):
             kept.append(number)
     return [found[number] for number in sorted(kept)]
 
 
-def _is_within(one: Found, middle: np.ndarray, other: Found) -> bool:
-    """Return whether a cylinder with a middle (3,) is nearly the same as another one."""
-    offset = middle - other.cylinder.center
+def _is_within(one: Found, other: Found) -> bool:
+    """Return whether the middle of a cylinder lies in another one of about the same radius and direction."""
+    offset = one.ends.mean(axis=0) - other.cylinder.center
     along = float(offset @ other.cylinder.axis)
     if not other.low <= along <= other.high:
         return False

@@ -19,6 +19,9 @@ from .surface_normals import normal_points, normals_of
 # Segments are moved apart by this many window sides, so that no window holds points of two.
 _SIDES_APART = 3.0
 
+# Distance from a surface within which points lie on it, in standard deviations of the noise.
+_TOLERANCE = 3.0
+
 
 class Shape(IntEnum):
     """Values of the dimension ``shape``."""
@@ -77,7 +80,7 @@ def searched_points(
     side: float,
     corner: Optional[np.ndarray] = None,
 ) -> SearchedPoints:
-    """Return the points that are neither ground, water nor noise, and belong to the searched segments.
+    """Return the points that may be of objects by their class, and belong to the searched segments.
 
     Parameters
     ----------
@@ -246,7 +249,7 @@ def search_shapes(
     sampling = sampling or CloudSampling.of(xyz, classification)
     spacing = 1 / float(np.sqrt(sampling.surface_density))
     noise = point_noise(sampling)
-    tolerance = 3 * noise if tunables.tolerance is None else tunables.tolerance
+    tolerance = _TOLERANCE * noise if tunables.tolerance is None else tunables.tolerance
     min_radius, max_radius = check_radii(tunables.min_radius, tunables.max_radius, noise, spacing, xyz)
     n_neighbors = normal_points(sampling) if tunables.n_neighbors is None else tunables.n_neighbors
     monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
@@ -254,10 +257,9 @@ def search_shapes(
     points = searched_points(xyz, classification, segment_id, shape, tunables.search_in, WINDOW * max_radius)
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
-        # A tolerance set by the user implies a noise of a third of it.
-        around = Surroundings(
-            points.xyz, normals[points.rows], max(noise, tolerance / 3), tolerance, spacing, points.shift
-        )
+        # A tolerance set by the user implies a noise.
+        noise = max(noise, tolerance / _TOLERANCE)
+        around = Surroundings(points.xyz, normals[points.rows], noise, tolerance, spacing, points.shift)
         found = search(around, min_radius, max_radius, monitor.part(0.2, 1))
     for number, one in enumerate(found, start=1):
         label[one.points] = number

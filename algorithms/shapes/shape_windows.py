@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.boxes import Boxes
 
-# Side of a window, in least radii of its level.
+# Side of a window, in least radii of its level: the diameter of the level's largest shape.
 WINDOW = 4.0
 
 # Spacing of the points of a level, in its least radii.

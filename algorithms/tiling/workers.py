@@ -85,6 +85,7 @@ class Workers:
 
     @contextmanager
     def _cluster(self) -> Iterator[Executor]:
+        """Give an executor of the cluster of the scheduler."""
         try:
             distributed = import_module("distributed")
         except ImportError:

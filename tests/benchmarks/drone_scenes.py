@@ -25,11 +25,17 @@ from lidar_buildings.algorithms.stage import Monitor
 # A parapet on a flat roof: width and height (m).
 _PARAPET = (0.3, 0.5)
 
-# Blocks of the town: length, width and the width of the streets between them (m).
-_BLOCK, _STREET = (46.0, 24.0), 8.0
+# Length and width of the blocks of the town (m).
+_BLOCK = (46.0, 24.0)
+
+# Width of the streets between them (m).
+_STREET = 8.0
 
 # Cells (m) of the surface that matching smooths.
 _CELL = 0.1
+
+# Points lower than the surface by more than this (m) are of sides.
+_BELOW = 0.4
 
 
 @dataclass(frozen=True)
@@ -180,9 +186,9 @@ def matched(scene: Scene, density: float, matching: Matching, holes: dict[int, f
     xyz, seen = photograph(scene, density=density, oblique=28.0, seed=seed)
     number = seen.object_id
     top, cell = _surface(xyz)
-    is_side = (seen.classification == PointClass.BUILDING) & (xyz[:, 2] < top[cell] - 0.4)
+    is_side = (seen.classification == PointClass.BUILDING) & (xyz[:, 2] < top[cell] - _BELOW)
     smooth = ndimage.gaussian_filter(top, matching.rounding / _CELL)
-    z = np.where(is_side | (xyz[:, 2] < top[cell] - 0.4), xyz[:, 2], smooth[cell])
+    z = np.where(is_side | (xyz[:, 2] < top[cell] - _BELOW), xyz[:, 2], smooth[cell])
     across = matching.smear * _waves(xyz[:, :2], rng)[:, None] * is_side[:, None]
     made = np.column_stack([xyz[:, :2] + across, z + matching.waves * _waves(xyz[:, :2], rng)])
     kept = ~(is_side & _without_walls(scene, xyz, number, matching.missing, rng))
@@ -210,7 +216,7 @@ def _surface(xyz: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]
 
 
 def _waves(xy: np.ndarray, rng: np.random.Generator, shortest: float = 2.0, longest: float = 8.0) -> np.ndarray:
-    """Return a smooth random field (n,) of unit deviation at places (m)."""
+    """Return a smooth random field (n,) of unit deviation at positions (n, 2), m."""
     count = 24
     length, heading, phase = rng.uniform((shortest, 0, 0), (longest, 2 * np.pi, 2 * np.pi), (count, 3)).T
     total = np.zeros(len(xy))
