@@ -8,13 +8,10 @@ from typing import Callable, Optional
 import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 
-from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.cloud import Cloud, origin_before
 from ..algorithms.cloud.units import NO_CRS
 from ..algorithms.stage import InputLayer, Monitor
 from .crs import code_in_space, crs_of, crs_of_layer, meters_per_unit
-
-# Local meters begin at a multiple of this (m), as those of clouds do.
-_ORIGIN_STEP = 1000.0
 
 
 @dataclass(frozen=True)
@@ -55,7 +52,7 @@ def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monito
     units = np.array([plane, plane, height])
     extent = layer.sourceExtent()
     corner = (0.0, 0.0) if extent.isNull() else (extent.xMinimum(), extent.yMinimum())
-    origin = np.append(np.floor(np.array(corner) * plane / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
+    origin = origin_before(np.array(corner) * plane)
 
     def to_map(local: np.ndarray) -> np.ndarray:
         axes = np.shape(local)[-1]

@@ -6,9 +6,9 @@ Whoever controls a scheduler runs code as the user. An address may come with a m
 from __future__ import annotations
 
 from qgis.core import QgsApplication
-from qgis.PyQt.QtCore import QThread
 from qgis.PyQt.QtWidgets import QMessageBox
 
+from .crs import is_main_thread
 from .settings import GROUP, SCHEDULERS
 
 
@@ -38,8 +38,7 @@ def check_scheduler(address: str) -> None:
 
 def _has_windows() -> bool:
     """Whether the user can be asked: in the desktop, from the thread of its windows."""
-    application = QgsApplication.instance()
-    return QgsApplication.platform() == "desktop" and QThread.currentThread() == application.thread()
+    return QgsApplication.platform() == "desktop" and is_main_thread()
 
 
 def _is_wanted(address: str) -> bool:

@@ -38,7 +38,13 @@ SOURCE_TYPES = {
 
 
 def check_layer(path: Path) -> None:
-    """Refuse a file name without an extension of a format of layers; QGIS would write another file."""
+    """Refuse a file name without an extension of a format of layers; QGIS would write another file.
+
+    Raises
+    ------
+    ValueError
+        If it has none.
+    """
     extension = path.suffix.lower().lstrip(".")
     if extension not in QgsVectorFileWriter.supportedFormatExtensions():
         raise ValueError(f"{path.name} can't be written as a layer: give it the extension .gpkg, .shp or .geojson.")

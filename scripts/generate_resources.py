@@ -40,7 +40,8 @@ def help_pages() -> dict[str, str]:
     return pages
 
 
-def _replace(folder: Path, suffix: str, wanted: set) -> None:
+def _remove_others(folder: Path, suffix: str, wanted: set[str]) -> None:
+    """Remove the files of a folder with a suffix that are not wanted; make the folder where it is missing."""
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob(f"*{suffix}"):
         if old.name not in wanted:
@@ -51,14 +52,14 @@ def main() -> None:
     """Write all files and remove those of algorithms that are no more."""
     write_texts()
     pages = help_pages()
-    _replace(HELP, ".html", set(pages))
+    _remove_others(HELP, ".html", set(pages))
     for name, text in pages.items():
         (HELP / name).write_text(text, encoding="utf-8")
     application = QgsApplication([], False)
     QgsApplication.initQgis()
     provider = Provider(with_pipelines=False)
     QgsApplication.processingRegistry().addProvider(provider)
-    _replace(MODELS, ".model3", {models.model_file(p).name for p in PIPELINES.values()})
+    _remove_others(MODELS, ".model3", {models.model_file(p).name for p in PIPELINES.values()})
     for pipeline in PIPELINES.values():
         models.build_model(pipeline).toFile(str(models.model_file(pipeline)))
     QgsApplication.exitQgis()

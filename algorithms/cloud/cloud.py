@@ -63,7 +63,7 @@ class Cloud:
         self._shared: Optional[tuple[ReferenceType[np.ndarray], np.ndarray, np.ndarray]] = None
         low = np.array([points[axis].min() for axis in "XY"]) * (header.scale[:2] * units.horizontal)
         low += header.offset[:2] * units.horizontal
-        self.origin = np.append(np.floor(low / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
+        self.origin = origin_before(low)
 
     def __len__(self) -> int:
         return len(self.points)
@@ -268,6 +268,11 @@ class Cloud:
         """Return what makes the output's records."""
         convert = OF_COPC.__getitem__ if for_copc else int
         return PointRecords(self.points, self.header.layout, self._changes, self.units, convert)
+
+
+def origin_before(low: np.ndarray) -> np.ndarray:
+    """Return the origin (3,), m, of what begins at an easting and northing ``low`` (2,), m."""
+    return np.append(np.floor(low / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
 
 
 def _dimension(name: str) -> Dimension:

@@ -75,6 +75,7 @@ class Boxes:
         self._fill(order, xyz.take(order, axis=0), key[order])
 
     def _fill(self, order: np.ndarray, xyz: np.ndarray, key: np.ndarray) -> None:
+        """Take points (n,), their coordinates (n, 3) and the numbers of their boxes (n,), all in that order."""
         self.order, self.xyz = order, xyz
         self.start = run_starts(key)
         self.keys, self.size = key[self.start], np.diff(self.start, append=len(key))
@@ -94,6 +95,7 @@ class Boxes:
         return np.repeat(np.arange(len(self)), self.size)
 
     def _key(self, box: np.ndarray) -> np.ndarray:
+        """Return the number (...) of a box (..., 3), or the difference of the numbers of two boxes by their offset."""
         return (box[..., 0] * self.shape[1] + box[..., 1]) * self.shape[2] + box[..., 2]
 
     def beside(self, other: Boxes, offset: Offset) -> tuple[np.ndarray, np.ndarray]:

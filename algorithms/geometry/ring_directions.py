@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Optional, Union
 
 import numpy as np
 
@@ -27,7 +27,10 @@ _STRAIGHT = 0.25
 _STEP = 0.5
 
 # Steps of the directions from 0 to 90°.
-N_STEPS = 180
+N_STEPS = round(90.0 / _STEP)
+
+# The directions (°) of these steps.
+_TRIAL = _STEP * np.arange(N_STEPS)
 
 # No direction dominates where the lower quartile of the weights is more than this share of their mean: 0.76 and more
 # in simulated towers, 0.72 and less in 30 real buildings.
@@ -124,9 +127,8 @@ def main_directions(weights: np.ndarray, own: np.ndarray, n_samples: int) -> np.
     if n_samples >= _ROUND_SAMPLES and np.percentile(own, 25) > _EVEN * own.mean():
         return np.zeros(0)
     angles = [_peak(weights, int(np.argmax(weights)))]
-    trial = _STEP * np.arange(N_STEPS)
     is_top = (weights >= np.roll(weights, 1)) & (weights > np.roll(weights, -1))
-    other = np.where(is_top & (_off(trial, angles[0]) >= _APART), weights, 0.0)
+    other = np.where(is_top & (_off(_TRIAL, angles[0]) >= _APART), weights, 0.0)
     if other.max() >= _LEAST_SHARE * weights.max() > 0:
         angles.append(_peak(weights, int(np.argmax(other))))
     return np.array(angles)
@@ -153,8 +155,8 @@ def _peak(weights: np.ndarray, at: int) -> float:
     return float((at + shift) * _STEP % 90.0)
 
 
-def _off(angle: np.ndarray, other: float) -> np.ndarray:
-    """Return the differences (°) between directions modulo 90°."""
+def _off(angle: np.ndarray, other: Union[float, np.ndarray]) -> np.ndarray:
+    """Return the differences (°), 0 to 45, between directions modulo 90°."""
     return np.abs((angle - other + 45.0) % 90.0 - 45.0)
 
 
@@ -168,6 +170,4 @@ def along_two_directions(length: np.ndarray, angle: np.ndarray) -> float:
     angle : ndarray of shape (n,)
         Their directions, °.
     """
-    trial = _STEP * np.arange(N_STEPS)
-    off = np.abs((angle - trial[:, None] + 45.0) % 90.0 - 45.0)
-    return float(((off <= _ALONG) * length).sum(axis=1).max())
+    return float(((_off(angle, _TRIAL[:, None]) <= _ALONG) * length).sum(axis=1).max())

@@ -16,7 +16,7 @@ from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..stage import Monitor, Param, stage
-from .height_histograms import Histogram, pooled_histogram, with_borrowed_ranges
+from .height_histograms import AUTOMATIC_BIN, Histogram, automatic_bin_height, pooled_histogram, with_borrowed_ranges
 from .points_under_ground import UNDER_GROUND, under_ground
 
 
@@ -64,7 +64,7 @@ def classify_noise_histogram(
             unit="m",
             low=0.01,
             high=1000,
-            automatic="twice the point spacing, at least 1 m.",
+            automatic=AUTOMATIC_BIN,
             advanced=True,
         ),
     ] = None,
@@ -173,8 +173,7 @@ def _automatic(
         cell_size = float(np.sqrt(HISTOGRAM.points_per_cell)) * spacing
         monitor.resolved(cell_size=cell_size)
     if bin_height is None:
-        # On a thin cloud a roof has few points; higher bins keep them together.
-        bin_height = max(1.0, 2 * spacing)
+        bin_height = automatic_bin_height(spacing)
         monitor.resolved(bin_height=bin_height)
     return cell_size, bin_height
 

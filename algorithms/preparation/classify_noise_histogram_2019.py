@@ -11,16 +11,17 @@ from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..params import MinFrequency
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
-from .height_histograms import Histogram, own_histogram, pooled_histogram, with_borrowed_ranges
+from .height_histograms import (
+    AUTOMATIC_BIN,
+    Histogram,
+    automatic_bin_height,
+    own_histogram,
+    pooled_histogram,
+    with_borrowed_ranges,
+)
 
 # Points of a cell on average: enough that the highest and lowest meter of a scene hold some, whatever the density.
 _POINTS_PER_CELL = 4000
-
-# Least height of a bin (m): a third of a storey, in which a roof has many points.
-_MIN_BIN_HEIGHT = 1.0
-
-# Least height of a bin in point spacings.
-_BIN_SPACINGS = 2.0
 
 # Width (m) of the surroundings that decide on a point: its cell, at 1 point/m². It is narrower in denser clouds.
 _REACH = 64.0
@@ -58,7 +59,7 @@ def classify_noise_histogram_2019(
             unit="m",
             low=0.01,
             high=1000,
-            automatic=f"{_BIN_SPACINGS:g} times the point spacing, at least {_MIN_BIN_HEIGHT:g} m.",
+            automatic=AUTOMATIC_BIN,
             advanced=True,
         ),
     ] = None,
@@ -117,7 +118,7 @@ def classify_noise_histogram_2019(
     points = xyz[used]
     spacing = sampling.spacing
     cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing if cell_size is None else cell_size
-    bin_height = max(_MIN_BIN_HEIGHT, _BIN_SPACINGS * spacing) if bin_height is None else bin_height
+    bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
     monitor.resolved(cell_size=cell_size, bin_height=bin_height)
 
     grid = fixed_grid_over(points, cell_size)

@@ -9,6 +9,17 @@ import numpy as np
 from ..geometry.grid import Grid
 from ..packages import spatial
 
+# Automatic height of the bins, for the help.
+AUTOMATIC_BIN = "twice the point spacing, at least 1 m."
+
+
+def automatic_bin_height(spacing: float) -> float:
+    """Return the height of bins (m) on a cloud of a point ``spacing`` (m).
+
+    In a third of a storey a roof has many points. On a thin cloud it has few, which higher bins keep together.
+    """
+    return max(1.0, 2 * spacing)
+
 
 @dataclass(frozen=True)
 class Histogram:

@@ -47,6 +47,7 @@ def merge_best_pairs(
     from which the most similar pair of all is taken each time. This holds if no merged plane is more similar to a third
     one than both of its parts were. Of equal costs the pair with the lowest numbers is first.
     """
+    # The plane that each given plane has become, and the first one of the given planes in each.
     group, first = np.arange(len(planes)), np.arange(len(planes))
     low, high = np.minimum(one, other), np.maximum(one, other)
     low, high = np.divmod(np.unique(low[low != high].astype(np.int64) * len(planes) + high[low != high]), len(planes))
@@ -73,8 +74,11 @@ def merge_best_pairs(
         monitor.progress(1 - len(planes) / n_first)
 
 
-def _mutually_best(low, high, price, first, n: int) -> np.ndarray:
-    """Return the positions of the pairs that are the best of both planes."""
+def _mutually_best(low: np.ndarray, high: np.ndarray, price: np.ndarray, first: np.ndarray, n: int) -> np.ndarray:
+    """Return the positions of the pairs (k,) that are the best of both of their planes, of all ``n``.
+
+    Of equal prices (k,) the pair with the lowest numbers ``first`` (n,) counts.
+    """
     order = np.lexsort((np.maximum(first[low], first[high]), np.minimum(first[low], first[high]), price))
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))

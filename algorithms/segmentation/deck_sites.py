@@ -64,6 +64,7 @@ def _lowest(cell: np.ndarray, height: np.ndarray, shape: tuple[int, int]) -> np.
 
 
 def _count(cell: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return the number of points in each cell."""
     return np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape)
 
 
@@ -102,6 +103,7 @@ def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks
         return np.column_stack([cells * decks.cell, surface[tuple(cells.T)]])
 
     cells = points(raised)
+    # Level cells that touch at a side or a corner are of one part.
     part = connect(cells, 1.5 * decks.cell, LASER.foot, Monitor())
     # Heights are stretched, so that the largest step of a road counts as much as the reach in plan.
     stretch = np.array([1.0, 1.0, decks.reach / LASER.foot])
@@ -114,6 +116,7 @@ def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks
     along = x * np.cos(angle) + y * np.sin(angle)
     half = np.zeros(len(size))
     np.maximum.at(half, part, np.abs(along))
+    # Ends are the outer thirds of a part.
     far = np.abs(along) >= half[part] / 3
     ends = (np.bincount(part, touches & far & (way > 0)) > 0 for way in (along, -along))
     return (np.logical_and(*ends) & (size * decks.cell**2 >= decks.min_area))[part]

@@ -55,6 +55,7 @@ class PlaneDirections:
         return len(self.normal)
 
     def _cube(self, number: np.ndarray) -> np.ndarray:
+        """Return the middles (k, 3) of bins (k,) on the faces of a cube from -1 to 1."""
         face, cell = np.divmod(number, self.per_side**2)
         slopes = (np.column_stack(np.divmod(cell, self.per_side)) + 0.5) * 2 / self.per_side - 1
         cube = np.empty((len(number), 3))
@@ -213,6 +214,7 @@ class HoughPlanes:
         return normal[np.argmax((np.abs(normal @ normal.T) >= self.cosine) @ count)]
 
     def _is_plane(self, found: int, left: int) -> bool:
+        """Return whether ``found`` of the ``left`` points lie on a plane by more than chance."""
         return found >= _LEAST_POINTS and bool(more_than_chance(found, left, self.by_chance, self.trials))
 
     def _refined(self, xyz: np.ndarray, normal: np.ndarray, distance: float) -> np.ndarray:

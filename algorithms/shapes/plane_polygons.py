@@ -57,7 +57,7 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, first: int, density: floa
             normal, center = planes.normal[number], planes.center[number]
             rings = _outline(xyz[part], center, normal, _CELL_SPACINGS / np.sqrt(density))
             area = sum(signed_area(ring) for ring in rings)
-            east, north, _ = plane_axes(normal)
+            east, north = plane_axes(normal)
             geometries.append([center + ring[:, :1] * east + ring[:, 1:] * north for ring in rings])
             slope = float(np.degrees(np.arccos(np.clip(normal[2], 0, 1))))
             aspect = float(np.degrees(np.arctan2(normal[0], normal[1])) % 360) if slope > _LEVEL else float("nan")
@@ -68,17 +68,17 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, first: int, density: floa
     return LayerFeatures(geometries, columns)
 
 
-def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return two unit vectors on the plane, the second up the slope, and the normal: a right-handed frame."""
+def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return two unit vectors (3,) on a plane, the second up the slope: with the unit normal a right-handed frame."""
     level = np.array([-normal[1], normal[0], 0.0])
     length = float(np.linalg.norm(level))
     first = level / length if length > 1e-9 else np.array([1.0, 0.0, 0.0])
-    return first, np.cross(normal, first), normal
+    return first, np.cross(normal, first)
 
 
 def _outline(xyz: np.ndarray, center: np.ndarray, normal: np.ndarray, cell: float) -> list:
     """Return the rings (m, 2) on the plane of the largest group of cells that hold points."""
-    first, second, _ = plane_axes(normal)
+    first, second = plane_axes(normal)
     positions = np.column_stack([(xyz - center) @ first, (xyz - center) @ second])
     grid = grid_over(positions, cell)
     cells, count = np.unique(grid.number(positions), return_counts=True)

@@ -10,7 +10,7 @@ from typing import Optional, Union
 
 import numpy as np
 
-from ..cloud.cloud import Cloud
+from ..cloud.cloud import Cloud, origin_before
 from ..cloud.files import files_of, header_with_crs, readable
 from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
 from ..cloud.outputs import check_not_read, kind_of
@@ -18,9 +18,6 @@ from ..cloud.points import check_points, chunks_near, is_within, open_headers, r
 from ..cloud.units import Resolver, Units, units_of, wkt_of
 from ..cloud.vpc import check_tiles, fill_merged, merged_header
 from ..stage import Monitor
-
-# Local meters begin at a multiple of this (m), as those of a single cloud do.
-_ORIGIN_STEP = 1000.0
 
 # Dimensions by which two records are recognized as the same measurement.
 _KEYS = ("gps_time", "return_number", "number_of_returns", "point_source_id", "intensity")
@@ -256,8 +253,7 @@ def open_survey(
     if extent is not None:
         sources = _within_extent(sources, extent * units.horizontal)
     survey = Survey(sources, header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), units, wkt_of(named), extent=extent)
-    low = np.floor(survey.box[0] / _ORIGIN_STEP) * _ORIGIN_STEP
-    return replace(survey, origin=np.append(low, 0.0))
+    return replace(survey, origin=origin_before(survey.box[0]))
 
 
 def _within_extent(sources: tuple[Source, ...], extent: np.ndarray) -> tuple[Source, ...]:
@@ -307,6 +303,7 @@ def crs_of_survey(files: Iterable[Path]) -> str:
 
 
 def _box(header: Header, units: Units) -> np.ndarray:
+    """Return the least and greatest easting and northing (2, 2), m, of the points of a file by its header."""
     box = np.array([header.low[:2], header.high[:2]]) * units.horizontal
     if not np.isfinite(box).all():
         raise ValueError("The bounds in the header of a file are not finite; repair its header first.")

@@ -30,8 +30,14 @@ from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 
 CACHE = Path(__file__).with_name(".cache") / "flight.npy"
-LOWEST, MOST, FIXED = 10, 100, 50
+# Points of the smallest and of the largest neighborhood of which the best is taken.
+LOWEST, MOST = 10, 100
+# Points of a neighborhood of fixed size.
+FIXED = 50
+# Runs of which the fastest counts.
 RUNS = 3
+# Side (m) of the voxels in whose order the points come.
+VOXEL = 0.1
 # pgeof's neighbors, distances and features of more points than this don't fit in most machines.
 _MOST_FOR_PEER = 2_000_000
 
@@ -53,7 +59,7 @@ def scene(n: int) -> np.ndarray:
     columns = int(np.ceil(np.sqrt(copies)))
     width, depth, _ = one.max(axis=0)
     xyz = np.concatenate([one + [i % columns * width, i // columns * depth, 0] for i in range(copies)])[:n]
-    return xyz[np.lexsort(np.floor(xyz / 0.1).T[::-1])]
+    return xyz[np.lexsort(np.floor(xyz / VOXEL).T[::-1])]
 
 
 def fixed(xyz: np.ndarray) -> Any:
@@ -83,6 +89,7 @@ def optimal_of_peer(xyz: np.ndarray) -> Any:
 
 
 def _found(xyz: np.ndarray, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the points, their ``k`` nearest ones, and where those of each begin, as pgeof takes them."""
     import pgeof
 
     points = xyz.astype(np.float32)

@@ -115,4 +115,7 @@ def _plain(cell: Any) -> Any:
 
 
 def _shown(cell: Any, digits: int) -> str:
-    return "" if cell is None else f"{cell:.{digits}f}" if isinstance(cell, float) else str(cell)
+    """Return the text of a cell."""
+    if cell is None:
+        return ""
+    return f"{cell:.{digits}f}" if isinstance(cell, float) else str(cell)
