@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from lidar_buildings.algorithms.cloud.asprs import PointClass
-
 # Where surveys lie in UTM and national grids (m). Tests move scenes there: steps of float32 are 0.5 m at this northing.
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -17,8 +15,6 @@ EXACT_FAR = np.array([2.0**19, 2.0**22, 0.0])
 
 # Closed outline of an L-shaped house of 20 m by 16 m, counterclockwise.
 L_SHAPE = np.array([[0, 0], [20, 0], [20, 8], [9, 8], [9, 16], [0, 16], [0, 0]], float)
-
-VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
 
 
 def roof(

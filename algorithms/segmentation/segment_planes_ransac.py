@@ -48,7 +48,8 @@ def segment_planes_ransac(
             unit="m",
             low=0.1,
             high=20,
-            automatic="wide enough for 20 points of a surface and for 10 tolerances, 0.5 to 3 m.",
+            automatic=f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
+            f"tolerances, {_SMALLEST_VOXEL:g} to {_LARGEST_VOXEL:g} m.",
         ),
     ] = None,
     tolerance: Annotated[

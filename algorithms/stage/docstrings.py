@@ -31,12 +31,17 @@ def with_values(doc: str, names: dict[str, Any]) -> str:
     return _CONSTANT.sub(value, doc)
 
 
+def _is_heading(line: str, below: str) -> bool:
+    """Whether a line is the title of a section, with hyphens below it."""
+    return line in _HEADINGS and set(below.strip()) == {"-"}
+
+
 def sections(doc: str) -> dict[str, str]:
     """Return the text of each section of a docstring by its title."""
     found: dict[str, list[str]] = {}
     lines, current = doc.splitlines(), None
     for line, below in zip(lines, [*lines[1:], ""]):
-        if line in _HEADINGS and set(below.strip()) == {"-"}:
+        if _is_heading(line, below):
             current = found.setdefault(line, [])
         elif current is not None and not (set(line.strip()) == {"-"} and not current):
             current.append(line)
@@ -47,7 +52,7 @@ def before_first_section(doc: str) -> str:
     """Return what a docstring says before its first section."""
     lines = doc.splitlines()
     for i, (line, below) in enumerate(zip(lines, [*lines[1:], ""])):
-        if line in _HEADINGS and set(below.strip()) == {"-"}:
+        if _is_heading(line, below):
             return "\n".join(lines[:i])
     return doc
 

@@ -195,6 +195,7 @@ class _Particles:
 
 
 def _particles(points: np.ndarray, size: float) -> _Particles:
+    """Return the particles of a cloth with links of a ``size`` (m) over points (n, 3), m."""
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     columns, rows = (np.floor((high - low) / size).astype(np.int64) + 2 * _BORDER).tolist()
     return _Particles(low, size, rows, columns)

@@ -11,20 +11,21 @@ from typing import Optional
 
 import numpy as np
 
-from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
+from lidar_buildings.algorithms.cloud.asprs import NOISE, VEGETATION, PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.quality.confusion import class_rates, confusion, overall_accuracy
 from lidar_buildings.tests.benchmarks.results import Table
-from lidar_buildings.tests.builders import VEGETATION
 from lidar_buildings.tests.real.clouds import path_of, run_on, truth
 
-WITH_CLASSES = tuple(
-    f"buildings/{name}"
-    for name in (
-        *("ahn3-delft-4", "amsterdam-centre-10", "ahn-amsterdam-1"),
-        *("ign-stbarth-4", "ign-chalet", "ign-forest-none", "ign-bridge-none"),
-    )
+WITH_CLASSES = (
+    "buildings/ahn3-delft-4",
+    "buildings/amsterdam-centre-10",
+    "buildings/ahn-amsterdam-1",
+    "buildings/ign-stbarth-4",
+    "buildings/ign-chalet",
+    "buildings/ign-forest-none",
+    "buildings/ign-bridge-none",
 )
 
 # Classes that count as one. Points of other true classes, such as 1, are left out.

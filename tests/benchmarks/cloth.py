@@ -27,15 +27,17 @@ from lidar_buildings.algorithms.terrain.classify_ground_cloth import classify_gr
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.real.clouds import GROUND_SAMPLES, path_of  # noqa: E402
 
+# Slopes (°) of the terrain of simulated towns.
 SLOPES = (0.0, 10.0, 20.0, 30.0)
 
-# Real clouds, and cells (m) and rigidness with and without slope post-processing.
+# Real clouds.
 CLOUDS = (*GROUND_SAMPLES, "buildings/ahn-amsterdam-1", "buildings/ahn3-delft-4", "buildings/ign-chalet")
+# Their cells (m), rigidness, and whether slopes are processed.
 SETTINGS = ((1.0, 3, True), (1.0, 3, False), (1.0, 1, True), (1.4, 2, True), (1.4, 2, False))
 
 
 def by_package(csf, xyz: np.ndarray, rigidness: int, cell_size: float, slope_processing: bool = True) -> np.ndarray:
-    """Return which points the package calls ground."""
+    """Return which points (n,) the package calls ground, with the defaults of the stage."""
     filter_ = csf.CSF()
     filter_.params.bSloopSmooth = slope_processing
     filter_.params.cloth_resolution = cell_size

@@ -16,13 +16,17 @@ from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gabl
 from lidar_buildings.algorithms.simulation.town_houses import Site
 from lidar_buildings.algorithms.stage import Monitor
 
+# Side of the scenes (m), but for the estate.
 SIDE = 120.0
 
 # Of strips that were not adjusted to one another, every second lies this much higher (m).
 MISFIT = 0.08
 
-# The height of maize and how far below that most leaves are (m), a fifth of them up to 2 m more.
-MAIZE, LEAVES = 2.8, 0.25
+# Height of maize (m).
+MAIZE = 2.8
+
+# Standard deviation (m) of how far below that leaves are, a fifth of them up to 2 m more.
+LEAVES = 0.25
 
 # Share of the pulses into maize that return from the ground.
 THROUGH_MAIZE = 0.1
@@ -37,7 +41,7 @@ class Farmland(Scene):
 
 @dataclass(frozen=True)
 class Steps(Relief):
-    """A slope whose rise is gathered in steps of this height (m), at even distances."""
+    """A slope whose rise is gathered in steps of this height (m), 1.5 m wide, every 12 m."""
 
     step: float = 0.0
 

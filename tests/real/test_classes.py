@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.tests.builders import VEGETATION
+from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
 from lidar_buildings.tests.real.clouds import detected, truth
 
 MARGIN = 1.0

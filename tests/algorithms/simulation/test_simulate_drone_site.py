@@ -7,13 +7,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
 from lidar_buildings.algorithms.features.greenness import greenness, greenness_between
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.simulation.drone_site import build_site
 from lidar_buildings.algorithms.simulation.simulate_drone_site import simulate_drone_site
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan
-from lidar_buildings.tests.builders import VEGETATION, is_inside
+from lidar_buildings.tests.builders import is_inside
 
 NAMES = (*simulate_drone_site.stage.creates, "footprints")
 SMALL = {"size": 44.0, "density": 12.0, "halls": 1, "seed": 3}

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.simulation.beams import Beams
 from lidar_buildings.algorithms.simulation.drone import FIELD, Flight, Surroundings, plan_flight, pulses_per_line
@@ -16,7 +16,6 @@ from lidar_buildings.algorithms.simulation.simulate_flight import simulate_fligh
 from lidar_buildings.algorithms.simulation.solids import Rect, Solid, stack
 from lidar_buildings.algorithms.simulation.street_site import build_site
 from lidar_buildings.algorithms.stage import Cancelled
-from lidar_buildings.tests.builders import VEGETATION
 from lidar_buildings.tests.monitors import Listening
 
 NAMES = simulate_flight.stage.creates

@@ -7,14 +7,13 @@ from functools import cache, lru_cache
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
+from lidar_buildings.algorithms.cloud.asprs import NOISE, VEGETATION, PointClass
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.simulation.scanner import Survey, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
 from lidar_buildings.algorithms.stage import Cancelled
-from lidar_buildings.tests.builders import VEGETATION
 from lidar_buildings.tests.monitors import Listening
 
 NAMES = simulate_town.stage.creates
