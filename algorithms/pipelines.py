@@ -30,6 +30,11 @@ _PETERS = (
     "LoD1 models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3)."
 )
 
+_PENG = (
+    "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle "
+    "LIDAR. EURASIP Journal on Image and Video Processing 2018:121."
+)
+
 # From the raw cloud to footprints.
 _DETECTION = (
     Step("existing", "keep_classes"),
@@ -225,10 +230,7 @@ _PIPELINES = (
             "window or a door: a hole of the facade, and a feature with its size and position. Nothing has to be "
             "set; ground and noise are left out where they are classified."
         ),
-        references=(
-            "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
-            "vehicle LIDAR. EURASIP Journal on Image and Video Processing 2018:121."
-        ),
+        references=_PENG,
         steps=(Step("planes", "extract_facades"), Step("openings", "extract_openings")),
         shared={
             name: ("planes", "openings") for name in ("max_tilt", "max_gap", "corner_distance", "boundary", "complete")
@@ -248,10 +250,7 @@ _PIPELINES = (
             "reported. Outlines follow the facades where they were seen, and are footprints elsewhere. Roofs are "
             "reconstructed on them, and windows and doors set into the walls, as CityJSON at level of detail 3."
         ),
-        references=(
-            "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
-            f"vehicle LIDAR. EURASIP Journal on Image and Video Processing 2018:121.\n\n{_PETERS}"
-        ),
+        references=f"{_PENG}\n\n{_PETERS}",
         steps=(
             *_DETECTION,
             Step("street", "register_street", layers={"footprints": "footprints.footprints"}),
@@ -302,7 +301,7 @@ _PIPELINES = (
         description=(
             "The cloud is divided into smooth surfaces: connected pipes with their elbows, a tank, a plate. In each "
             "of them, cylinders are found first, since a strip of a tank would pass for a plane, then spheres and "
-            "planes among the points that have no shape yet. Points of a surface without a shape keep its SegmentID. "
+            "planes among the points that have no shape yet. Points of a surface without a shape keep its SegmentID."
         ),
         references=_VOSSELMAN,
         steps=(

@@ -147,6 +147,7 @@ def _layers_taken(pipeline: Pipeline, step: Step) -> list[str]:
 
 
 def _given(step: Step) -> list[str]:
+    """Return the names of the layers that a step reads of those given to the composite."""
     return [input_layer.name for input_layer in step.stage.input_layers if input_layer.name not in step.layers]
 
 
@@ -178,12 +179,7 @@ def _add_parameters(
         model.addModelParameter(definitions[name], component)
 
 
-def _add_step(
-    model: QgsProcessingModelAlgorithm,
-    pipeline: Pipeline,
-    step: Step,
-    layout: _Layout,
-) -> None:
+def _add_step(model: QgsProcessingModelAlgorithm, pipeline: Pipeline, step: Step, layout: _Layout) -> None:
     """Add the child algorithm of a step, its parameters wired to those of the model and to earlier steps."""
     child = QgsProcessingModelChildAlgorithm(f"{PROVIDER_ID}:{step.stage.id}")
     child.setChildId(step.name)
@@ -249,6 +245,7 @@ def _model_outputs(
 
 
 def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGroupBox:
+    """Return the box around the band of a step."""
     box = QgsProcessingModelGroupBox(step.stage.title)
     # QGIS draws a random id, which would make each generated file another.
     facts = box.toVariant()

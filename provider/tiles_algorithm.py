@@ -27,7 +27,7 @@ from ..algorithms.cloud.outputs import COPC, replacing, stem_of
 from ..algorithms.pipeline import Output
 from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
-from ..algorithms.stage import FileContent, LayerFeatures, Raster
+from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster
 from ..algorithms.tiling.mosaics import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
@@ -119,7 +119,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         folder = QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder of the tiles"))
         self.addParameter(with_help(folder, tr("A tile for each file, and a virtual point cloud over all of them.")))
         for output in self.tiled.layers:
-            layer = next(one for one in output.step.stage.layers if one.name == output.of)
+            layer = _layer(output)
             sink = QgsProcessingParameterFeatureSink(
                 output.name.upper(), tr(layer.title), SOURCE_TYPES[layer.geometry], optional=True
             )
@@ -165,6 +165,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         return values
 
     def _workers(self, parameters: dict, context: QgsProcessingContext) -> Workers:
+        """Return where blocks are worked on; refuse a scheduler or certificates that can't be used."""
         processes = parameters.get(PROCESSES)
         count = None if processes is None else self.parameterAsInt(parameters, PROCESSES, context)
         scheduler = self.parameterAsString(parameters, SCHEDULER, context).strip()
@@ -322,11 +323,16 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         place = place_of_survey(survey)
         for output in self.tiled.layers:
             features = outcome.layers.get(output.name)
-            layer = next(one for one in output.step.stage.layers if one.name == output.of)
+            layer = _layer(output)
             if features is not None:
                 part, name = monitor.part(_DONE, _DONE), output.name.upper()
                 results.update(write_layer(self, name, layer, features, place, parameters, context, part))
         return results
+
+
+def _layer(output: Output) -> Layer:
+    """Return the layer that an output of a composite is."""
+    return next(one for one in output.step.stage.layers if one.name == output.of)
 
 
 def _raster(output: Output) -> Raster:

@@ -10,7 +10,7 @@ import numpy as np
 from .laspy_library import need_laspy
 
 # Bytes of a descriptor.
-_SIZE = 192
+DESCRIPTOR_SIZE = 192
 # Where a descriptor has the number that means "no data", of the first of up to 3 axes.
 _NO_DATA = slice(40, 48)
 # Where it has minimum and maximum of 3 axes.
@@ -45,7 +45,7 @@ class ExtraField:
     @property
     def descriptor(self) -> Any:
         """The descriptor's fields, an ExtraBytesStruct of laspy."""
-        return _parsed(self.raw or bytes(_SIZE))
+        return _parsed(self.raw or bytes(DESCRIPTOR_SIZE))
 
     @property
     def is_scalar(self) -> bool:
@@ -78,7 +78,7 @@ class ExtraField:
     def _no_data(self) -> np.generic:
         """Return the stored number that means "no data": 8 bytes, the widest type of its kind."""
         wide = {"u": "<u8", "i": "<i8", "f": "<f8"}[self.dtype.kind]
-        return np.frombuffer((self.raw or bytes(_SIZE))[_NO_DATA], wide)[0]
+        return np.frombuffer((self.raw or bytes(DESCRIPTOR_SIZE))[_NO_DATA], wide)[0]
 
     def without_range(self) -> ExtraField:
         """Return the field without its minimum and maximum, which new values make untrue."""
@@ -90,11 +90,11 @@ class ExtraField:
 
     def as_numbers(self, dtype: str) -> ExtraField:
         """Return a field of the same name and description, byte for byte, that holds plain numbers of another type."""
-        descriptor = _parsed(bytes(_SIZE))
+        descriptor = _parsed(bytes(DESCRIPTOR_SIZE))
         descriptor.data_type = _number_of(dtype)
         raw = bytearray(bytes(descriptor))
         for part in _TEXTS:
-            raw[part] = (self.raw or bytes(_SIZE))[part]
+            raw[part] = (self.raw or bytes(DESCRIPTOR_SIZE))[part]
         return ExtraField(self.name, np.dtype(dtype).newbyteorder("<"), bytes(raw))
 
 
@@ -105,7 +105,7 @@ def _number_of(dtype: str) -> int:
 
 def new_field(name: str, dtype: str, description: str) -> ExtraField:
     """Return a field of numbers without scale; ``name`` and ``description`` take at most 31 bytes each."""
-    descriptor = _parsed(bytes(_SIZE))
+    descriptor = _parsed(bytes(DESCRIPTOR_SIZE))
     descriptor.data_type = _number_of(dtype)
     descriptor.name, descriptor.description = name.encode(), description.encode()
     return ExtraField(name, np.dtype(dtype).newbyteorder("<"), bytes(descriptor))
@@ -119,8 +119,8 @@ def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:
     """
     fields: list[ExtraField] = []
     left = size
-    for start in range(0, len(payload) - _SIZE + 1, _SIZE):
-        field = _field(payload[start : start + _SIZE])
+    for start in range(0, len(payload) - DESCRIPTOR_SIZE + 1, DESCRIPTOR_SIZE):
+        field = _field(payload[start : start + DESCRIPTOR_SIZE])
         if field.dtype.itemsize > left:
             break
         fields.append(field)
@@ -148,4 +148,4 @@ def _descriptors(size: int) -> bytes:
     """Describe bytes of unknown meaning, so that what follows them is found."""
     sizes = [_LONGEST_UNDOCUMENTED] * (size // _LONGEST_UNDOCUMENTED) + [size % _LONGEST_UNDOCUMENTED]
     # The fourth byte, which has the options of numbers, is the number of bytes.
-    return b"".join(bytes((0, 0, 0, part)).ljust(_SIZE, b"\0") for part in sizes if part)
+    return b"".join(bytes((0, 0, 0, part)).ljust(DESCRIPTOR_SIZE, b"\0") for part in sizes if part)

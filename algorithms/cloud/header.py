@@ -11,7 +11,7 @@ from uuid import UUID
 
 import numpy as np
 
-from .extra_bytes import fields_of, payload_of
+from .extra_bytes import DESCRIPTOR_SIZE, fields_of, payload_of
 from .laspy_library import need_laspy
 from .point_formats import FORMATS, WITH_WAVEFORMS, Layout
 
@@ -104,8 +104,8 @@ class Header:
     system: bytes = b"OTHER"
     software: str = SOFTWARE
     date: bytes = bytes(4)
-    user_bytes: bytes = b""
-    gap: bytes = b""
+    user_bytes: bytes = b""  #: Bytes of the header beyond those of its version
+    gap: bytes = b""  #: Bytes between the VLRs and the points
     layout: Layout = Layout(6)
     is_compressed: bool = False
     count: int = 0
@@ -113,8 +113,8 @@ class Header:
     offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
     low: np.ndarray = field(default_factory=lambda: np.zeros(3))
     high: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    waveforms_at: int = 0
-    points_at: int = 0
+    waveforms_at: int = 0  #: Position of the waveforms in the file, 0 without any
+    points_at: int = 0  #: Position of the points in the file
     vlrs: list[Vlr] = field(default_factory=list)
     evlrs: list[Vlr] = field(default_factory=list)
 
@@ -140,7 +140,8 @@ class Header:
             return replace(self, layout=layout)
         if len(payload) > _LARGEST_VLR:
             raise ValueError(
-                f"A LAS file describes at most 341 extra dimensions, got {len(payload) // 192}; remove some."
+                f"A LAS file describes at most {_LARGEST_VLR // DESCRIPTOR_SIZE} extra dimensions, got "
+                f"{len(payload) // DESCRIPTOR_SIZE}; remove some."
             )
         new = Vlr(*EXTRA_BYTES, payload, description=b"Extra bytes")
         if old not in self.vlrs:

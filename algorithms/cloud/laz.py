@@ -20,13 +20,19 @@ POINTS_PER_CHUNK = 50_000
 _LAZRS, _LAZRS_IN_TURN, _LASZIP = "LazrsParallel", "Lazrs", "Laszip"
 # How points are compressed: all in one go, as before 2011, or in chunks.
 _POINTWISE, _CHUNKED = 1, 2
+# The number of points of a chunk, in the LASzip record, that says that it is another one in each.
 _VARIABLE_CHUNKS = 2**32 - 1
+# Where the record has the number of points of a chunk, and its items.
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
-# Type, size in bytes and version of an item of the record; the position and the head of the chunk table.
-_ITEM, _TABLE_POSITION, _TABLE_START = struct.Struct("<HHH"), struct.Struct("<q"), struct.Struct("<II")
-# Layers that points of formats 6 to 10 are stored in, by the type of their item; extra bytes (type 14) have one a byte.
+# Type, size in bytes and version of an item of the record.
+_ITEM = struct.Struct("<HHH")
+# The position of the chunk table, and its head: version, number of chunks.
+_TABLE_POSITION, _TABLE_START = struct.Struct("<q"), struct.Struct("<II")
+# Bytes of points without chunks that are read at once.
 _READ_AT_ONCE = 2**20
+# Layers that points of formats 6 to 10 are stored in, by the type of their item; extra bytes (type 14) have one a byte.
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
+# Versions of the items of points in layers, and of all others.
 _LAYERED_VERSIONS, _PLAIN_VERSIONS = (3, 4), (1, 2)
 # Types of the items of each point format, and of extra bytes behind those of formats 0 to 5 and 6 to 10.
 _TYPES = {
@@ -34,7 +40,9 @@ _TYPES = {
     6: (10,), 7: (10, 11), 8: (10, 12), 9: (10, 13), 10: (10, 12, 13),
 }  # fmt: skip
 _EXTRA_TYPES = 0, 14
+# Formats from this on are stored in layers.
 _FIRST_LAYERED_FORMAT = 6
+# Size of an item (bytes) by its type.
 _SIZES = {6: 20, 7: 8, 8: 6, 9: 29, 10: 30, 11: 6, 12: 8, 13: 29}
 
 
@@ -178,6 +186,7 @@ class _OneChunk(io.RawIOBase):
 
 
 def _chunk_size(record: bytes) -> int:
+    """Return the number of points of a chunk that a LASzip record states."""
     return struct.unpack_from("<I", record, _CHUNK_SIZE_AT)[0]
 
 

@@ -15,32 +15,40 @@ from .printable import shown
 # EPSG code -> (meters per horizontal unit, meters per vertical unit, whether it is geographic), or None if unknown.
 Resolver = Callable[[int], Optional[tuple[float, float, bool]]]
 
+# User and record ids of the VLRs with WKT, and of those with GeoKeys and their numbers.
 _PROJECTION = b"LASF_Projection"
 _WKT = ((_PROJECTION, 2112), (b"liblas", 2112))
 _GEOKEYS, _DOUBLES = (_PROJECTION, 34735), (_PROJECTION, 34736)
 
 # EPSG codes of length units, as GeoKeys give them, in meters.
 _LENGTHS = {
-    9001: 1.0,
-    9002: 0.3048,
-    9003: 1200 / 3937,
-    9005: 0.3047972654,
-    9036: 1000.0,
-    9037: 0.9143984146160287,
-    9096: 0.9144,
+    9001: 1.0,  # Meter
+    9002: 0.3048,  # International foot
+    9003: 1200 / 3937,  # US survey foot
+    9005: 0.3047972654,  # Clarke's foot
+    9036: 1000.0,  # Kilometer
+    9037: 0.9143984146160287,  # Clarke's yard
+    9096: 0.9144,  # International yard
 }
+# The value of a GeoKey that stands for no code of EPSG.
 _USER_DEFINED = 32767
 # Lengths that a unit may have (m), from a micrometer to a thousand kilometers: all others are damage.
 _SHORTEST_UNIT = 1e-6
 _LONGEST_UNIT = 1e6
 # WKT of real systems has some thousand bytes; a longer one takes seconds to parse and is taken for damage.
 _LONGEST_WKT = 1_000_000
+# GeoKeys: kind of the coordinates; codes of the geographic, the projected and the vertical system.
 _MODEL, _GEOGRAPHIC, _PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
+# GeoKeys: code and size of the unit in plan, code of that of heights.
 _LINEAR_UNITS, _LINEAR_UNIT_SIZE, _VERTICAL_UNITS = 3076, 3077, 4099
+# Values of the kind of the coordinates.
 _MODEL_GEOGRAPHIC, _MODEL_GEOCENTRIC = 2, 3
 
+# Pieces of WKT: texts in quotes, brackets, commas, and anything else without white space.
 _TOKEN = re.compile(r'"(?:[^"]|"")*"|[\[\](),]|[^\s\[\](),"]+')
+# Nodes of WKT within one another, at most; deeper ones are damage.
 _DEEPEST = 50
+# Keywords of WKT 1 and 2: units of length; systems in a plane, on an ellipsoid, of heights.
 _LENGTH_UNITS = ("UNIT", "LENGTHUNIT")
 _PLANE = ("PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS", "DERIVEDPROJCRS")
 _ON_ELLIPSOID = ("GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS", "GEOCCS")

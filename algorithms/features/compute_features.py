@@ -238,13 +238,17 @@ def _dtype(name: str) -> str:
 
 
 def _automatic_radius(sampling: CloudSampling, n_neighbors: int, monitor: Monitor) -> float:
+    """Return the radius (m) of a circle with ``n_neighbors`` points, and log it."""
     radius = float(np.sqrt(n_neighbors / (np.pi * sampling.density)))
     monitor.resolved(radius=radius)
     return radius
 
 
 class NeighborhoodFeatures:
-    """The features of the neighborhoods of m points: an attribute each, computed when asked for."""
+    """The features (m,) of the neighborhoods of m points: an attribute each, computed when asked for.
+
+    l1 >= l2 >= l3 are the eigenvalues of a covariance, m². Lengths are in m. What is undefined is NaN.
+    """
 
     def __init__(self, shapes: Shapes) -> None:
         self.shapes = shapes
@@ -267,7 +271,7 @@ class NeighborhoodFeatures:
 
     @property
     def scattering(self) -> np.ndarray:
-        """L3 / l1."""
+        """Ratio l3 / l1."""
         return self._dimensionality[2]
 
     @property
@@ -292,12 +296,12 @@ class NeighborhoodFeatures:
 
     @property
     def eigenvalue_sum(self) -> np.ndarray:
-        """L1 + l2 + l3."""
+        """Sum l1 + l2 + l3."""
         return self.eigenvalues.sum(axis=1)
 
     @property
     def surface_variation(self) -> np.ndarray:
-        """L3 / (l1 + l2 + l3)."""
+        """Ratio l3 / (l1 + l2 + l3)."""
         return self.eigenvalues[:, 2] / self.eigenvalue_sum
 
     @cached_property
@@ -307,7 +311,7 @@ class NeighborhoodFeatures:
 
     @property
     def verticality(self) -> np.ndarray:
-        """1 - n_z."""
+        """1 - n_z of the normal."""
         return 1 - self.normal[:, 2]
 
     @property

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from .grid import Grid, find_cells
@@ -10,7 +12,7 @@ from .rings import signed_area
 # Directions of a cell's sides, counterclockwise around it: the south side runs east, the east side north, …
 _EAST, _NORTH, _WEST, _SOUTH = range(4)
 
-# Cells that touch by a corner only are joined by a neck. Part of a side that is cut off beside it.
+# Part of a side that is cut off beside the neck that joins cells which touch by a corner only.
 _NECK = 0.1
 
 
@@ -72,7 +74,7 @@ def _following(grid: Grid, start: np.ndarray, direction: np.ndarray) -> np.ndarr
     return following
 
 
-def _walks(following: np.ndarray):
+def _walks(following: np.ndarray) -> Iterator[np.ndarray]:
     """Yield each cycle of a permutation as an array of its positions."""
     successor, seen = following.tolist(), np.zeros(len(following), bool)
     for first in range(len(successor)):

@@ -24,6 +24,9 @@ from .groups import components
 # Most positions of a tile: each takes half the time that it takes among a hundred thousand.
 _TILE_POSITIONS = 3000
 
+# Tiles that a thread triangulates between two reports of progress.
+_TILES_AT_ONCE = 4
+
 # Up to this number of positions, one triangulation takes less time than tiles.
 _FEW = 12_000
 
@@ -90,7 +93,7 @@ def _by_tiles(plan: np.ndarray, monitor: Monitor) -> Optional[Triangulation]:
         for tile in some:
             parts[tile] = _part(plan, *tiles[tile])
 
-    in_chunks(fill, np.arange(len(tiles)), 4, monitor)
+    in_chunks(fill, np.arange(len(tiles)), _TILES_AT_ONCE, monitor)
     part = _joined(parts)
     is_done = np.zeros(len(plan), bool)
     is_done[part.facets] = True
@@ -110,6 +113,7 @@ def circles(plan: np.ndarray, facets: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _by_qhull(plan: np.ndarray) -> Triangulation:
+    """Return the triangulation of all positions (n, 2) at once."""
     found = spatial.Delaunay(plan)
     return Triangulation(plan, found.simplices, found.neighbors)
 

@@ -39,8 +39,11 @@ _MEASURES = (
     Measure("cell_size", "Cell size", "m"),
 )
 
-# Side of cells (m) in clouds of more than _DENSE points per m², and in all others.
-_FINE, _COARSE, _DENSE = 0.5, 1.0, 6.0
+# Points per m² above which cells are fine.
+_DENSE = 6.0
+
+# Side of a fine cell and of others, m.
+_FINE, _COARSE = 0.5, 1.0
 
 # What an object of the layer is, by its outcome.
 FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART = "found", "missed", "invented", "missed part", "invented part"
@@ -224,22 +227,18 @@ def _share(part: float, whole: float) -> float:
 
 @dataclass(frozen=True)
 class _Side:
-    """The building cells (ascending) of one of two classifications, the object of each, and what objects count.
+    """The building cells (m,) of one of two classifications, and the objects (k,) that they make."""
 
-    ``shared`` says which cells are building in the other classification too, ``covered`` (0 to 1) how much of each
-    object is.
-    """
-
-    cells: np.ndarray
-    group: np.ndarray
-    shared: np.ndarray
-    covered: np.ndarray
-    counts: np.ndarray
+    cells: np.ndarray  #: (m,), int64: numbers of the cells, ascending
+    group: np.ndarray  #: (m,), int: object of each, from 0
+    shared: np.ndarray  #: (m,), bool: cells that are building in the other classification too
+    covered: np.ndarray  #: (k,): share of each object that is, 0 to 1
+    is_large: np.ndarray  #: (k,), bool: objects that count, by their area
 
     @property
     def agreed(self) -> np.ndarray:
         """Which objects count and lie by half in the other classification's buildings."""
-        return self.counts & (self.covered >= 0.5)
+        return self.is_large & (self.covered >= 0.5)
 
 
 def _side(grid: Grid, cells: np.ndarray, own: np.ndarray, other: np.ndarray, min_area: float) -> _Side:
@@ -252,8 +251,8 @@ def _side(grid: Grid, cells: np.ndarray, own: np.ndarray, other: np.ndarray, min
 
 def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
     """Return the share of the objects of each side that the other one covers by half, and their numbers."""
-    found, true = int(reference.agreed.sum()), int(reference.counts.sum())
-    correct, predicted = int(result.agreed.sum()), int(result.counts.sum())
+    found, true = int(reference.agreed.sum()), int(reference.is_large.sum())
+    correct, predicted = int(result.agreed.sum()), int(result.is_large.sum())
     completeness, correctness = _share(found, true), _share(correct, predicted)
     return {
         "objects_completeness": completeness,
@@ -273,8 +272,8 @@ def _objects(
     (true, _), (predicted, _) = reference, result
     kinds = (
         (FOUND, reference, true.agreed[true.group]),
-        (MISSED, reference, (true.counts & ~true.agreed)[true.group]),
-        (INVENTED, result, (predicted.counts & ~predicted.agreed)[predicted.group]),
+        (MISSED, reference, (true.is_large & ~true.agreed)[true.group]),
+        (INVENTED, result, (predicted.is_large & ~predicted.agreed)[predicted.group]),
         (MISSED_PART, reference, _parts(grid, true, min_area)),
         (INVENTED_PART, result, _parts(grid, predicted, min_area)),
     )
@@ -332,12 +331,12 @@ def _rows(values: dict, prefix: str, objects: str) -> list[Row]:
         Row(
             "Completeness",
             percent(values[f"{prefix}_completeness"]),
-            f"Share of the reference's buildings was found: {hits:,} of {hits + misses:,} {objects}.",
+            f"Share of the reference's buildings that was found: {hits:,} of {hits + misses:,} {objects}.",
         ),
         Row(
             "Correctness",
             percent(values[f"{prefix}_correctness"]),
-            f"Share of the points called building that are building: {hits:,} of {hits + false:,} {objects}.",
+            f"Share of the {objects} called building that are building: {hits:,} of {hits + false:,} {objects}.",
         ),
         Row(
             "F-score",

@@ -158,6 +158,7 @@ class Regions:
         return [other for piece in pieces for other in self.neighbors[piece] if self.region[other] < 0]
 
     def _is_on(self, piece: int, plane: np.ndarray) -> bool:
+        """Return whether both ends of a piece lie on a plane (4,)."""
         return bool((np.abs(self.ends[piece] @ plane[:3] - plane[3]) <= self.growth.tolerance).all())
 
     def _is_beside(self, piece: int, beside: int) -> bool:

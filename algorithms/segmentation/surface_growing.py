@@ -68,10 +68,10 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     return _met(planes, surface, np.flatnonzero((surface >= 0) & ~is_seed), criteria)
 
 
-def _beside(planes: LocalPlanes, rows: np.ndarray, those: np.ndarray) -> np.ndarray:
-    """Return which of the points ``rows`` (m,) have one of ``those`` among their neighbors."""
+def _beside(planes: LocalPlanes, rows: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return those of the points ``rows`` (m,) that have one of the ``others`` among their neighbors."""
     is_one, is_beside = np.zeros(len(planes.xyz), bool), np.empty(len(rows), bool)
-    is_one[those] = True
+    is_one[others] = True
 
     def work(some: np.ndarray) -> None:
         is_beside[some] = is_one[planes.neighbors[rows[some]]].any(axis=1)

@@ -85,6 +85,7 @@ def reconstruct_pipes(
     columns: dict[str, list] = {"kind": [], "of": [], "radius": []}
     for kind, layer, drawn in (("pipe", axes, _tube), ("sphere", centers, _sphere)):
         for number, geometry, own in _shapes(layer, radius):
+            # A user may cancel here.
             monitor.progress(0.0)
             made = drawn(geometry, own)
             faces += made
@@ -97,10 +98,9 @@ def _shapes(layer: Optional[LayerFeatures], radius: float) -> list[tuple[int, np
     """Return number, geometry (n, 3) and radius of each feature; one whose own radius is no number is left out."""
     if layer is None:
         return []
-    places = range(1, len(layer) + 1)
-    numbers = [
-        own if isinstance(own, (int, np.integer)) else at for own, at in zip(layer.columns.get("id", places), places)
-    ]
+    order = range(1, len(layer) + 1)
+    ids = layer.columns.get("id", order)
+    numbers = [own if isinstance(own, (int, np.integer)) else at for own, at in zip(ids, order)]
     radii = layer.columns.get("radius", [radius] * len(layer))
     found = []
     for number, geometry, own in zip(numbers, layer.geometries, radii):

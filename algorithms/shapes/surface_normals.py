@@ -36,7 +36,7 @@ NormalPoints = Annotated[
         "off edges and thin pipes.",
         low=4,
         high=1000,
-        automatic="as many as hold the error of normals from the noise to 3°, 12 to 80.",
+        automatic=f"as many as hold the error of normals from the noise to 3°, {_LEAST_POINTS} to {_MOST_POINTS}.",
         advanced=True,
     ),
 ]
@@ -71,13 +71,13 @@ def normals_of(xyz: np.ndarray, count: int, sampling: CloudSampling, monitor: Mo
     key = count, xyz.shape, zlib.crc32(np.ascontiguousarray(xyz).data)
     kept = _KEPT.get(sampling)
     if kept is None or kept[0] != key:
-        kept = key, surface_normals(xyz - xyz.min(axis=0), count, monitor)[0]
+        kept = key, surface_normals(xyz - xyz.min(axis=0), count, monitor)
         _KEPT[sampling] = kept
     return kept[1]
 
 
-def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
-    """Return the normals of the planes through the ``count`` points nearest to each point, and how rough these are.
+def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> np.ndarray:
+    """Return the normals of the planes through the ``count`` points nearest to each point.
 
     Parameters
     ----------
@@ -90,10 +90,8 @@ def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.n
 
     Returns
     -------
-    normal : ndarray of shape (n, 3), float64
+    ndarray of shape (n, 3), float64
         Unit vectors, n_z >= 0; zero where the neighborhood has no plane.
-    deviation : ndarray of shape (n,), float64
-        Standard deviation (m) of the neighborhood across its plane.
 
     Raises
     ------
@@ -101,7 +99,7 @@ def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.n
         If all points lie on one line, so that there are no normals.
     """
     refuse_line(xyz)
-    normal, deviation = np.zeros((len(xyz), 3)), np.zeros(len(xyz))
+    normal = np.zeros((len(xyz), 3))
     # In an order of their own, so that rounding does not depend on that of the cloud.
     order = np.lexsort(xyz.T)
 
@@ -110,10 +108,9 @@ def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.n
         eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
         is_plane = eigenvalues[:, 1] > _LINE * np.maximum(eigenvalues[:, 0], 1e-300)
         normal[rows[is_plane]] = smallest_eigenvectors(shapes.covariances[is_plane], eigenvalues[is_plane])
-        deviation[rows] = np.sqrt(np.nan_to_num(eigenvalues[:, 2]))
 
     reduce_neighborhoods(xyz[order], Nearest(count), keep, monitor=monitor)
-    return normal, deviation
+    return normal
 
 
 def refuse_line(xyz: np.ndarray) -> None:

@@ -126,6 +126,7 @@ def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor)
 
 
 def _named(header: Header, crs: Optional[tuple[str, str]]) -> Header:
+    """Return a header with a CRS, its own where it has one."""
     return header if crs is None or wkt_of(header) else header_with_crs(header, *crs)
 
 
