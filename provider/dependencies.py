@@ -15,6 +15,7 @@ from ..algorithms.tiling.processes import own_python
 # pip must not resolve dependencies (it would put a second numpy before QGIS's own), so those that are
 # not part of numpy's family are named here.
 _WITH = {"scikit-learn": ("scikit-learn", "joblib", "threadpoolctl")}
+# Packages that Debian's system has to install, by the names that it gives them, and that of pip.
 _DEBIAN = {"scipy": "python3-scipy", "scikit-learn": "python3-sklearn"}
 _DEBIAN_PIP = "python3-pip"
 
@@ -78,6 +79,7 @@ def package_folder() -> Path:
 
 
 def _by_pip(missing: list[str]) -> list[str]:
+    """Return the packages that pip installs on this system."""
     return [name for name in missing if not (_is_debian() and name in _DEBIAN)]
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..algorithms.cloud.header import SOFTWARE
 from ..algorithms.report.page import Row, with_run
-from ..algorithms.report.run_facts import StepFacts, draw_first, draw_last
+from ..algorithms.report.run_facts import StepFacts, draw_facts, draw_steps
 from ..algorithms.stage import Stage, Tunable
 from .crs import crs_of
 from .paths import PLUGIN
@@ -142,4 +142,4 @@ def about_run(title: str, inputs: Sequence[Path], points: int, wkt: str) -> list
 def complete_page(path: Path, rows: Iterable[Row], steps: Iterable[StepFacts], of_seconds: str = "") -> None:
     """Add to a page in a working folder what it is of, and the steps with their parameters; say of what seconds are."""
     page = path.read_text(encoding="utf-8")
-    path.write_text(with_run(page, draw_first(rows), draw_last(steps, of_seconds)), encoding="utf-8")
+    path.write_text(with_run(page, draw_facts(rows), draw_steps(steps, of_seconds)), encoding="utf-8")

@@ -73,5 +73,6 @@ def restore_classes(
     gap = max(DENSITY.link * sampling.spacing, DENSITY.least_link)
     points = xyz.compress(is_building, axis=0)
     number = np.zeros(len(xyz), np.int32)
+    # Points above one another are of one building, whatever the difference in height.
     number[is_building] = 1 + connect(points, gap, 1 + float(np.ptp(points[:, 2])), monitor)
     return classes, number

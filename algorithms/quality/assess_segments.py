@@ -140,6 +140,7 @@ def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> M
     """
     n_true, n_found = int(true.max(initial=0)) + 1, int(found.max(initial=0)) + 1
     key, shared = np.unique(true * n_found + found, return_counts=True)
+    # Pairs that share points: a segment of the ground truth, and one of the machine.
     g, m = np.divmod(key, n_found)
     both = (g > 0) & (m > 0)
     g, m, shared = g[both], m[both], shared[both]
@@ -176,8 +177,8 @@ def _made_up(whole: np.ndarray, shared: np.ndarray, size: np.ndarray, min_overla
 def _numbered(ids: np.ndarray, min_points: int) -> np.ndarray:
     """Return segments numbered from 1 without gaps, 0 if unassigned or it is too small."""
     values, which, count = np.unique(np.asarray(ids, np.int64), return_inverse=True, return_counts=True)
-    counts = (values > 0) & (count >= min_points)
-    return np.where(counts, np.cumsum(counts), 0)[which]
+    is_large = (values > 0) & (count >= min_points)
+    return np.where(is_large, np.cumsum(is_large), 0)[which]
 
 
 def _outcomes(found: np.ndarray, true: np.ndarray, matches: Matches) -> dict[str, np.ndarray]:

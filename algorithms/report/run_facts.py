@@ -18,13 +18,16 @@ class StepFacts:
     notes: list[str] = field(default_factory=list)
 
 
-def draw_first(rows: Iterable[Row]) -> str:
-    """Return the HTML of what a page is of."""
+def draw_facts(rows: Iterable[Row]) -> str:
+    """Return the HTML of facts about a run: its input, date and version."""
     return draw_rows("Run", rows)
 
 
-def draw_last(steps: Iterable[StepFacts], of_seconds: str = "") -> str:
-    """Return the HTML of the steps with their seconds, and of what these are, then of the parameters of each."""
+def draw_steps(steps: Iterable[StepFacts], of_seconds: str = "") -> str:
+    """Return the HTML of the steps with their seconds, then of the parameters of each.
+
+    ``of_seconds`` says of what the seconds are, beside their sum.
+    """
     steps = list(steps)
     times = [
         Row(step.title, f"{step.seconds:.1f} s", " ".join(_sentence(note) for note in step.notes)) for step in steps

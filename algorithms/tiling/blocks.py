@@ -30,7 +30,7 @@ REFERRING = {"wall_of": "cluster_id"}
 _BESIDE = 4.0
 
 # A window is enlarged where it cuts off features, to at most this many times its halo on a side.
-_MOST_HALOS = 8
+MOST_HALOS = 8
 
 # Length (halos) beyond which features that can be put together from pieces are left in pieces.
 _PIECE_HALOS = 2
@@ -120,7 +120,7 @@ def work_on_block(task: BlockTask) -> Path:
     ValueError
         If a file can't be read or the chain refuses the points.
     """
-    most = _MOST_HALOS * task.halo
+    most = MOST_HALOS * task.halo
     # West and south, east and north of the block, m.
     margin = np.full((2, 2), task.halo)
     tries = []

@@ -23,7 +23,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
 from .block_plan import blocks_of, side_of_blocks
 from .block_result import BlockResult
-from .blocks import Block, BlockTask, work_on_block
+from .blocks import MOST_HALOS, Block, BlockTask, work_on_block
 from .cutting import cut_into_tiles
 from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
@@ -250,8 +250,9 @@ class _Run:
         return WorkedOn(done, lost, [BlockResult.read(path, with_points=False) for _, path in done])
 
     def _task(self, block: Block, plan: _Plan) -> BlockTask:
+        """Return what a worker is given for a block; its result is kept under a name for all that it depends on."""
         settings, halo, samplings = self.settings, plan.halo, plan.samplings
-        margin = np.array([[-8 * halo], [8 * halo]])
+        margin = MOST_HALOS * halo * np.array([[-1], [1]])
         near = self.survey.near(block.box + margin)
         # Results identify files by their numbers, which change when a file is added or taken away.
         key = self._key(

@@ -28,7 +28,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
-from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
+from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # noqa: E402
 from lidar_buildings.algorithms.packages import spatial  # noqa: E402
@@ -49,15 +49,20 @@ FEATURES = ("linearity", "planarity", "scattering", "optimal_neighbors")
 OBJECTS = {
     "ground": (PointClass.GROUND,),
     "buildings": (PointClass.BUILDING,),
-    "trees": (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION),
+    "trees": VEGETATION,
 }
 
 # A town of this size (m) has 10 million points at this density (pulses per m²).
 TOWN = {"size": 588.0, "density": 25.0}
+
+# Runs of reading and of the voxel grid, in turns; the fastest counts.
 ROUNDS = 4
 
 # Towns of a million points each (8 pulses per m²), side by side.
-TOWNS, TOWN_SIDE = 18, 345.0
+TOWNS = 18
+
+# Side of such a town, m.
+TOWN_SIDE = 345.0
 
 
 def made(name: str, cloud: Any = None, **tunables: Any) -> Cloud:
@@ -197,21 +202,25 @@ def timed(work: Callable[[], Cloud]) -> tuple[tuple[float, float], Cloud]:
     return (time.perf_counter() - start, time.process_time() - start_cpu), result
 
 
+# Tables by name, for a share of the scan lines, of the plant or of the towns.
+TABLES: dict[str, Callable[[float], list[Table]]] = {
+    "flight": flight,
+    "voxels": lambda _: voxels(),
+    "plant": plant,
+    "surfaces": surfaces,
+}
+
+
 def main() -> None:
     """Print the tables that the command line names."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "parts", nargs="*", choices=["flight", "voxels", "plant", "surfaces", []], help="which tables (all)"
-    )
+    parser.add_argument("tables", nargs="*", choices=[*TABLES, []], help="which tables (all)")
     parser.add_argument("--part", type=float, default=1.0, help="share of the scan lines or of the plant (1)")
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
     chosen = parser.parse_args()
-    tables = flight(chosen.part) if "flight" in (chosen.parts or ["flight"]) else []
-    tables += voxels() if "voxels" in (chosen.parts or ["voxels"]) else []
-    tables += plant(chosen.part) if "plant" in (chosen.parts or ["plant"]) else []
-    tables += surfaces(chosen.part) if "surfaces" in (chosen.parts or ["surfaces"]) else []
-    for table in tables:
-        print(table.write(chosen.output))
+    for name in chosen.tables or TABLES:
+        for table in TABLES[name](chosen.part):
+            print(table.write(chosen.output))
 
 
 if __name__ == "__main__":
