@@ -16,9 +16,11 @@ from qgis.core import (
 
 from .texts import tr
 
-# The camera: degrees from straight down and from south, as upright planes would be lines seen from there, and distance
-# in sides of the extent that is shown.
-_PITCH, _YAW, _AWAY = 55.0, 35.0, 1.8
+# Angles (°) of the camera from straight down and from south: seen from there, upright planes would be lines.
+_PITCH, _YAW = 55.0, 35.0
+
+# Distance of the camera, in sides of the extent that is shown.
+_AWAY = 1.8
 
 
 def show_view(iface: Any) -> None:

@@ -41,7 +41,7 @@ def classify_buildings_2019(
     thresholds: Thresholds = "automatic",
     min_area: MinBuildingArea = 4.0,
     n_neighbors: Annotated[
-        Optional[int], nearest_points("the points of the minimum building area (Ar_min d), at least 3.")
+        Optional[int], nearest_points(f"the points of the minimum building area (Ar_min d), at least {_MIN_NEIGHBORS}.")
     ] = None,
     two_classes: Annotated[
         str,
@@ -108,7 +108,6 @@ def classify_buildings_2019(
 
     Examples
     --------
-    >>> import numpy as np
     >>> rng = np.random.default_rng(1)
     >>> x, y, u = rng.uniform(0, 10, (3, 4000))
     >>> crown = np.arange(4000) >= 2000

@@ -15,6 +15,7 @@ from .units import Units
 Index = Union[slice, np.ndarray]
 # Name of a field, and which one of that name.
 _Key = tuple[str, int]
+# Largest class in the 5 bits of formats 0 to 5.
 _LARGEST_OLD_CLASS = 31
 
 

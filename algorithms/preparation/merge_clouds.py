@@ -14,8 +14,8 @@ from ..stage import Monitor, Param, stage
 # A matrix with numbers of four decimals or more is within this of a rotation; it is then taken as the nearest one.
 _RIGID = 2e-4
 
-# Points that the nearest rotation puts farther (m) from where the matrix itself would are worth a word.
-_WORTH_TELLING = 0.001
+# The user is warned of points that the nearest rotation puts farther (m) from where the matrix itself would.
+_LEAST_WARNED = 0.001
 
 # Clouds whose boxes are farther apart (m) are likely not of one site, or one of them is not where it should be.
 _APART = 1.0
@@ -126,7 +126,7 @@ def merge_clouds(
     for i, (part, transform) in enumerate(zip(xyz, wanted)):
         moved.append(part if transform is None else _moved(i + 1, part, transform, monitor))
         monitor.progress((i + 1) / len(xyz))
-    _tell_apart(moved, monitor)
+    _warn_of_gaps(moved, monitor)
     number = np.repeat(np.arange(1, len(xyz) + 1), [len(part) for part in xyz])
     previous = np.concatenate(point_source_id)
     return (
@@ -235,7 +235,7 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
     monitor.resolved(**counts)
     farthest = np.abs(xyz).max(axis=0)
     off = float(np.linalg.norm(np.abs(transform.rotation - transform.given) @ farthest))
-    if off > _WORTH_TELLING:
+    if off > _LEAST_WARNED:
         monitor.warn(
             f"The matrix of cloud {number} has too few decimals for its coordinates: the nearest rotation puts points "
             f"up to {off:.3g} m elsewhere."
@@ -243,7 +243,7 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
     return made
 
 
-def _tell_apart(clouds: list[np.ndarray], monitor: Monitor) -> None:
+def _warn_of_gaps(clouds: list[np.ndarray], monitor: Monitor) -> None:
     """Warn of clouds that lie apart from all others."""
     low = np.array([part.min(axis=0) for part in clouds])
     high = np.array([part.max(axis=0) for part in clouds])

@@ -13,6 +13,9 @@ from ..stage import LayerFeatures, Monitor, feature_names
 # Footprints and a map that lie farther apart (m) show different areas, however incomplete each is.
 _ELSEWHERE = 1000.0
 
+# Share of its area by which a polygon that winds twice, or the wrong way, differs from its overlap with itself.
+_CROSSING = 0.01
+
 # Area (m²) below which a polygon is left out.
 _NO_AREA = 1e-6
 
@@ -42,7 +45,7 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
     polygons = as_polygons(rings)
     area, every = polygons.area, np.arange(len(rings))
     # Where rings wind twice, or the wrong way, the overlap of a polygon with itself differs from its area.
-    crossing = int((np.abs(shared_areas(polygons, polygons, every, every, Monitor()) - area) > 0.01 * area).sum())
+    crossing = int((np.abs(shared_areas(polygons, polygons, every, every, Monitor()) - area) > _CROSSING * area).sum())
     if crossing:
         monitor.warn(
             f"{crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
@@ -66,6 +69,11 @@ def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str
         Name of the one in the message.
     other : str
         Name of the other in the message.
+
+    Raises
+    ------
+    ValueError
+        If they lie more than a kilometer apart.
     """
     if not old.rings or not new.rings:
         return
@@ -108,9 +116,9 @@ class Overlap:
         """Share (0 to 1) of each building of the second layer that the first one has too."""
         return self.other_covered_by(np.ones(len(self.area)))
 
-    def other_covered_by(self, counts: np.ndarray) -> np.ndarray:
-        """Return the share (0 to 1) of each building of the second layer that chosen ones of the first have too."""
-        shared = np.bincount(self.other, self.shared * counts[self.one], len(self.other_area))
+    def other_covered_by(self, chosen: np.ndarray) -> np.ndarray:
+        """Return the share (0 to 1) of each building of the second layer that chosen ones (n,) of the first share."""
+        shared = np.bincount(self.other, self.shared * chosen[self.one], len(self.other_area))
         return np.minimum(shared / self.other_area, 1.0)
 
     @property

@@ -127,6 +127,7 @@ class Decks:
         height = np.ascontiguousarray(points[:, 2])
         # One axis for all lines, with more room between them than any distance on them.
         along = along - along.min() + line * (2 * np.ptp(along) + 10 * self.reach + self.max_width)
+        # A piece has three points or more: two always lie on a line.
         piece = pieces_of_lines(points, line, direction, self.near, 3, self.reach)
         piece[~is_earth[order]] = -1
         raised = np.zeros(len(xyz), bool)

@@ -202,6 +202,7 @@ def _checked(function: Callable, declared: Stage) -> Callable:
 
 
 def _declared(function: Callable, title: str, group: str, tags: str, made: dict[str, Any]) -> Stage:
+    """Return the declaration of a function: what its signature and docstring say, and what it ``made``."""
     hints = typing.get_type_hints(function, include_extras=True)
     reads: list[str] = []
     optional: list[str] = []
@@ -242,6 +243,7 @@ def _check_declaration(declared: Stage) -> None:
 
 
 def _tunable(name: str, hint: Any, default: Any) -> Tunable:
+    """Return the tunable of an annotated argument."""
     # Up to Python 3.10 a default of None makes the hint optional once more, around what it is annotated with.
     if typing.get_origin(hint) is typing.Union:
         hint = typing.get_args(hint)[0]

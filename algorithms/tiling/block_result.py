@@ -180,4 +180,5 @@ def _features(parts: dict[str, np.ndarray]) -> LayerFeatures:
 
 
 def _text(value: Any) -> np.ndarray:
+    """Return a value as JSON in bytes, uint8 (n,)."""
     return np.frombuffer(json.dumps(value).encode(), np.uint8)

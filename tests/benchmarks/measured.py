@@ -22,14 +22,12 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms import packages  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # noqa: E402
-from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.run import (
-    run_pipeline,  # noqa: E402
-    run_stage,  # noqa: E402
-)
+from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 
+# Neighbors of each point in the pass over all neighborhoods.
 NEIGHBORS = 16
 # Coordinates asked for at once in the pass over all neighborhoods.
 _CHUNK = 100_000
