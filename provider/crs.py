@@ -34,6 +34,7 @@ def meters_per_unit(crs: QgsCoordinateReferenceSystem) -> tuple[float, float]:
 
 
 def _meters(crs: QgsCoordinateReferenceSystem) -> float:
+    """Return meters per unit of a CRS, 1 where it has no length as its unit."""
     unit = crs.mapUnits()
     return 1.0 if unit in _DISTANCES_UNKNOWN else QgsUnitTypes.fromUnitToUnitFactor(unit, Qgis.DistanceUnit.Meters)
 
@@ -53,12 +54,14 @@ def code_in_space(wkt: str) -> str:
 
 
 def _whole(wkt: str) -> QgsCoordinateReferenceSystem:
+    """Return the CRS that a cloud names, with its heights."""
     if not wkt:
         return QgsCoordinateReferenceSystem()
     return QgsCoordinateReferenceSystem.fromWkt(wkt) if '"' in wkt else QgsCoordinateReferenceSystem(wkt)
 
 
 def _made(wkt: str) -> QgsCoordinateReferenceSystem:
+    """Return the horizontal CRS that a cloud names, as QGIS has it, hollow or not."""
     crs = _whole(wkt)
     # Layers hold heights as an attribute or in meters of the cloud's own vertical system, which GeoPackage can't name.
     horizontal = crs.horizontalCrs()

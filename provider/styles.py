@@ -26,7 +26,7 @@ except ImportError:  # QGIS built without 3D views
 
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.copc_sidecar import copc_path
-from ..algorithms.cloud.outputs import COPC, VPC, kind_of
+from ..algorithms.cloud.outputs import LAS, LAZ, kind_of
 from ..algorithms.stage import Field, Layer, Raster, Stage
 from .crs import crs_of
 from .named_styles import add_named_styles, fit_ramp
@@ -170,11 +170,12 @@ def switch_off(context: QgsProcessingContext, targets: Iterable[str]) -> None:
 
 
 def _views_of(target: str) -> list[str]:
-    kind = kind_of(Path(target))
-    return [] if kind in (None, COPC, VPC) else [str(copc_path(Path(target)))]
+    """Return the COPC file that QGIS may load in place of a LAS or LAZ file."""
+    return [str(copc_path(Path(target)))] if kind_of(Path(target)) in (LAS, LAZ) else []
 
 
 def _kept(styler: Styler) -> Styler:
+    """Keep a styler until QGIS has deleted it, and return it."""
     _KEPT[:] = [styler for styler in _KEPT if not sip.isdeleted(styler)]
     _KEPT.append(styler)
     return styler

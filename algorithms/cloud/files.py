@@ -48,7 +48,6 @@ def read_cloud(
     crs_units : callable, optional
         EPSG code -> (meters per horizontal unit, meters per vertical unit, whether
         it is geographic), or None if unknown; asked when a file gives a code and no unit.
-
     box : ndarray of shape (2, 2), optional
         Least and greatest easting and northing, in coordinates of the file: only points within are kept, edges
         included. Memory is needed for these.
@@ -297,6 +296,7 @@ def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False)
 
 
 def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> None:
+    """Write a LAS or LAZ file to a stream; the extension of ``path`` says which."""
     records = cloud.records()
     header = _output_header(cloud, records)
     if records.is_upgraded:
@@ -327,6 +327,7 @@ def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[Bina
 
 
 def _output_header(cloud: Cloud, records: PointRecords) -> Header:
+    """Return the header of a cloud for the records that are written, with its WKT in formats of LAS 1.4."""
     header = cloud.header.with_layout(records.layout) if records.layout != cloud.header.layout else cloud.header
     if header.layout.is_old:
         return header

@@ -60,13 +60,14 @@ class Arrangement:
 
     def __init__(self, points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
         self.points, self.directions = np.asarray(points, float), np.asarray(directions, float)
-        rng = np.random.default_rng(0)
-        self._build(np.asarray(low, float), np.asarray(high, float))
+        low, high, rng = np.asarray(low, float), np.asarray(high, float), np.random.default_rng(0)
+        self._build(low, high)
         while not self._fits():
             self.points = self.points + rng.uniform(-_NUDGE, _NUDGE, self.points.shape)
-            self._build(np.asarray(low, float), np.asarray(high, float))
+            self._build(low, high)
 
     def _build(self, low: np.ndarray, high: np.ndarray) -> None:
+        """Find crossings, edges and cells of the lines as they are now."""
         numbers = _numbers(len(self.points))
         self.crossing, positions, ways = _crossings(self.points, self.directions, low, high)
         entry, leave = _clipped(self.points, self.directions, low, high)

@@ -106,6 +106,7 @@ def segment_patches(
 
 
 def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _PointPlanes:
+    """Return the planes of the neighborhoods of all points (n, 3), m."""
     tree = spatial.cKDTree(xyz, balanced_tree=False)
     made = _PointPlanes(
         np.empty((len(xyz), 4), np.float32),

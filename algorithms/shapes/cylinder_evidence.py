@@ -39,6 +39,7 @@ class _Rules:
     as_built: float = 0.003
     #: Most points inside, per point on it, in the middle one of the slices along the axis: solids have more
     inside: float = 0.15
+    inner: float = 0.9  #: Distance from the axis, as a share of the radius, up to which points are inside
     slices: int = 10  #: Slices along the axis: the roof in a tank lies in one or two
     #: Least points beyond each end of the arc where the surface goes on, of those that it would have if none lay within
     #: the tolerance: that takes half of them
@@ -83,7 +84,7 @@ class Evidence:
         facing = (np.abs(reach - cylinder.radius) <= 2 * self.tolerance) & (_facing(beside, near.normals) >= FACING)
         if len(along) < _RULES.close * _in_slices(at[facing], along).sum():
             return False
-        inside = _in_slices(at[reach < 0.9 * cylinder.radius - 2 * self.tolerance], along)
+        inside = _in_slices(at[reach < _RULES.inner * cylinder.radius - 2 * self.tolerance], along)
         if np.median(inside / np.maximum(count, 1)) > _RULES.inside:
             return False
         most = float(np.hypot(_RULES.bent * self.noise, _RULES.as_built * cylinder.radius))
@@ -103,8 +104,7 @@ class Evidence:
         slices = int(np.clip(length / max(3 * self.spacing, 0.5 * cylinder.radius), 1, 30))
         at = np.minimum(((along - along.min()) / max(length, 1e-9) * slices).astype(np.int64), slices - 1)
         cells = np.bincount(sector * slices + at, minlength=sectors * slices).reshape(sectors, slices) > 0
-        # A sector with stray points only is not seen.
-        is_seen = cells.mean(axis=1) >= 0.3
+        is_seen = cells.mean(axis=1) >= _RULES.seen
         return float(is_seen.mean()), float(cells[is_seen].mean()) if is_seen.any() else 0.0
 
     def goes_on(self, cylinder: Cylinder, along: np.ndarray) -> bool:

@@ -39,6 +39,12 @@ _MOST_ROUGH = 1.25
 # Largest part of that deviation that waves of another shape explain, in multiples of the noise.
 _MOST_BENT = 0.6
 
+# Distance from the center, as a share of the radius, up to which points are inside a sphere.
+_INNER = 0.9
+
+# Factors by which the radius of a fit may leave the range of its level: the levels beside it find it, too.
+_LEAST_OF_LEVEL, _MOST_OF_LEVEL = 0.8, 1.25
+
 # Most points inside a sphere per point on it: it is empty.
 _MOST_INSIDE = 0.15
 
@@ -155,7 +161,7 @@ class SphereSearch:
             if len(points) < LEAST_POINTS:
                 return None
             center, radius = fit_sphere(self.xyz[points[:: len(points) // _MOST_SAMPLED + 1]], center, radius)
-            if not 0.8 * low <= radius <= 1.25 * high:
+            if not _LEAST_OF_LEVEL * low <= radius <= _MOST_OF_LEVEL * high:
                 return None
         return (center, radius) if self._is_round(points, center, radius) else None
 
@@ -195,7 +201,7 @@ class SphereSearch:
         if len(points) < self.min_points or not self._is_round(points, center, radius):
             return None
         distance = np.linalg.norm(self.xyz[near] - center, axis=1)
-        inside = distance < 0.9 * radius - 2 * self.tolerance
+        inside = distance < _INNER * radius - 2 * self.tolerance
         around = (distance > radius + 2 * self.tolerance) & (distance < reach)
         if inside.sum() > _MOST_INSIDE * len(points) or around.sum() > _MOST_AROUND * len(points):
             return None

@@ -66,14 +66,14 @@ class BlockTask:
     """The task of a worker on a block: all paths are seen by all workers."""
 
     block: Block
-    survey: Survey
-    numbers: tuple[int, ...]
-    pipeline: str
-    tunables: dict[str, Any]
-    samplings: dict[str, CloudSampling]
-    halo: float
-    result: Path
-    stop: Path
+    survey: Survey  #: The files that may have points around the block
+    numbers: tuple[int, ...]  #: Their numbers in the whole survey
+    pipeline: str  #: Name of the composite
+    tunables: dict[str, Any]  #: Its tunables by name
+    samplings: dict[str, CloudSampling]  #: Samplings of the survey, see :func:`.run_pipeline`
+    halo: float  #: How far (m) around the block points are read, at least
+    result: Path  #: File for the results
+    stop: Path  #: A file whose existence ends the work
 
 
 class StoppableMonitor(Monitor):
@@ -165,6 +165,7 @@ def _positions(survey: Survey, window: Window) -> np.ndarray:
 
 
 def _inside(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Return which positions (n, 2) lie in a box (2, 2), its upper edges not in it."""
     return ((positions >= box[0]) & (positions < box[1])).all(axis=1)
 
 

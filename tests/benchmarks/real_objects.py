@@ -9,18 +9,27 @@ from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.algorithms.packages import spatial
 from lidar_buildings.tests.real.clouds import DATA
 
+# Classes of the objects in their file.
 CAR, FENCE, POLE, TREE = 65, 66, 64, int(PointClass.HIGH_VEGETATION)
 
-# Each house has a lot of this side (m), with two trees, a car, a fence and a pole: the first tree and the fence at
-# its walls, the others at this distance (m).
-LOT, TOUCHING, APART = 70.0, 0.3, (1.0, 6.0)
+# Side of the lot of a house, m.
+LOT = 70.0
+
+# What is on a lot, on one side of the house each, the last on that of the first.
 BESIDE = (TREE, TREE, CAR, FENCE, POLE)
 
-# The eaves are over the ground (m): objects were cut out above it, some without any point of a wall.
+# Distance (m) from the house of the first tree and the fence, and range of that of the others.
+TOUCHING, APART = 0.3, (1.0, 6.0)
+
+# Height (m) of the eaves over the ground downhill and, at least, uphill: objects were cut out above the ground, some
+# without any point of a wall.
 EAVES, LEAST_UPHILL = 2.3, 1.5
 
-# Points of open ground on a square meter, and their noise (m).
-GROUND_DENSITY, GROUND_NOISE = 14.0, 0.02
+# Points of open ground on a square meter.
+GROUND_DENSITY = 14.0
+
+# Standard deviation of their elevations, m.
+GROUND_NOISE = 0.02
 
 
 def scene(slope: float, share: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -37,9 +46,9 @@ def scene(slope: float, share: float, seed: int = 0) -> tuple[np.ndarray, np.nda
         center = (np.array([lot % columns, lot // columns]) + 0.5) * LOT + rng.uniform(-5, 5, 2)
         placed.append((_founded(house, center, slope), int(PointClass.BUILDING)))
         for number, kind in enumerate(BESIDE):
-            thing = objects[kind][(lot + number * len(objects[kind]) // 2) % len(objects[kind])]
-            if np.ptp(thing[:, :2], axis=0).max() < 0.6 * LOT:
-                placed.append((_beside(thing, house, number, center, slope, rng), kind))
+            points = objects[kind][(lot + number * len(objects[kind]) // 2) % len(objects[kind])]
+            if np.ptp(points[:, :2], axis=0).max() < 0.6 * LOT:
+                placed.append((_beside(points, house, number, center, slope, rng), kind))
     sizes = [len(points) for points, _ in placed]
     xyz = np.concatenate([points for points, _ in placed])
     kinds = np.repeat([kind for _, kind in placed], sizes)
@@ -76,17 +85,17 @@ def _founded(house: np.ndarray, center: np.ndarray, slope: float) -> np.ndarray:
 
 
 def _beside(
-    thing: np.ndarray, house: np.ndarray, number: int, center: np.ndarray, slope: float, rng: np.random.Generator
+    points: np.ndarray, house: np.ndarray, number: int, center: np.ndarray, slope: float, rng: np.random.Generator
 ) -> np.ndarray:
     """Return an object beside the house at ``center``: numbers 0 to 3 on one side each, number 4 on that of 0."""
-    half, own = np.ptp(house[:, :2], axis=0) / 2, np.ptp(thing[:, :2], axis=0) / 2
+    half, own = np.ptp(house[:, :2], axis=0) / 2, np.ptp(points[:, :2], axis=0) / 2
     axis, side = number % 2, 1 if number // 2 % 2 else -1
     apart = TOUCHING if number in (0, BESIDE.index(FENCE)) else rng.uniform(*APART)
     offset = np.zeros(2)
     offset[axis] = side * (half[axis] + own[axis] + apart)
     offset[1 - axis] = rng.uniform(-0.5, 0.5) * half[1 - axis]
-    place = center + offset
-    return thing + [*place, elevation(place[None], slope)[0]]
+    position = center + offset
+    return points + [*position, elevation(position[None], slope)[0]]
 
 
 def _ground(size: float, slope: float, xyz: np.ndarray, kinds: np.ndarray, rng: np.random.Generator) -> np.ndarray:

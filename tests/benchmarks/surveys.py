@@ -56,12 +56,17 @@ TILE = Path(os.environ.get("LIDAR_BUILDINGS_DATA", ROOT.parent / "shared" / "dat
 # Seconds between two looks at the memory of all processes.
 _BETWEEN_LOOKS = 0.5
 
-# The survey whose cost is estimated: points per m², and bytes per point of LAZ.
-_DENSITY, _LAZ_BYTES = 20.0, 6.0
+# Points per m² of the survey whose cost is estimated.
+_DENSITY = 20.0
 
-# Seconds of a core to decompress a point, and to read it again, and write it compressed with its new dimensions: of the
-# real tile, alone on a core.
-_UNPACKED_SECONDS, _WRITTEN_SECONDS = 0.33e-6, 2e-6
+# Bytes per point of LAZ.
+_LAZ_BYTES = 6.0
+
+# Seconds of a core to decompress a point: of the real tile, alone on a core.
+_UNPACKED_SECONDS = 0.33e-6
+
+# Seconds to read a point once more and write it compressed with its new dimensions.
+_WRITTEN_SECONDS = 2e-6
 
 # Side of a chunk of COPC, m: 50,000 points of the densest level.
 _CHUNK_SIDE = 50.0
@@ -102,6 +107,7 @@ def _family(pid: int) -> list[int]:
 
 
 def _resident(pid: int) -> int:
+    """Return the memory (bytes) of a process, its share of shared pages; 0 where it has ended."""
     try:
         lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
     except OSError:
