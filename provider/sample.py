@@ -26,8 +26,11 @@ from .named_clouds import SIMULATED_CRS, named
 from .styles import Styler, show_in_3d
 from .texts import tr
 
-# Side (m) and density (points/m²) of the town: about 2 MB, with houses, a hall, a river with bridges, and plants.
-_SIZE, _DENSITY = 110.0, 12.0
+# Side (m) of the town: with houses, a hall, a river with bridges, and plants.
+_SIZE = 110.0
+
+# Its density (points/m²): files of about 2 MB.
+_DENSITY = 12.0
 
 # Percentiles of the elevations that have colors: birds and low noise would take most of them.
 _SHOWN = (1.0, 99.5)

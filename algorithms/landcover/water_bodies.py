@@ -23,19 +23,16 @@ _EIGHT = np.ones((3, 3), bool)
 class _Rules:
     """What water is to a laser: most pulses are reflected away from the sensor, the others return from one level."""
 
-    #: least_cell, cell_spacings: Side of the cells: 1 m, and 1.5 point spacings, so that cells of land hold a point
-    least_cell: float = 1.0
-    cell_spacings: float = 1.5
+    least_cell: float = 1.0  #: Least side of the cells, m
+    cell_spacings: float = 1.5  #: Least side of the cells in point spacings, so that cells of land hold a point
     window: float = 5.0  #: Side (m) of the square in which pulses are counted: the least width of a ditch that is seen
-    #: Largest number of pulses, as a share of that of land: canals and simulated rivers give 0.1 to 0.4. Least share of
-    #: a body's ground that has its level, and of the ground around it that is higher.
-    half: float = 0.5
+    most_pulses: float = 0.5  #: Most pulses, as a share of those of land: canals and simulated rivers give 0.1 to 0.4
+    half: float = 0.5  #: Least share of a body's ground that has its level, and of the ground around it that is higher
     #: Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water
     land: float = 0.25
     #: Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents
     level: float = 0.15
-    #: Width (cells) of its surroundings, and of the strip at its edges in which pulses from land count, too
-    ring: int = 3
+    ring: int = 3  #: Width (cells) of the surroundings of water, and of the strip in which pulses from land hide it
 
 
 _RULES = _Rules()
@@ -91,7 +88,7 @@ def _sparse(pulses: np.ndarray, is_seen: np.ndarray, size: float) -> np.ndarray:
     side = 2 * round(_RULES.window / size / 2) + 1
     covered = ndimage.uniform_filter(inside.astype(float), side, mode="constant")
     density = ndimage.uniform_filter(pulses, side, mode="constant") / np.maximum(covered, 1 / side**2)
-    return inside & (density < _RULES.half * np.quantile(density[is_seen], _RULES.land))
+    return inside & (density < _RULES.most_pulses * np.quantile(density[is_seen], _RULES.land))
 
 
 def _without_gaps(is_seen: np.ndarray, reach: float) -> np.ndarray:

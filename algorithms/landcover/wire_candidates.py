@@ -17,10 +17,8 @@ from .wire_spans import RULES
 class _Rules:
     """Where wires are looked for."""
 
-    #: least_column, column_spacings: Side of the columns in which heights are compared: 1 m, and 2 point spacings, so
-    #: that columns in crowns hold several points
-    least_column: float = 1.0
-    column_spacings: float = 2.0
+    least_column: float = 1.0  #: Least side of the columns in which heights are compared, m
+    column_spacings: float = 2.0  #: Their least side in point spacings, so that columns in crowns hold several points
     free: float = 3.0  #: Height (m) below a bundle of wires that holds no points: crowns hold some
     thickest: float = 1.5  #: Largest height (m) of a bundle of wires one above the other
     thinning: float = 1.0  #: Side (m) of the voxels of which one point each is looked at
@@ -30,11 +28,12 @@ class _Rules:
     most_trials: int = 8  #: Lines through each point that are tried
     steepest: float = 0.4  #: Steepest slope of a wire (tangent), at masts in hills
     turn: float = 8.0  #: Largest angle (°) between directions at points of one wire
+    bend: float = 0.02  #: Height over the tangent of a wire that farther points may have, as a share of their distance
 
 
 _RULES = _Rules()
 
-# Pairs of points that are compared at once.
+# Lines whose points are counted at once.
 _CHUNK = 1000
 
 
@@ -84,7 +83,7 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     aside, off_height, along = _off_line(offset, direction[one])
     alike = np.abs((direction[one, :2] * direction[other, :2]).sum(axis=1)) > np.cos(np.radians(_RULES.turn))
     # A wire bends: farther points are higher than its tangent.
-    on_line = (aside <= RULES.aside) & (off_height <= RULES.aside + 0.02 * np.abs(along)) & alike
+    on_line = (aside <= RULES.aside) & (off_height <= RULES.aside + _RULES.bend * np.abs(along)) & alike
     _, line = components(one[on_line], other[on_line], len(xyz))
     return np.where(is_linear, line, -1), direction
 

@@ -14,7 +14,7 @@ from ..stage import Monitor
 from .cylinder_evidence import FACING, MOST_LOOKED_AT, Evidence, Points
 from .cylinder_fits import Cylinder, across_axis, fit_cylinder, upward
 from .hough_planes import PlaneDirections
-from .shape_windows import WINDOW, Level, level_of, levels
+from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
 
 # Width of a bin of the Gaussian sphere, as a slope: 8°, about three times the error of a normal.
 _DIRECTION_BIN = 0.14
@@ -196,7 +196,7 @@ class CylinderSearch:
             if len(points) < LEAST_POINTS:
                 return None
             cylinder = self._fitted(points, cylinder, *([_FIRST_ROUNDS] if fits_left else []))
-            if not 0.8 * low <= cylinder.radius <= 1.25 * high:
+            if not LEAST_OF_LEVEL * low <= cylinder.radius <= MOST_OF_LEVEL * high:
                 return None
         if not low / _WIDER <= cylinder.radius <= high * _WIDER:
             # It belongs to another level, of which the windows have longer seeds; each window here would grow it again.
@@ -204,6 +204,7 @@ class CylinderSearch:
         return (cylinder, points) if self._is_round(rows, points, cylinder) else None
 
     def _fitted(self, points: np.ndarray, cylinder: Cylinder, *rounds: int) -> Cylinder:
+        """Return the least-squares cylinder of points, from a start; as :func:`.fit_cylinder` takes ``rounds``."""
         return fit_cylinder(self.xyz[points[:: len(points) // MOST_LOOKED_AT + 1]], cylinder, *rounds)
 
     def _is_round(self, near: np.ndarray, points: np.ndarray, cylinder: Cylinder) -> bool:
@@ -241,7 +242,7 @@ class CylinderSearch:
         toward /= np.maximum(np.linalg.norm(toward, axis=1), 1e-12)[:, None]
         radii = _radii(low, high)
         signed = np.concatenate([radii, -radii])
-        cell, reach = _CENTER_BIN * low, (WINDOW * low) / 2 + 1.1 * high
+        cell, reach = _CENTER_BIN * low, WINDOW * low / 2 + _WIDER * high
         side = int(np.ceil(2 * reach / cell)) + 2
         number = np.tile(np.arange(_RADII), 2)
         index = [
@@ -267,7 +268,7 @@ class CylinderSearch:
         """Return the cylinder that a seed grows to along its axis, None where its points do not fit a cylinder."""
         along = cylinder.local(self.xyz[seed])[0]
         ends = cylinder.center + np.outer([along.min(), along.max()], cylinder.axis)
-        thinned = max(self.spacing, 0.15 * cylinder.radius)
+        thinned = max(self.spacing, THINNING * cylinder.radius)
         gap = max(_GAP_RADII * cylinder.radius, _GAP_SPACINGS * thinned)
         step = _FIRST_STEP * cylinder.radius
         while True:

@@ -36,7 +36,8 @@ MinRadius = Annotated[
         unit="m",
         low=0.001,
         high=1000,
-        automatic="the larger of 1.2 times the point spacing and 6 times the roughness of surfaces.",
+        automatic=f"the larger of {_RADIUS_SPACINGS:g} times the point spacing and {_RADIUS_DEVIATIONS:g} times the "
+        "roughness of surfaces.",
     ),
 ]
 
@@ -48,7 +49,8 @@ MaxRadius = Annotated[
         unit="m",
         low=0.001,
         high=1000,
-        automatic="20 m, but no more than half of the longest side of the cloud, and at least twice the minimum.",
+        automatic=f"{_LARGEST_RADIUS:g} m, but no more than half of the longest side of the cloud, and at least twice "
+        "the minimum.",
     ),
 ]
 

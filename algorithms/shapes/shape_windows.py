@@ -12,7 +12,10 @@ from ..geometry.boxes import Boxes
 WINDOW = 4.0
 
 # Spacing of the points of a level, in its least radii.
-_THINNING = 0.15
+THINNING = 0.15
+
+# Factors by which the radius of a fit may leave the range of its level: the levels beside it find it, too.
+LEAST_OF_LEVEL, MOST_OF_LEVEL = 0.8, 1.25
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ def level_of(xyz: np.ndarray, is_free: np.ndarray, low: float, high: float, min_
         Points of the emptiest window.
     """
     free = np.flatnonzero(is_free)
-    rows = free[np.sort(_one_per_cell(xyz[free], _THINNING * low))] if len(free) else free
+    rows = free[np.sort(_one_per_cell(xyz[free], THINNING * low))] if len(free) else free
     windows: list[np.ndarray] = []
     if len(rows):
         side = WINDOW * low

@@ -10,7 +10,7 @@ import numpy as np
 from ..stage import Monitor
 from .cylinder_fits import explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
-from .shape_windows import WINDOW, level_of, levels
+from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, WINDOW, level_of, levels
 
 # Bins of radii in one level.
 _RADII = 8
@@ -41,9 +41,6 @@ _MOST_BENT = 0.6
 
 # Distance from the center, as a share of the radius, up to which points are inside a sphere.
 _INNER = 0.9
-
-# Factors by which the radius of a fit may leave the range of its level: the levels beside it find it, too.
-_LEAST_OF_LEVEL, _MOST_OF_LEVEL = 0.8, 1.25
 
 # Most points inside a sphere per point on it: it is empty.
 _MOST_INSIDE = 0.15
@@ -161,7 +158,7 @@ class SphereSearch:
             if len(points) < LEAST_POINTS:
                 return None
             center, radius = fit_sphere(self.xyz[points[:: len(points) // _MOST_SAMPLED + 1]], center, radius)
-            if not _LEAST_OF_LEVEL * low <= radius <= _MOST_OF_LEVEL * high:
+            if not LEAST_OF_LEVEL * low <= radius <= MOST_OF_LEVEL * high:
                 return None
         return (center, radius) if self._is_round(points, center, radius) else None
 

@@ -9,6 +9,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..stage import Param, stage
 
+# Points of these classes may become ground.
 _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
 
 

@@ -11,17 +11,23 @@ from .survey import Survey
 # with a window that was enlarged, need less than 4 GB with the main process.
 MOST_POINTS = 5_300_000
 
-# Sides of blocks are multiples of the step from the least to the greatest, m; smaller ones would work mostly on what
-# lies around them.
-_SIDE_STEP, _LEAST_SIDE, _MOST_SIDE = 50.0, 100.0, 1600.0
+# Sides of blocks are multiples of this, m.
+_SIDE_STEP = 50.0
 
-# In dense clouds sides are multiples of a smaller step (m), and their least
-# value a multiple of the distance around a block: the block is then a seventh of its window.
-_DENSE_STEP, _LEAST_HALOS = 10.0, 1.25
+# Least and greatest side, m; smaller blocks would work mostly on what lies around them.
+_LEAST_SIDE, _MOST_SIDE = 100.0, 1600.0
 
-# Largest number of blocks, and least mean number of points of a block in a survey of more: otherwise a single point far
-# away makes the extent too large.
-_MANY_BLOCKS, _POINTS_PER_BLOCK = 10_000, 100
+# In dense clouds sides are multiples of this, m.
+_DENSE_STEP = 10.0
+
+# Least side in dense clouds, in distances that are read around a block: the block is then a seventh of its window.
+_LEAST_HALOS = 1.25
+
+# Largest number of blocks, unless their points are many: a single point far away makes the extent too large.
+_MANY_BLOCKS = 10_000
+
+# Least mean number of points of a block where there are more blocks.
+_POINTS_PER_BLOCK = 100
 
 
 def side_of_blocks(density: float, halo: float) -> float:

@@ -17,6 +17,7 @@ from typing import Any
 # Python searches the folder of a program first; the modules here are imported by the name of their package only.
 # Before the search path is set, pathlib may not be imported.
 _OWN_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
+# Exit code where the other end is gone.
 _GONE = 1
 
 

@@ -30,8 +30,13 @@ from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.real.clouds import path_of, truth  # noqa: E402
 
+# Points per m² of simulated sites.
 DENSITIES = (4.0, 8.0)
+
+# Angles (°) between bridges and what they cross.
 ANGLES = (0.0, 20.0, 40.0)
+
+# Seed of the sites.
 SEED = 5
 
 # Real clouds and the classes of their bridges.
@@ -42,6 +47,8 @@ REAL = {
     "buildings/ign-chalet": PointClass.BRIDGE_DECK,
     "buildings/ign-stbarth": PointClass.BRIDGE_DECK,
 }
+
+# Stages that find decks, by the ground that they are given.
 CHAINS = {
     "segments": ("segment_scan_lines", "classify_ground_segments"),
     "true ground": ("classify_bridges",),

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
@@ -46,6 +46,7 @@ def photos() -> list[Table]:
 
 
 def _mapped_photos() -> Table:
+    """Print how well Map footprints does on these clouds."""
     columns = ("footprints", "cells: completeness, %", "cells: correctness, %")
     table = Table("mapped_photos", "cloud", *columns, texts=1)
     for name in WITH_IMAGES:
@@ -93,6 +94,7 @@ def simulated(**tunables: Any) -> dict[str, Any]:
 
 
 def _figures(site: dict[str, Any], size: float) -> list[float]:
+    """Return the cells of a site of a size (m) in the table of :func:`drone`."""
     true, xyz, number = site["classification"], site["xyz"], site["segment_id"]
     given = {name: site[name] for name in ("xyz", "return_number", "number_of_returns", "red", "green", "blue")}
     result = run_on(create_cloud(given))
@@ -102,8 +104,7 @@ def _figures(site: dict[str, Any], size: float) -> list[float]:
         np.bincount(number[is_roof]), 1
     )
     ids = np.unique(number[is_roof])
-    is_plant = np.isin(true, (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION))
-    plants = is_plant & (called == PointClass.BUILDING)
+    plants = np.isin(true, VEGETATION) & (called == PointClass.BUILDING)
     area = len(np.unique(np.floor(xyz[plants, :2] / _CELL), axis=0)) * _CELL**2
     is_ground = true == PointClass.GROUND
     return [

@@ -80,6 +80,7 @@ def _clouds() -> Iterator[tuple[str, tuple[np.ndarray, dict[str, np.ndarray]]]]:
 
 
 def _parted(result: Result, true: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Return the points (n, 3) of a cloud, and which of them (n,) are of each surface."""
     height, is_building = result.cloud.get("height_above_ground"), true == PointClass.BUILDING
     surfaces = {
         "roofs": is_building,
