@@ -33,7 +33,7 @@ from lidar_buildings.tests.real.clouds import path_of, truth  # noqa: E402
 # Points per m² of simulated sites.
 DENSITIES = (4.0, 8.0)
 
-# Angles (°) between bridges and what they cross.
+# Angles (°) of bridges to the shortest way across.
 ANGLES = (0.0, 20.0, 40.0)
 
 # Seed of the sites.
