@@ -9,6 +9,8 @@ from ..algorithms.stages import less_memory
 
 # Bytes that stages take per point at most, those of the points themselves among them.
 _PER_POINT = 400
+
+# Bytes of the unit of the message.
 _GB = 1e9
 
 

@@ -17,8 +17,13 @@ from ..algorithms.tiling.mosaics import RasterMosaic
 from .memory_files import copy_file, memory_folder
 from .places import Place
 
+# Extensions of file names that are written, the first one by default.
 EXTENSIONS = ("tif", "tiff")
+
+# Value of empty cells: GDAL and most GIS programs take it for none.
 NO_DATA = -9999.0
+
+# Of GDAL's driver COG; BIGTIFF leaves TIFF where a file might pass 4 GB.
 _OPTIONS = (
     "COMPRESS=DEFLATE",
     "PREDICTOR=FLOATING_POINT",
@@ -29,7 +34,13 @@ _OPTIONS = (
 
 
 def check_raster(path: Path) -> None:
-    """Refuse a file name that is not that of a GeoTIFF."""
+    """Refuse a file name that is not that of a GeoTIFF.
+
+    Raises
+    ------
+    ValueError
+        If its extension is another.
+    """
     if path.suffix.lower().lstrip(".") not in EXTENSIONS:
         raise ValueError(f"{path.name} can't be written as a raster: give it the extension .tif.")
 
@@ -54,10 +65,8 @@ def write_mosaic(raster: Raster, mosaic: RasterMosaic, place: Place, path: Path,
             height, width = values.shape
             band.WriteRaster(column, row, width, height, _filled(values), buf_type=gdal.GDT_Float32)
         image.FlushCache()
-        written = gdal.GetDriverByName("COG").CreateCopy(str(whole), image, 0, list(_OPTIONS), progress)
-        if written is None:
-            raise RuntimeError(gdal.GetLastErrorMsg())
-        del band, image, written
+        _copy(image, str(whole), progress)
+        del band, image
         with os_errors_as_messages(path):
             whole.replace(path)
 
@@ -88,12 +97,7 @@ def write_raster(raster: Raster, surface: RasterSurface, place: Place, path: Pat
     with memory_folder() as folder:
         made = f"{folder}/{path.name}"
         with _errors(path, progress):
-            image = _in_memory(raster, surface, place)
-            written = gdal.GetDriverByName("COG").CreateCopy(made, image, 0, list(_OPTIONS), progress)
-            if written is None:
-                raise RuntimeError(gdal.GetLastErrorMsg())
-            # Complete when it is closed.
-            del written
+            _copy(_in_memory(raster, surface, place), made, progress)
         with replacing(path) as stream:
             copy_file(made, stream)
 
@@ -128,7 +132,14 @@ def _errors(path: Path, progress: _Progress) -> Iterator[None]:
             gdal.DontUseExceptions()
 
 
+def _copy(image: gdal.Dataset, path: str, progress: _Progress) -> None:
+    """Write an image as a COG, which is complete when this returns: its end is written as the copy is closed."""
+    if gdal.GetDriverByName("COG").CreateCopy(path, image, 0, list(_OPTIONS), progress) is None:
+        raise RuntimeError(gdal.GetLastErrorMsg())
+
+
 def _in_memory(raster: Raster, surface: RasterSurface, place: Place) -> gdal.Dataset:
+    """Return an image in memory with the values of a surface."""
     rows, columns = surface.values.shape
     image = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Float32)
     _describe(image, raster, (surface.west, surface.north, surface.cell_size), place)

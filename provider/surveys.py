@@ -24,6 +24,8 @@ from .places import Place, place_of_cloud
 
 # The output that is the virtual point cloud.
 VPC = "VPC"
+
+# The system of positions in degrees, which virtual point clouds have beside those of the survey.
 WGS84 = "EPSG:4326"
 
 
@@ -73,8 +75,8 @@ def write_survey(
     change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(WGS84), context.transformContext())
 
     def to_degrees(coordinates: np.ndarray) -> np.ndarray:
-        there = [change.transform(QgsPointXY(*place)) for place in coordinates.tolist()]
-        return np.array([(place.x(), place.y()) for place in there])
+        points = [change.transform(QgsPointXY(*position)) for position in coordinates.tolist()]
+        return np.array([(point.x(), point.y()) for point in points])
 
     try:
         write_vpc(tiles, path, to_degrees if crs.isValid() else None)

@@ -52,6 +52,7 @@ def _of_secrets(folder: str) -> list[str]:
 
 
 def _of_flake8(folder: str) -> list[str]:
+    """Return the lines of flake8."""
     return [f"flake8: {line}" for line in _said("flake8", *FLAKE8, ".", folder=folder).splitlines()]
 
 

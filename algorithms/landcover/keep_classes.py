@@ -9,14 +9,15 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..stage import Param, stage
 
-_NONE, _ALL = "none", "all"
+# The choice by default.
+_NONE = "none"
 
 # Classes that are kept of a classified cloud, or None for all but those of points that nobody has classified.
 _KEPT = {
     _NONE: (),
     "ground": (PointClass.GROUND,),
     "ground and buildings": (PointClass.GROUND, PointClass.BUILDING),
-    _ALL: None,
+    "all": None,
 }
 
 

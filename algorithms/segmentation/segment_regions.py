@@ -17,7 +17,8 @@ _HEIGHT_NOISE_FACTOR = 10.0
 
 # Bounds of T_Dh (m), the paper's two values: with less, roofs of common slopes fall apart, and with more, in forests
 # whose noise is measured too large, roofs and crowns grow together.
-_MIN_HEIGHT_DISTANCE, _MAX_HEIGHT_DISTANCE = 0.2, 0.3
+_MIN_HEIGHT_DISTANCE = 0.2
+_MAX_HEIGHT_DISTANCE = 0.3
 
 # Points of one region are linked over less than this; the regions themselves may be of any size (m).
 _REACH = 5.0
@@ -141,4 +142,4 @@ def segment_regions(
 
 def _height_distance(noise: float) -> float:
     """Return T_Dh (m) for points with a surface noise (m)."""
-    return min(max(_HEIGHT_NOISE_FACTOR * noise, _MIN_HEIGHT_DISTANCE), _MAX_HEIGHT_DISTANCE)
+    return float(np.clip(_HEIGHT_NOISE_FACTOR * noise, _MIN_HEIGHT_DISTANCE, _MAX_HEIGHT_DISTANCE))

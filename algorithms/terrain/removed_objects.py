@@ -134,6 +134,7 @@ class ObjectRemoval:
         return objects & ~is_terrain[part]
 
     def _slope_without(self, objects: np.ndarray) -> np.ndarray:
+        """Return the slope of the surface across these cells, as if they were not there."""
         return _slope(_interpolated(self.surface, objects), self.cell_size)
 
 

@@ -105,6 +105,7 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
 
 
 def _write(survey: Survey, records: np.ndarray, compressed: bool, stream: BinaryIO, monitor: Monitor) -> None:
+    """Write a tile of these records; layouts that older versions of LAS do not know make it version 1.4."""
     header = replace(survey.header, count=len(records))
     if not header.layout.is_old:
         header = replace(header, minor=4)

@@ -17,14 +17,17 @@ from .blocks import NUMBERED, Block, feature_boxes, take_features
 from .same_features import leaders
 from .tiled_steps import layers_of
 
-# The neighbors of a block that come after it, by columns and rows, and of how many blocks the edges stay in memory.
+# Columns and rows from a block to those neighbors that come after it in the order of the blocks.
 _FORWARD = ((1, 0), (-1, 1), (0, 1), (1, 1))
+
+# Blocks whose edges stay in memory: a block, its four neighbors, and some that it shares with the block before.
 _EDGES_KEPT = 8
 
 # Fields with the number of a feature in its layer, and with that of the cluster that it outlines.
 _ID, _CLUSTER = "id", "cluster_id"
 
-_NONE = np.zeros(0, np.int64)
+# The numbers of a block that has none.
+_NO_NUMBERS = np.zeros(0, np.int64)
 
 # Returns the records inside and outside the edges of a block, by the position of the block.
 Edges = Callable[[int], tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
@@ -57,7 +60,7 @@ def join_numbers(
     joined: list[dict[str, np.ndarray]] = [{} for _ in results]
     links = _links(blocks, edges)
     for name in NUMBERED:
-        of_features = (features or {}).get(name, [_NONE] * len(results))
+        of_features = (features or {}).get(name, [_NO_NUMBERS] * len(results))
         most = [max(_largest(one, name), int(own.max(initial=0))) for one, own in zip(results, of_features)]
         first = np.concatenate([[0], np.cumsum(most)])
         found = [np.zeros((0, 2), np.int64)]
@@ -69,7 +72,7 @@ def join_numbers(
         one_end, other_end = ends[~is_feature[ends].any(axis=1)].T
         _, group = components(one_end, other_end, int(first[-1]))
         parts = [start + one.used[name] - 1 for one, start in zip(results, first) if name in one.used]
-        used = np.concatenate([_NONE, *parts])
+        used = np.concatenate([_NO_NUMBERS, *parts])
         # Numbers in the order of the blocks, as those of one cloud are in that of its points.
         distinct, at = np.unique(group[used[~is_feature[used]]], return_index=True)
         final = np.zeros(len(group) + 1, np.int32)
@@ -84,7 +87,7 @@ def feature_numbers(pipeline: Pipeline, results: list[BlockResult]) -> dict[str,
     found: dict[str, list[np.ndarray]] = {}
     for name, layer in layers_of(pipeline).items():
         if layer.numbers:
-            before = found.get(layer.numbers, [_NONE] * len(results))
+            before = found.get(layer.numbers, [_NO_NUMBERS] * len(results))
             own = [
                 np.asarray(one.layers[name].columns[_ID], np.int64) if one.layers else before[0][:0] for one in results
             ]
@@ -161,7 +164,7 @@ class References:
     @classmethod
     def of(cls, results: list[BlockResult], name: str) -> References:
         """Return what points of blocks refer to by a dimension, before any number is known."""
-        kinds = [(one.used.get(name, _NONE), one.counts.get(name, _NONE)) for one in results]
+        kinds = [(one.used.get(name, _NO_NUMBERS), one.counts.get(name, _NO_NUMBERS)) for one in results]
         return cls([dict(zip(used.tolist(), counts.tolist())) for used, counts in kinds])
 
     def count_of(self, key: tuple[int, int]) -> int:

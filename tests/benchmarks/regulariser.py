@@ -12,9 +12,11 @@ import sys
 import venv
 from pathlib import Path
 
+# Where its environment is, and the version that the tables compare.
 FOLDER = Path(__file__).resolve().parents[2] / ".pythons" / "regulariser"
 PACKAGE = "buildingregulariser==0.2.5"
 
+# Of polygons, of their rings, of the corners of these: two coordinates (m).
 Polygons = list[list[list[list[float]]]]
 
 
@@ -39,10 +41,12 @@ def regularise(polygons: Polygons) -> Polygons:
 
 
 def _interpreter() -> Path:
+    """Return the Python of its environment, which may not be there yet."""
     return FOLDER / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
 
 
 def _main() -> None:
+    """Regularise the polygons of the standard input: runs in its environment."""
     import geopandas
     from buildingregulariser import regularize_geodataframe
     from shapely.geometry import Polygon
