@@ -114,6 +114,7 @@ def _renderer(layer: QgsVectorLayer, name: str):
 
 
 def _symbol(color: str) -> QgsFillSymbol:
+    """Return polygons of a color with a thin dark outline (mm)."""
     return QgsFillSymbol.createSimple({"color": color, "outline_color": "#333333", "outline_width": "0.2"})
 
 

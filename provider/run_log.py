@@ -25,6 +25,7 @@ class RunLog:
 
     def __init__(self) -> None:
         self.steps: list[StepFacts] = []
+        # By step: its stage, the tunables it was given, and what automatic ones took.
         self._given: list[tuple[Stage, dict[str, Any], dict[str, Any]]] = []
         self._began = time.monotonic()
 
@@ -52,6 +53,7 @@ class RunLog:
             self.steps[-1].parameters = parameter_rows(*self._given[-1])
 
 
+# The log of the run that a thread is in.
 _CURRENT: ContextVar[Optional[RunLog]] = ContextVar("run", default=None)
 
 
@@ -67,9 +69,10 @@ def run_log() -> Iterator[RunLog]:
     if outer is not None:
         yield outer
         return
-    token = _CURRENT.set(RunLog())
+    log = RunLog()
+    token = _CURRENT.set(log)
     try:
-        yield current_log() or RunLog()
+        yield log
     finally:
         _CURRENT.reset(token)
 
@@ -100,6 +103,7 @@ def title_of(name: str) -> str:
 
 
 def _short(value: Any) -> str:
+    """Return a value that has no tunable, and so no unit, as text."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:,.4g}" if isinstance(value, float) else f"{value:,d}" if isinstance(value, int) else str(value)

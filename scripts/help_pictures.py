@@ -28,6 +28,8 @@ sys.path.insert(0, str(ROOT))
 importlib.import_module("conftest")
 
 from lidar_buildings.algorithms.captions import captions  # noqa: E402
+from lidar_buildings.algorithms.cloud.asprs import NOISE as NOISE_CLASSES  # noqa: E402
+from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import Outcome, run_pipeline, run_stage  # noqa: E402
@@ -35,17 +37,25 @@ from lidar_buildings.algorithms.stage import Stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.provider.paths import PICTURES, STYLES  # noqa: E402
 
-WIDTH = 640  # pixels
+# Width of a picture, pixels.
+WIDTH = 640
 
 # Share of the width that is left free on each side.
 MARGIN = 0.02
 
-# Eye-dome lighting: a pixel is darker by its depth (m) behind pixels at these distances (pixels); the strength is
-# chosen by eye.
-LIGHTING_PIXELS, LIGHTING_STRENGTH = (1, 2), 0.6
+# Eye-dome lighting: a pixel is darker by its depth (m) behind pixels at these distances (pixels).
+LIGHTING_PIXELS = (1, 2)
 
-# Few different colors make small files.
-LIGHTING_STEPS, HUES, RAMP_STEPS, COLOR_STEP = 6, 24, 20, 32
+# How much darker, and the depth (m) beyond which it is no darker: both chosen by eye.
+LIGHTING_STRENGTH = 0.6
+LIGHTING_DEPTH = 1.5
+
+# Few different colors make small files: steps of lightness, hues of segments, colors of the ramp, and the step between
+# values of a band (0 to 255).
+LIGHTING_STEPS = 6
+HUES = 24
+RAMP_STEPS = 20
+COLOR_STEP = 32
 
 # Colors of values from low to high.
 RAMP = np.array([(44, 62, 120), (52, 132, 160), (92, 176, 120), (214, 204, 88), (214, 96, 56)], float)
@@ -55,7 +65,11 @@ LINE = QColor("#10161d")
 
 @dataclass(frozen=True)
 class Scene:
-    """How a picture is made: a simulation and the steps that follow, colors and lines, and from where it is seen."""
+    """How a picture is made: a simulation and the steps that follow, colors and lines, and from where it is seen.
+
+    Steps are names of stages, or pairs of a name and tunables; a pipeline takes their place. ``color`` is a dimension
+    or ``colors``, ``lines`` are names of layers. Angles are in degrees, the ``box`` is west, south, east, north (m).
+    """
 
     simulation: tuple[str, dict[str, Any]]
     steps: tuple[Any, ...] = ()
@@ -192,6 +206,7 @@ def made(scene: Scene) -> Outcome:
 
 @cache
 def _simulated(name: str, tunables: tuple[tuple[str, Any], ...]) -> Cloud:
+    """Return the cloud of a simulation, which several scenes share."""
     return run_stage(STAGES[name], **dict(tunables)).cloud
 
 
@@ -203,7 +218,7 @@ def drawn(scene: Scene) -> QImage:
     x, y, _ = cloud.get("xyz").T
     cloud = cloud.take(np.flatnonzero((x >= west) & (x <= east) & (y >= south) & (y <= north)))
     xyz = cloud.get("xyz")
-    view = View(xyz[~np.isin(cloud.get("classification"), (7, 18))], scene)
+    view = View(xyz[~np.isin(cloud.get("classification"), NOISE_CLASSES)], scene)
     pixels = view.points(xyz, colors(cloud, scene.color), scene.pixels)
     height, width = pixels.shape[:2]
     image = QImage(pixels.tobytes(), width, height, 3 * width, QImage.Format.Format_RGB888).copy()
@@ -211,11 +226,11 @@ def drawn(scene: Scene) -> QImage:
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setPen(QPen(LINE, 1.6))
     # Crowns over the corner of a roof would lift its outline.
-    is_building = cloud.get("classification") == 6
+    is_building = cloud.get("classification") == PointClass.BUILDING
     below = xyz[is_building] if is_building.any() else xyz
     for name in scene.lines.split():
         for ring in rings(outcome.layers[name], scene.box):
-            painter.drawPolyline(QPolygonF([QPointF(*place) for place in view.pixels(with_heights(ring, below))]))
+            painter.drawPolyline(QPolygonF([QPointF(*pixel) for pixel in view.pixels(with_heights(ring, below))]))
     painter.end()
     return image
 
@@ -268,7 +283,7 @@ def lighting(depth: np.ndarray) -> np.ndarray:
     for pixels in LIGHTING_PIXELS:
         for axis in (0, 1):
             for step in (-pixels, pixels):
-                behind += np.clip(known - np.roll(known, step, axis), 0, 1.5) / pixels
+                behind += np.clip(known - np.roll(known, step, axis), 0, LIGHTING_DEPTH) / pixels
     light = np.exp(-LIGHTING_STRENGTH * behind / 4)
     return np.where(np.isfinite(depth), np.ceil(light * LIGHTING_STEPS) / LIGHTING_STEPS, 1.0)
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.grid import EIGHT
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.kinds import SCENE
 from ..segmentation.top_surface import TOP
-
-_EIGHT = np.ones((3, 3), bool)
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class Columns:
         self.top = top
         window = 2 * max(1, round(COLUMNS.wall_reach / cell_size)) + 1
         self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), window)
-        beside = ndimage.grey_dilation(building, footprint=_EIGHT)
+        beside = ndimage.grey_dilation(building, footprint=EIGHT)
         self.beside = np.where(building > 0, 0, beside)
 
     def owners(self, points: ColumnPoints, clearance: float, structure_height: float) -> np.ndarray:
@@ -106,8 +105,8 @@ class Columns:
         weights = (points.goes_on[apart], None)
         n_passed, n_points = (np.bincount(number, one, np.prod(shape)).reshape(shape) for one in weights)
         # Crowns are three cells wide or more, balconies and walls are not. The beam passes most points of a crown.
-        is_wide = ndimage.binary_opening(n_points > 0, _EIGHT)
+        is_wide = ndimage.binary_opening(n_points > 0, EIGHT)
         mean_excess = ndimage.uniform_filter(2.0 * n_passed - n_points, COLUMNS.around, mode="constant")
         # Rounded to the whole number that the sum over the square is.
         is_mostly_passed = np.rint(COLUMNS.around**2 * mean_excess) > 0
-        return ndimage.binary_dilation(is_wide & is_mostly_passed, _EIGHT)
+        return ndimage.binary_dilation(is_wide & is_mostly_passed, EIGHT)

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cloud.reasons import Reason
+from ..geometry.grid import EIGHT
 from ..geometry.groups import least_of
 from ..packages import ndimage
 
 Cell = tuple[np.ndarray, np.ndarray]
-
-_EIGHT = np.ones((3, 3), bool)
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ def _small(mask: np.ndarray, most: float) -> np.ndarray:
 
 def numbered(covered: np.ndarray, min_area: float, cell_size: float) -> tuple[np.ndarray, np.ndarray]:
     """Return numbers from 1 for regions that are large enough, from the south-west, and why the others are refused."""
-    region, count = ndimage.label(covered, _EIGHT)
+    region, count = ndimage.label(covered, EIGHT)
     is_large = np.bincount(region.ravel(), minlength=count + 1) * cell_size**2 >= min_area
     return renumbered(is_large)[region], np.where(is_large, 0, Reason.TOO_SMALL).astype(np.uint8)[region]
 

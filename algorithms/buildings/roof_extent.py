@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cloud.reasons import Reason
+from ..geometry.grid import EIGHT
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.kinds import IMAGES, MATCHING
@@ -35,8 +36,6 @@ IMAGE_ROOFS, VEHICLES = ImageRoofRules(), VehicleRules()
 
 # Directions that the smallest rectangle around an object is looked for in.
 _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
-
-_EIGHT = np.ones((3, 3), bool)
 
 
 def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> np.ndarray:
@@ -82,7 +81,7 @@ class RoofExtent:
             closed |= self._small_holes(closed, gap) & raised
         wide = ndimage.binary_opening(closed, self._disk(IMAGE_ROOFS.least_width / 2))
         # Opening rounds the corners off, too: they come back.
-        wide = ndimage.binary_dilation(wide, _EIGHT, 2, mask=closed) if wide.any() else wide
+        wide = ndimage.binary_dilation(wide, EIGHT, 2, mask=closed) if wide.any() else wide
         return self._to_edges(wide)
 
     def _to_edges(self, core: np.ndarray) -> np.ndarray:
@@ -96,7 +95,7 @@ class RoofExtent:
         cross = ndimage.generate_binary_structure(2, 1)
         grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)
         # Smeared walls, fences and branches that reach out are thinner than the objects that carry them.
-        return core | ndimage.binary_opening(grown, _EIGHT)
+        return core | ndimage.binary_opening(grown, EIGHT)
 
     def faces(self, building: np.ndarray) -> np.ndarray:
         """Return numbered buildings (rows, columns) with the smeared walls around them.

@@ -9,6 +9,9 @@ import numpy as np
 from ..packages import sparse
 from .groups import components
 
+# A cell of a raster and the eight around it.
+EIGHT = np.ones((3, 3), bool)
+
 # A raster larger than this, in cells and in cells for each point, is a mistake in the coordinates.
 _MOST_CELLS, _MOST_CELLS_PER_POINT = 10_000_000, 20
 

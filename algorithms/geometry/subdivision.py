@@ -14,6 +14,7 @@ SNAP = 0.05
 # if that is less.
 _LEAST_REACH = 2.5
 
+# The cell beyond the rim of the rectangle.
 OUTSIDE = -1
 
 
@@ -97,7 +98,7 @@ class Subdivision:
         return len(self) > before
 
     def _cut_cell(self, cell: int, line: tuple, length: float, snap: float) -> None:
-        """Split one cell where the line crosses it within its length."""
+        """Split one cell where a line crosses it within its length: a position x, y (m) and a unit direction."""
         x0, y0, ux, uy = line
         loop = self.loops[cell]
         positions = [self.vertices[v] for v in loop]
@@ -169,6 +170,7 @@ class Subdivision:
         self.members.append(rows[~is_left])
 
     def _box(self, loop: list[int]) -> tuple[float, float, float, float]:
+        """Return the least and greatest x and y of a ring of vertices: west, south, east, north (m)."""
         xs, ys = zip(*(self.vertices[v] for v in loop))
         return min(xs), min(ys), max(xs), max(ys)
 

@@ -9,17 +9,18 @@ from .sparse_voxels import Keys, find_keys, neighbor_offsets
 
 # The 26 neighbors of a voxel are the bits of a number, in the order of these steps.
 _STEPS = neighbor_offsets(26)
-_N_AXES = np.abs(_STEPS).sum(axis=1)
 _BIT = np.uint32(1) << np.arange(26, dtype=np.uint32)
 _ALL = np.uint32(2**26 - 1)
-_FACES = np.flatnonzero(_N_AXES == 1)
-_FACE_BITS = np.bitwise_or.reduce(_BIT[_FACES])
+
+# Bits of the neighbors that share a face with the voxel, and of those that share a face or an edge.
+_N_AXES = np.abs(_STEPS).sum(axis=1)
+_FACE_BITS = np.bitwise_or.reduce(_BIT[_N_AXES == 1])
 _EDGE_BITS = np.bitwise_or.reduce(_BIT[_N_AXES <= 2])
 
 # Sides from which voxels are removed in turn: top, bottom, north, south, east, west. Opposite sides follow each other,
 # so that the skeleton stays in the middle.
-_SIDES = [int(np.flatnonzero((side == _STEPS).all(axis=1))[0]) for side in np.eye(3, dtype=int)[::-1]]
-_SIDES = [bit for side in _SIDES for bit in (side, 25 - side)]
+_POSITIVE_SIDES = [int(np.flatnonzero((side == _STEPS).all(axis=1))[0]) for side in np.eye(3, dtype=int)[::-1]]
+_SIDES = [bit for side in _POSITIVE_SIDES for bit in (side, 25 - side)]
 
 # Voxels whose neighborhoods are examined at once: 1 MB for each array, which fits caches.
 _CHUNK = 250_000
@@ -32,6 +33,7 @@ def _adjacency(connectivity: int, among: np.ndarray) -> list[np.uint32]:
     return [np.bitwise_or.reduce(_BIT[row], initial=np.uint32(0)) & among for row in np.array(rows)]
 
 
+# Neighbors of the neighbors of a voxel: of the object, and of the background.
 _TOUCHING = _adjacency(26, _ALL)
 _SHARING_FACES = _adjacency(6, _EDGE_BITS)
 
@@ -76,7 +78,11 @@ class _Thinning:
     Attributes
     ----------
     keys : ndarray of shape (m,), int64
+        Numbers of the voxels, ascending.
+    parity : ndarray of shape (m,), int64
+        Which of column, row and layer are odd, as bits.
     kept : ndarray of shape (m,), bool
+        Voxels that were not removed.
     around : ndarray of shape (m,), uint32
         Bits of the neighbors that are kept.
     changed : ndarray of shape (m,), int32
@@ -98,6 +104,7 @@ class _Thinning:
         self.changed = np.zeros(len(cells), np.int32)
 
     def run(self, monitor: Monitor) -> np.ndarray:
+        """Remove voxels until nothing changes; return which are kept (m,)."""
         step, n_removed = 0, 1
         while n_removed:
             n_removed = 0

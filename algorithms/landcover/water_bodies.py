@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import raster_cells, refuse_sparse
+from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
 from ..geometry.groups import least_of
 from ..packages import ndimage
 from ..stage import Monitor
@@ -15,8 +15,6 @@ from ..stage import Monitor
 # Distance (m) within which other points decide whether the surface at a point is level. Gaps of the cloud up to twice
 # as wide are filled.
 REACH = 10.0
-
-_EIGHT = np.ones((3, 3), bool)
 
 
 @dataclass(frozen=True)
@@ -77,7 +75,7 @@ def water_levels(
     if level is None:
         return np.full(len(xyz), np.nan)
     # Beside land, pulses that come back from it hide that water gives few.
-    edge = ndimage.binary_dilation(body, _EIGHT, iterations=_RULES.ring)
+    edge = ndimage.binary_dilation(body, EIGHT, iterations=_RULES.ring)
     monitor.progress(0.9)
     return np.where(edge, level, np.nan)[row, column]
 
@@ -102,7 +100,7 @@ def _bodies(
     candidates: np.ndarray, is_low: np.ndarray, lowest: np.ndarray, min_cells: float
 ) -> tuple[np.ndarray, Optional[np.ndarray]]:
     """Return the cells of water bodies, and the level at each cell: that of the nearest cell with water; or None."""
-    part, _ = ndimage.label(candidates, _EIGHT)
+    part, _ = ndimage.label(candidates, EIGHT)
     size, seen = np.bincount(part.ravel()), np.bincount(part[is_low], minlength=part.max() + 1)
     is_water = np.zeros(candidates.shape, bool)
     shows_level = np.zeros(candidates.shape, bool)
@@ -126,7 +124,7 @@ def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Opt
     seen = inside & is_low
     level = float(np.median(lowest[seen]))
     on_level = seen & (np.abs(lowest - level) <= _RULES.level)
-    banks = ndimage.binary_dilation(inside, _EIGHT, iterations=_RULES.ring) & ~inside & np.isfinite(lowest)
+    banks = ndimage.binary_dilation(inside, EIGHT, iterations=_RULES.ring) & ~inside & np.isfinite(lowest)
     if on_level.sum() < _RULES.half * seen.sum() or not banks.any():
         return None
     return on_level if (lowest[banks] > level + _RULES.level).mean() >= _RULES.half else None

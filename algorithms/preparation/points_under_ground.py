@@ -191,8 +191,9 @@ def _beside(around: list[tuple[np.ndarray, np.ndarray]], levels: np.ndarray, ori
 def _slope(beside: np.ndarray) -> np.ndarray:
     """Return rise eastward and northward (m, 2): the middle one of those between opposite neighbors.
 
-    So that one odd height does not change it.
+    The middle one, so that one odd height does not change it.
     """
+    # Positions of three neighbors each in the order of ``Grid.around``.
     west, east, south, north = ([0, 3, 5], [2, 4, 7], [0, 1, 2], [5, 6, 7])
     eastward = (beside[:, east, 2] - beside[:, west, 2]) / (beside[:, east, 0] - beside[:, west, 0])
     northward = (beside[:, north, 2] - beside[:, south, 2]) / (beside[:, north, 1] - beside[:, south, 1])

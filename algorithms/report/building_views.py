@@ -8,7 +8,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.grid import fixed_grid_over
-from .page import picture, position
+from .page import position, svg_image
 
 # Largest width and height of a view, pixels.
 _WIDTH, _HEIGHT = 340, 240
@@ -92,7 +92,7 @@ def _view(
     column, row = ((plan[order] - low) / size).astype(int).T
     for right, up in _DOT:
         image[np.clip(row + up, 0, lines - 1), np.clip(column + right, 0, columns - 1)] = 1 + is_building[order]
-    drawn = picture(image[::-1], _COLORS, (0.0, 0.0, columns, lines))
+    drawn = svg_image(image[::-1], _COLORS, (0.0, 0.0, columns, lines))
     outline = ""
     if ring is not None:
         points = " ".join(f"{x:.1f},{lines - y:.1f}" for x, y in (ring - low) / size)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..packages import ndimage
-from .page import picture
+from .page import svg_image
 
 # Cells along the longest side of a map: as many as pages have pixels for it.
 CELLS = 900
@@ -42,7 +42,7 @@ def draw_hillshade(xyz: np.ndarray, low: np.ndarray, high: np.ndarray, scale: fl
         surface = surface[tuple(nearest)]
     image = np.where(empty, 255, 90 + 160 * _shade(surface, cell)).astype(np.uint8)
     height, (up, across) = float(high[1] - low[1]) * scale, np.array(surface.shape) * cell * scale
-    return picture(image[::-1], _GRAYS, (0.0, height - up, across, up))
+    return svg_image(image[::-1], _GRAYS, (0.0, height - up, across, up))
 
 
 def topmost(xyz: np.ndarray, low: np.ndarray, cell: float) -> np.ndarray:

@@ -18,10 +18,15 @@ from ..geometry.grid import plan_box
 
 # Distinguishable with any color vision and in gray (Tol's high-contrast scheme); the last is the paper.
 _COLORS = ((221, 221, 221), (0, 68, 136), (221, 170, 51), (187, 85, 102), (255, 255, 255))
+
+# Outcomes of a point: their colors by position.
 REST, HIT, MISS, FALSE, _EMPTY = range(5)
 
 # Longest side of the map, pixels.
 _MAP_SIDE = 800
+
+# Width at which a map is shown at least, pixels: one of few pixels is enlarged.
+_LEAST_WIDTH = 360
 
 _STYLE = """
 body { font: 16px/1.5 sans-serif; color: #222; background: #fff; max-width: 60em; margin: 2em auto; padding: 0 1em }
@@ -144,20 +149,20 @@ def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, s
     order = np.argsort(xyz[:, 2], kind="stable")
     # Of values that go to one pixel the last one stays, which is the highest.
     image[row[order], column[order]] = outcome[order]
-    picture = base64.b64encode(png(image[::-1])).decode()
+    data = base64.b64encode(png(image[::-1])).decode()
     legend = "".join(
         f'<span class="swatch" style="background:rgb{_COLORS[code]}"></span>{html.escape(name)}'
         for code, name in enumerate(names)
     )
-    width = max(360, image.shape[1])
+    width = max(_LEAST_WIDTH, image.shape[1])
     caption = f"The map is {extent[0]:,.0f} m wide and {extent[1]:,.0f} m high, north is up; one pixel is {size:.2g} m."
     return (
         f'<h2>Map</h2>\n<p>{legend}</p>\n<img alt="Map of the result" width="{width}" '
-        f'src="data:image/png;base64,{picture}">\n<p>{caption}</p>'
+        f'src="data:image/png;base64,{data}">\n<p>{caption}</p>'
     )
 
 
-def picture(image: np.ndarray, colors: np.ndarray, box: tuple[float, float, float, float]) -> str:
+def svg_image(image: np.ndarray, colors: np.ndarray, box: tuple[float, float, float, float]) -> str:
     """Return the SVG of an image of color numbers in a box: left, top, width and height in units of the picture."""
     data = base64.b64encode(png(image, colors)).decode()
     x, y, width, height = box

@@ -26,8 +26,11 @@ _REFITS = 3
 # leaves most of its points within the bins of one.
 _DIRECTIONS = 128
 
-# Neighbors of a chunk, 60 bytes each and 15 MB in all. The Hough transform takes 10 times as much for each of them.
-CHUNK_NEIGHBORS, _HOUGH_NEIGHBORS = 240_000, 24_000
+# Neighbors of a chunk, 60 bytes each and 15 MB in all.
+CHUNK_NEIGHBORS = 240_000
+
+# Neighbors of a chunk of the Hough transform, which takes 10 times as much memory for each of them.
+_HOUGH_NEIGHBORS = 24_000
 
 # Points of a leaf of the tree, at most: searched in as much time as the usual 16, in a third less memory.
 _LEAF = 24
@@ -178,12 +181,14 @@ def fit_planes(offsets: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def _every(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return all neighbors (m, k)."""
     return near
 
 
 def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
     """Return which points are no outliers of a plane by least squares, fitted again without those of the one before."""
     chosen = near
+    # Few are left out at first, when the plane still follows the outliers.
     for share in (0.8, 0.65, _LEAST_SHARE, _LEAST_SHARE):
         distance = _distances(offsets, *fit_planes(offsets, chosen)[:2])
         distance[~near] = np.inf
@@ -220,5 +225,6 @@ def _half_sphere() -> np.ndarray:
 
 
 def _distances(offsets: np.ndarray, center: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return the distances (m, k), m, of neighbors from planes; undefined planes have normal and level 0."""
     level = np.einsum("ij,ij->i", center, normal)
     return np.abs(np.einsum("ijk,ik->ij", offsets, np.nan_to_num(normal)) - np.nan_to_num(level)[:, None])

@@ -16,13 +16,17 @@ _EVEN = 1 / np.sqrt(3)
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
 _MAX_ROUNDS = 1000
 
-# Planes around a voxel go on into it where they hold this share of its points, and each at least this number. Leaves in
-# which a plane would end lie on it by chance, a fifth of them on one of automatic tolerance.
-_HELD, _LEAST_POINTS = 2 / 3, 4
+# Planes around a voxel go on into it where together they hold this share of its points: leaves in which a plane would
+# end lie on it by chance, a fifth of them on one of automatic tolerance.
+_HELD = 2 / 3
+
+# Points of such a voxel that each of these planes holds at least.
+_LEAST_POINTS = 4
 
 # A plane keeps this share of its points when each goes to the plane nearest to it, or it lies across others.
 _LEAST_LEFT = 0.5
 
+# Points that a thread works on between two reports.
 _CHUNK = 200_000
 
 # Boxes of the first array of a pair with those of the second.

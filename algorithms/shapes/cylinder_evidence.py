@@ -45,6 +45,7 @@ class _Rules:
     #: the tolerance: that takes half of them
     goes_on: float = 0.25
     stray: float = 0.02  #: Share of the points that lie at either end of the arc by chance
+    seen: float = 0.3  #: Least share of the cells of a sector with points, of one that does not only hold stray ones
     length: float = 1.5  #: Least length (diameters): shorter pieces cannot be distinguished from elbows
     short: float = 0.3  #: Least length (diameters) of wide ones: shorter pieces cannot be distinguished from spheres
     long_enough: float = 1.0  #: Length (m) that is enough for any diameter: of a tank less may be seen

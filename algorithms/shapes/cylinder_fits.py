@@ -136,6 +136,7 @@ def bends(cylinder: Cylinder, xyz: np.ndarray) -> float:
     first, second = across_axis(cylinder.axis)
     a, b = away @ first, away @ second
     square = u * u - 1 / 3
+    # Faces that enclose the axis, from a flat bar to a hexagon.
     waves = [wave(k * np.arctan2(b, a)) for k in range(2, 7) for wave in (np.cos, np.sin)]
     patterns = np.column_stack([u, square, u * a, u * b, square * a, square * b, *waves])
     residual = distance - cylinder.radius

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.grid import refuse_sparse
+from ..geometry.grid import EIGHT, refuse_sparse
 from ..geometry.sparse_voxels import voxel_index
 from ..geometry.tiled_tin import TiledTin
 from ..packages import ndimage
@@ -178,7 +178,7 @@ def _fill_gaps(surface: np.ndarray, middle: np.ndarray, reach: float, monitor: M
     if not gap.any():
         return
     # Cells inside the surface don't influence its gaps.
-    rim = ~empty & ndimage.binary_dilation(empty, np.ones((3, 3), bool))
+    rim = ~empty & ndimage.binary_dilation(empty, EIGHT)
     nodes = middle[rim]
     nodes[:, 2] = surface[rim]
     surface[gap] = TiledTin(nodes).elevation(middle[gap], monitor.part(0.2, 1))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.grid import raster_cells, refuse_sparse
+from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
@@ -25,8 +25,6 @@ class SmearedRules:
 
 
 SMEARED = SmearedRules()
-
-_EIGHT = np.ones((3, 3), bool)
 
 
 def on_no_object(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
@@ -79,7 +77,7 @@ def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndar
     Cells of large ones are ``is_other`` (rows, columns): they have points, and no ground.
     """
     # Parts are joined over a cell: noise interrupts crests of terrain. Parts longer than two windows are such crests.
-    part, count = ndimage.label(ndimage.binary_dilation(above, _EIGHT), _EIGHT)
+    part, count = ndimage.label(ndimage.binary_dilation(above, EIGHT), EIGHT)
     is_short = np.zeros(count + 1, bool)
     for number, box in enumerate(ndimage.find_objects(part), 1):
         is_short[number] = max(side.stop - side.start - 2 for side in box) * size <= 2 * SMEARED.width
