@@ -31,13 +31,16 @@ from .crs import crs_of, crs_of_layer
 from .places import Place, refuse_degrees
 from .vectors import SOURCE_TYPES
 
+# Kinds of geometry of QGIS by their names in WKT, as layers are declared.
 _TYPES = {
     "Polygon": Qgis.GeometryType.Polygon,
     "LineString": Qgis.GeometryType.Line,
     "Point": Qgis.GeometryType.Point,
 }
+
 # Features read between two reports of progress.
 _BETWEEN_CHECKS = 1000
+
 # Codes of geometries in WKB; ISO adds 1000 for heights, the older extended form sets a bit.
 _WKB_POINT, _WKB_LINE, _WKB_POLYGON = 1, 2, 3
 _Z_OF_OLD_WKB = 0x80000000
@@ -272,12 +275,14 @@ def _vertices(wkb: bytes, place: Place) -> list:
 
 
 def _rings(wkb: bytes, at: int, width: int) -> Iterator[np.ndarray]:
+    """Yield the rings of WKB from a byte on, each a count and that many vertices of ``width`` coordinates."""
     while at < len(wkb):
         n = int.from_bytes(wkb[at : at + 4], "little")
         yield np.frombuffer(wkb, "<f8", n * width, at + 4).reshape(n, width)
         at += 4 + 8 * n * width
 
 
+# A part of a layer of each kind, as stages are given it, from its rings.
 _SHAPES: dict[str, Callable[[list], Any]] = {
     "Polygon": lambda rings: rings,
     "LineString": lambda rings: rings[0],

@@ -12,6 +12,7 @@ from ..algorithms.presets import PRESETS
 from ..algorithms.threads import use_threads
 from .texts import tr
 
+# The heading of the options in the dialog of QGIS.
 GROUP = "LiDAR Buildings"
 
 # Where QGIS's Processing keeps what its options dialog shows.

@@ -243,6 +243,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         return outcome, place
 
     def _points(self) -> int:
+        """Return how many points are read."""
         return sum(count_points(path, self.job.box) for path in self.job.paths)
 
     def _warn_if_nothing_was_selected(self, clouds: list[Cloud], outcome: Outcome, monitor: Monitor) -> None:

@@ -498,6 +498,7 @@ def _origin(command: str, files: list[dict[str, Any]]) -> str:
 
 
 def _line(cells: Sequence[str]) -> str:
+    """Return a line of a table in Markdown."""
     return "| " + " | ".join(cells) + " |"
 
 

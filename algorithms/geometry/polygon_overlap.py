@@ -8,6 +8,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .groups import items
+from .rings import signed_area
 
 # Pairs of edges that are compared at a time (150 bytes each).
 _PAIRS_AT_ONCE = 1_000_000
@@ -50,10 +51,9 @@ def as_polygons(geometries: list) -> Polygons:
 
 
 def _edges(ring: np.ndarray, is_exterior: bool) -> np.ndarray:
+    """Return the edges (k, 2, 2) of a ring in plan: an exterior counterclockwise, a hole clockwise."""
     plan = np.asarray(ring, float)[:, :2]
-    x, y = (plan - plan[0]).T
-    is_counterclockwise = np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) > 0
-    plan = plan if is_counterclockwise == is_exterior else plan[::-1]
+    plan = plan if (signed_area(plan) > 0) == is_exterior else plan[::-1]
     return np.stack([plan[:-1], plan[1:]], axis=1)
 
 

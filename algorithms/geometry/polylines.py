@@ -47,7 +47,7 @@ def _farthest_from_chords(line: np.ndarray, low: np.ndarray, high: np.ndarray) -
     square = np.maximum(along[:, 0] * along[:, 0] + along[:, 1] * along[:, 1], 1e-30)
     east, north = along[span].T
     offset_east, offset_north = (line[vertex] - line[low[span]]).T
-    share = np.minimum(np.maximum((offset_east * east + offset_north * north) / square[span], 0.0), 1.0)
+    share = np.clip((offset_east * east + offset_north * north) / square[span], 0.0, 1.0)
     away = np.hypot(offset_east - share * east, offset_north - share * north)
     distance, middle = np.full(len(low), -1.0), low.copy()
     filled = np.flatnonzero(size)

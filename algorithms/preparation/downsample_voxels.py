@@ -22,7 +22,12 @@ _STEPS = 2.0**32
 
 # With more voxels along an axis, float64 could not resolve positions inside a voxel.
 _MOST_ALONG_AXIS = 2.0**46
-_LARGEST_KEY = 2**63 - 1
+
+# Numbers of voxels are int64.
+_LARGEST_KEY = np.iinfo(np.int64).max
+
+# Numbers that a class can have in LAS.
+_CODES = 256
 
 
 @dataclass(frozen=True)
@@ -154,6 +159,7 @@ def downsample_voxels(
 
 
 def _by_voxel(xyz: np.ndarray, size: float, monitor: Monitor) -> _Sorted:
+    """Return the points in the order of their voxels: by x, then y, then z, and within one as in the cloud."""
     key = _keys(xyz, size, monitor)
     order = np.argsort(key, kind="stable")
     starts = run_starts(key[order])
@@ -252,8 +258,8 @@ def _majority(classes: np.ndarray, which: np.ndarray) -> np.ndarray:
     made = np.minimum.reduceat(classes, firsts).astype(np.uint8)
     is_mixed = made != np.maximum.reduceat(classes, firsts)
     among = is_mixed[which]
-    pair, count = np.unique(which[among] * 256 + classes[among], return_counts=True)
-    voxel, kind = np.divmod(pair, 256)
+    pair, count = np.unique(which[among] * _CODES + classes[among], return_counts=True)
+    voxel, kind = np.divmod(pair, _CODES)
     order = np.lexsort((kind, -count, voxel))
     first = order[run_starts(voxel[order])]
     made[voxel[first]] = kind[first]

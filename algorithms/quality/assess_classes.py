@@ -29,6 +29,8 @@ _KINDS = {
     "bridges": (PointClass.BRIDGE_DECK,),
     "noise": NOISE,
 }
+
+# Classes of points that nobody has classified.
 _UNCLASSIFIED = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
 
 # Numbers that a class can have in LAS.
@@ -213,6 +215,7 @@ def _outcome(called: np.ndarray, true: np.ndarray, is_right: np.ndarray) -> np.n
 
 
 def _page(matrix: np.ndarray, names: list[str], values: dict, table: str, picture: str) -> str:
+    """Return the page: figures of all classes, the matrix, and the HTML of a table and a map."""
     rows = [
         Row(
             "Overall accuracy",

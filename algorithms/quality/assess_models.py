@@ -32,6 +32,10 @@ _MAX_SLOPE = 75.0
 # Percentile of the fields and measures named p95.
 _PERCENTILE = 95.0
 
+# Distances that the histogram shows, in tolerances: farther ones would make all its bars narrow.
+_SHOWN = 4
+
+# What a face or plane is, in the attribute status.
 MATCHED, MISSING, INVENTED, UNSEEN = "matched", "missing", "invented", "unseen"
 
 _FACES = Layer(
@@ -353,10 +357,12 @@ def _volume(faces: list[_Face], points: _RoofPoints) -> float:
 
 
 def _high(off: np.ndarray) -> float:
+    """Return the 95th percentile of distances (m), NaN without any."""
     return float(np.percentile(np.abs(off), _PERCENTILE)) if len(off) else np.nan
 
 
 def _values(buildings: list[_Building]) -> dict[str, float]:
+    """Return the measures of all buildings together."""
     off = np.concatenate([building.off for building in buildings])
     each = [rms for rms in (root_mean_square(building.off) for building in buildings) if np.isfinite(rms)]
     return {
@@ -390,6 +396,7 @@ def _face_layer(buildings: list[_Building], points: _RoofPoints) -> LayerFeature
 
 
 def _distances(building: str, status: str, off: np.ndarray, n_points: int = 0) -> dict[str, Any]:
+    """Return the attributes of a face, or of a plane that has points and no face to measure them from."""
     mean = float(off.mean()) if len(off) else np.nan
     facts = {"building": building, "status": status, "points": len(off) or n_points, "mean": mean}
     return {**facts, "rms": root_mean_square(off), "p95": _high(off)}
@@ -423,6 +430,7 @@ def _building_layer(buildings: list[_Building]) -> LayerFeatures:
 
 
 def _page(buildings: list[_Building], values: dict[str, float], tolerance: float) -> str:
+    """Return the page: figures of distances and planes, and a histogram."""
     lead = (
         f"{values['points']:,} roof points of {values['buildings']:,} buildings were compared with "
         f"{values['all_faces']:,} faces."
@@ -439,7 +447,7 @@ def _page(buildings: list[_Building], values: dict[str, float], tolerance: float
         Row("Volume", f"{values['volume']:,.0f} m³", "Between roofs and the lowest points beside them."),
     ]
     off = np.concatenate([building.off for building in buildings])
-    near = off[np.abs(off) <= 4 * tolerance]
+    near = off[np.abs(off) <= _SHOWN * tolerance]
     picture = ""
     if len(near):
         series = [Series("roof points", BLUE, near)]
@@ -448,4 +456,5 @@ def _page(buildings: list[_Building], values: dict[str, float], tolerance: float
 
 
 def _meters(value: float) -> str:
+    """Return a length as text for users."""
     return "undefined" if np.isnan(value) else f"{value:.3f} m"

@@ -42,5 +42,6 @@ def cohens_kappa(matrix: np.ndarray) -> float:
 
 
 def _percent(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """Return parts in percent of wholes, NaN of nothing."""
     whole = np.asarray(whole, float)
     return 100.0 * np.divide(part, whole, out=np.full(whole.shape, np.nan), where=whole > 0)

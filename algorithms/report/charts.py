@@ -11,15 +11,21 @@ import numpy as np
 # Tol's high-contrast scheme, as in the maps of the pages, and a gray.
 BLUE, YELLOW, RED, GRAY = "#004488", "#ddaa33", "#bb5566", "#bbbbbb"
 
+# Size of a histogram, and its margins with titles and numbers, pixels.
 _WIDTH, _HEIGHT = 720, 320
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 50, 50
 
 # Narrower bars are not distinguishable, wider ones hide that there are two groups.
-_MOST_BARS, _FEWEST_BARS = 40, 20
+_MOST_BARS = 40
+_FEWEST_BARS = 20
+
+# Parts of a step by which rounding may miss a round number.
+_ROUNDING = 1e-9
 
 # Smaller values are 0 in a chart: powers of ten of their widths are beyond what float64 holds.
 _LEAST_VALUE = 1e-200
 
+# Side of a scatter plot, and the margin around its circle, pixels.
 _SIDE, _MARGIN = 420, 50
 
 # Sides of a cell of a matrix, and room for the names of its rows and columns, pixels.
@@ -85,19 +91,19 @@ def bar_edges(values: np.ndarray) -> np.ndarray:
     extent, size = high - low, max(abs(low), abs(high))
     if size < _LEAST_VALUE:
         return np.array([0.0, 1.0] if low >= 0 else [-1.0, 0.0, 1.0])
-    if extent <= 1e-9 * size:  # equal but for rounding
+    if extent <= _ROUNDING * size:  # equal but for rounding
         step = round_step(size / 10)
     else:
         width = 2 * float(np.subtract(*np.percentile(values, [75, 25]))) / len(values) ** (1 / 3)
         step = round_step(float(np.clip(width, extent / _MOST_BARS, extent / _FEWEST_BARS)))
-    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    first, last = math.floor(low / step + _ROUNDING), math.ceil(high / step - _ROUNDING)
     return np.arange(first, max(last, first + 1) + 1) * step
 
 
 def round_step(width: float) -> float:
     """Return the smallest of 1, 2 and 5 times a power of ten that is at least ``width``."""
     power = 10.0 ** math.floor(math.log10(width))
-    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= width * (1 - 1e-9))
+    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= width * (1 - _ROUNDING))
 
 
 def draw_scatter(xy: np.ndarray, axis: str, unit: str, mean_name: str) -> str:
@@ -197,15 +203,18 @@ class _Axis:
     end: float
 
     def at(self, value: float) -> float:
+        """Return the pixel of a value."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def ticks(self, most: int) -> list[float]:
+        """Return the round values on the axis, at most one more than ``most``."""
         step = round_step((self.high - self.low) / most)
-        first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
+        first, last = math.ceil(self.low / step - _ROUNDING), math.floor(self.high / step + _ROUNDING)
         return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
 
 
 def _bars(edges: np.ndarray, counts: np.ndarray, colors: list[str], across: _Axis, up: _Axis) -> str:
+    """Return the bars of counts (series, bars) between edges (bars + 1,), the series stacked on each other."""
     top = np.cumsum(counts, axis=0)
     bars = []
     for color, height, upper in zip(colors, counts, top):
@@ -218,6 +227,7 @@ def _bars(edges: np.ndarray, counts: np.ndarray, colors: list[str], across: _Axi
 
 
 def _ticks_across(across: _Axis, title: str) -> str:
+    """Return the lower axis with its numbers and its title."""
     foot = _HEIGHT - _BOTTOM
     ticks = "".join(
         f'<text x="{across.at(tick):.1f}" y="{foot + 18}" text-anchor="middle">{tick:g}</text>'
@@ -231,6 +241,7 @@ def _ticks_across(across: _Axis, title: str) -> str:
 
 
 def _ticks_up(up: _Axis, title: str) -> str:
+    """Return the whole numbers and the title on the left, where things are counted."""
     whole = [tick for tick in up.ticks(5) if tick == int(tick)]
     ticks = "".join(
         f'<text x="{_LEFT - 8}" y="{up.at(tick) + 5:.1f}" text-anchor="end">{tick:,.0f}</text>' for tick in whole
@@ -241,6 +252,7 @@ def _ticks_up(up: _Axis, title: str) -> str:
 
 
 def _mark(mark: Mark, i: int, across: _Axis) -> str:
+    """Return a line across the bars with its name above; names of neighbors, even and odd ``i``, have two lines."""
     x, y = across.at(mark.value), 16 + 17 * (i % 2)
     anchor = "end" if x > _WIDTH / 2 else "start"
     line = f"M{x:.1f} {y - 10}V{_HEIGHT - _BOTTOM}"
@@ -253,6 +265,7 @@ def _mark(mark: Mark, i: int, across: _Axis) -> str:
 
 
 def _legend(series: list[Series]) -> str:
+    """Return the names of series beside their colors."""
     names = "".join(
         f'<span class="swatch" style="background:{one.color}"></span>{html.escape(one.name)}' for one in series
     )
@@ -260,6 +273,7 @@ def _legend(series: list[Series]) -> str:
 
 
 def _picture(width: int, height: int, title: str, body: str) -> str:
+    """Return a picture of a size in pixels, whose title screen readers say."""
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{html.escape(title)}" '
         f'viewBox="0 0 {width} {height}" width="{width}" font-family="sans-serif" font-size="14" fill="#222">'

@@ -35,9 +35,11 @@ _OF_RADIUS = 0.25
 # planes have more (chi-square).
 _SMOOTH = 1.55
 
-# Neighborhoods decide on neighborhoods beside them (radii), and a radius (m) that automatic ones seldom exceed: that of
-# 36 points per m².
-_GROWTH, _WIDE_RADIUS = 4.0, 0.5
+# Reach within which neighborhoods decide on neighborhoods beside them (radii).
+_GROWTH = 4.0
+
+# A radius (m) that automatic ones seldom exceed: that of 36 points per m².
+_WIDE_RADIUS = 0.5
 
 _Noise = Annotated[
     Optional[float],
@@ -64,7 +66,8 @@ _Tolerance = Annotated[
         low=0,
         high=100,
         open_low=True,
-        automatic="3 times the root of the sum of the squares of the surface noise and 0.05 point spacings.",
+        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
+        "spacings.",
     ),
 ]
 
@@ -77,7 +80,7 @@ _Radius = Annotated[
         low=0,
         high=1000,
         open_low=True,
-        automatic="3 times the point spacing on surfaces.",
+        automatic=f"{_RADIUS_SPACINGS:g} times the point spacing on surfaces.",
     ),
 ]
 
@@ -238,6 +241,7 @@ def _noise(sampling: CloudSampling, radius: float) -> float:
 def _grown(
     planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, planarity: str, tolerance: float, monitor: Monitor
 ) -> np.ndarray:
+    """Return the surface (n,) of each point, -1 for none: planes with global planarity."""
     if planarity == "global":
         return grow_planes(planes, is_seed, criteria, _SMOOTH / _WITHIN * tolerance, monitor)
     return grow_surfaces(planes, is_seed, criteria, monitor)
@@ -249,9 +253,9 @@ def _edge_neighbors(points: np.ndarray, longest: float, monitor: Monitor) -> np.
     Edges longer than ``longest`` (m) are left out; the point itself fills rows with fewer nodes.
     """
     n = len(points)
-    neighbors = np.repeat(np.arange(n, dtype=np.int32)[:, None], 1, axis=1)
+    itself = np.arange(n, dtype=np.int32)[:, None]
     if n < 3 or np.linalg.matrix_rank(points[:, :2] - points[0, :2]) < 2:
-        return neighbors
+        return itself
     facets = triangulate(points[:, :2] - points[0, :2], monitor).facets.astype(np.int64)
     ends = np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]])
     key = np.unique(np.concatenate([ends @ [n, 1], ends @ [1, n]]))
@@ -262,6 +266,6 @@ def _edge_neighbors(points: np.ndarray, longest: float, monitor: Monitor) -> np.
     one, other = one[order], other[order]
     count = np.bincount(one, minlength=n)
     rank = items(count)[1]
-    neighbors = np.repeat(np.arange(n, dtype=np.int32)[:, None], max(int(count.max(initial=1)), 1), axis=1)
+    neighbors = np.repeat(itself, max(int(count.max(initial=1)), 1), axis=1)
     neighbors[one, rank] = other
     return neighbors

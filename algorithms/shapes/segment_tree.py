@@ -70,7 +70,7 @@ def segment_tree(
             unit="m",
             low=0.005,
             high=10,
-            automatic="2 times the point spacing on surfaces, at least 0.02 m.",
+            automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces, at least {_LEAST_VOXEL:g} m.",
         ),
     ] = None,
     min_count: Annotated[
@@ -90,7 +90,7 @@ def segment_tree(
             unit="m",
             low=0,
             high=10,
-            automatic="8 voxels.",
+            automatic=f"{_GAP_VOXELS:g} voxels.",
         ),
     ] = None,
     min_length: Annotated[
@@ -228,10 +228,7 @@ def _measured(
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
         at = position[of_point[own]]
-        offset = xyz[own] - line[at]
-        ahead = np.gradient(line, axis=0)[at] if len(line) > 1 else np.zeros_like(offset)
-        ahead /= np.maximum(np.linalg.norm(ahead, axis=1), 1e-12)[:, None]
-        distance = np.linalg.norm(offset - (offset * ahead).sum(axis=1)[:, None] * ahead, axis=1)
+        distance = _off_line(line, at, xyz[own])
         piece, n_pieces = (along[at] / _PIECE).astype(np.int64), int(along[-1] / _PIECE) + 1
         reach = _medians(distance, piece, n_pieces)
         label[own[distance <= _WITHIN * reach[piece]]] = number
@@ -243,9 +240,7 @@ def _measured(
             of_tree[one.tree] = float(radii[stem]) / max(length - breast, _PIECE)
         taper = of_tree[one.tree]
         cone = taper * (length - (ends[1:] + ends[:-1]) / 2)
-        is_round = _medians(np.abs(distance - reach[piece]), piece, n_pieces) <= _ROUND * reach
-        is_round &= (reach >= voxel_size / 2) & (np.bincount(piece, minlength=n_pieces) > 0)
-        is_round &= reach <= _WIDEST * cone
+        is_round = _are_round(distance, piece, reach) & (reach >= voxel_size / 2) & (reach <= _WIDEST * cone)
         radius = np.where(is_round, reach, np.minimum(reach, cone))
         row = {
             "id": number,
@@ -262,6 +257,20 @@ def _measured(
         lines.append(line)
     columns["points"] = np.bincount(label, minlength=len(branches) + 1)[1:].tolist()
     return label, LayerFeatures(lines, columns)
+
+
+def _off_line(line: np.ndarray, at: np.ndarray, xyz: np.ndarray) -> np.ndarray:
+    """Return the distances (k,), m, of points (k, 3) from the tangents of a line (m, 3) at its vertices ``at`` (k,)."""
+    offset = xyz - line[at]
+    ahead = np.gradient(line, axis=0)[at] if len(line) > 1 else np.zeros_like(offset)
+    ahead /= np.maximum(np.linalg.norm(ahead, axis=1), 1e-12)[:, None]
+    return np.linalg.norm(offset - (offset * ahead).sum(axis=1)[:, None] * ahead, axis=1)
+
+
+def _are_round(distance: np.ndarray, piece: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """Return which pieces (p,) have points at about one distance (k,), m, ``reach`` (p,), from the line."""
+    scatter = _medians(np.abs(distance - reach[piece]), piece, len(reach))
+    return (scatter <= _ROUND * reach) & (np.bincount(piece, minlength=len(reach)) > 0)
 
 
 def _medians(values: np.ndarray, group: np.ndarray, n_groups: int) -> np.ndarray:
