@@ -82,6 +82,7 @@ class GroupedPanel(ParametersPanel):
             self.wrappers[_CODES].setParameterValue(CODES.value, self.processing_context)
 
     def _is_advanced(self, name: str) -> bool:
+        """Return whether a parameter is one of those that QGIS folds."""
         definition = self.algorithm().parameterDefinition(name)
         return definition is not None and bool(definition.flags() & Qgis.ProcessingParameterFlag.Advanced)
 
@@ -121,6 +122,7 @@ class GroupedPanel(ParametersPanel):
         return box
 
     def _hide_empty_advanced(self) -> None:
+        """Hide QGIS's own group of advanced parameters when all of them are in other groups."""
         box = self._advanced()
         if box is not None:
             left = [widget for widget in box.findChildren(QWidget) if widget.objectName() != "" or widget.layout()]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Callable
 
 from qgis.PyQt.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QToolButton, QWidget
@@ -47,12 +48,12 @@ def fill_with_classes(menu: QMenu, field: QLineEdit) -> None:
         action = menu.addAction(class_name(one))
         action.setCheckable(True)
         action.setChecked(int(one) in chosen)
-        action.setData(int(one))
+        action.toggled.connect(partial(_toggle, field, int(one)))
 
-    def toggle(action) -> None:
-        field.setText(with_class(field.text(), action.data(), action.isChecked()))
 
-    menu.triggered.connect(toggle)
+def _toggle(field: QLineEdit, number: int, is_chosen: bool) -> None:
+    """Add a class to the text of a field, or take it away."""
+    field.setText(with_class(field.text(), number, is_chosen))
 
 
 def chosen_classes(text: str) -> set[int]:
@@ -79,7 +80,6 @@ def with_class(text: str, number: int, is_chosen: bool) -> str:
 def fill_with_names(names: list[str], menu: QMenu, field: QLineEdit) -> None:
     """Fill a menu with names; a click puts one into the field."""
     for name in names:
-        menu.addAction(name)
+        menu.addAction(name).triggered.connect(lambda _, name=name: field.setText(name))
     if not names:
         menu.addAction(tr("Choose a point cloud first")).setEnabled(False)
-    menu.triggered.connect(lambda action: field.setText(action.text()))

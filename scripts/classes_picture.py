@@ -21,12 +21,15 @@ importlib.import_module("conftest")
 
 import help_pictures as pictures  # noqa: E402
 
+from lidar_buildings.algorithms.cloud.asprs import NOISE  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline  # noqa: E402
 
 TARGET = ROOT / "resources" / "readme" / "classes.png"
-WIDTH, HEIGHT, AZIMUTH, TILT = 1100, 620, 30.0, 42.0  # pixels and degrees
+# Size of the picture (pixels), and from where the tile is seen (°).
+WIDTH, HEIGHT = 1100, 620
+AZIMUTH, TILT = 30.0, 42.0
 
 
 def main(arguments: list[str]) -> None:
@@ -37,7 +40,7 @@ def main(arguments: list[str]) -> None:
     cloud = run_pipeline(PIPELINES["detect_buildings"], cloud).cloud
     xyz = cloud.get("xyz")
     off = np.abs(xyz[:, :2] - (xyz[:, :2].min(axis=0) + xyz[:, :2].max(axis=0)) / 2).max(axis=1)
-    is_noise = np.isin(cloud.get("classification"), (7, 18))
+    is_noise = np.isin(cloud.get("classification"), NOISE)
     cloud = cloud.take(np.flatnonzero((off <= float((arguments[1:] or ["180"])[0]) / 2) & ~is_noise))
     pictures.WIDTH = WIDTH
     scene = pictures.Scene(pictures.TOWN, azimuth=AZIMUTH, tilt=TILT, height=HEIGHT)

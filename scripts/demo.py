@@ -16,6 +16,8 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 DEMO = ROOT / "demo"
+
+# Rates of the quality page that are printed.
 FIGURES = ("completeness", "correctness", "f", "quality")
 
 

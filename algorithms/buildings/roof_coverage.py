@@ -55,7 +55,7 @@ def covered_cells(cell: Cell, is_roof: np.ndarray, is_low: np.ndarray, gap: floa
     closed = roof
     reach = round(gap / 2 / cell_size)
     if reach:
-        closed = roof | ndimage.binary_closing(roof, _disk(reach))
+        closed = roof | ndimage.binary_closing(roof, disk(reach))
     holes = ndimage.binary_fill_holes(closed) & ~closed
     # A hole of at most the area of a square as wide as the gap is closed too; a courtyard is larger.
     small = _small(holes, max(1.0, (gap / cell_size) ** 2))
@@ -140,7 +140,7 @@ def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np
     return top[tuple(nearest)]
 
 
-def _disk(radius: int) -> np.ndarray:
-    """Return the cells of a disk: those up to about a quarter of a cell beyond the radius, so that it looks round."""
+def disk(radius: int) -> np.ndarray:
+    """Return the cells of a disk of a radius (cells): those a quarter of a cell beyond it, too, so that it looks round."""
     row, column = np.mgrid[-radius : radius + 1, -radius : radius + 1]
     return row**2 + column**2 <= radius**2 + 0.5 * radius

@@ -13,6 +13,7 @@ from ..rules import rule
 from ..sampling.kinds import IMAGES, MATCHING
 from ..segmentation.top_surface import TopSurface
 from ..terrain.free_standing import FREE
+from .roof_coverage import disk
 
 
 @dataclass(frozen=True)
@@ -123,6 +124,7 @@ class RoofExtent:
         return found
 
     def _is_vehicle(self, inside: np.ndarray, height: np.ndarray) -> bool:
+        """Return whether cells (rows, columns) with heights (k,), m, are of the size of a vehicle."""
         # Sides are known to a cell.
         cell = self.surface.size
         width, length = smallest_rectangle(inside, cell)
@@ -131,6 +133,7 @@ class RoofExtent:
         return bool(width <= VEHICLES.width + cell and has_length and is_low)
 
     def _small_holes(self, closed: np.ndarray, gap: float) -> np.ndarray:
+        """Return holes (rows, columns) of at most the area of a square as wide as the gap (m)."""
         holes, count = ndimage.label(ndimage.binary_fill_holes(closed) & ~closed)
         size = np.bincount(holes.ravel(), minlength=count + 1)
         size[0] = 0
@@ -138,9 +141,7 @@ class RoofExtent:
 
     def _disk(self, radius: float) -> np.ndarray:
         """Return a disk of ``radius`` (m) as cells."""
-        reach = max(1, round(radius / self.surface.size))
-        row, column = np.mgrid[-reach : reach + 1, -reach : reach + 1]
-        return row**2 + column**2 <= reach**2 + 0.5 * reach
+        return disk(max(1, round(radius / self.surface.size)))
 
 
 def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float]:

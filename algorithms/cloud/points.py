@@ -18,8 +18,10 @@ from .laz import POINTS_PER_CHUNK, has_variable_chunks, open_chunks, open_laz, w
 
 # A multiple of the LAZ chunk, so that every call decompresses whole chunks, in well under a second.
 AT_ONCE = 10 * POINTS_PER_CHUNK
+
 # Points that are all alike come to 5,500 bytes per compressed byte in chunks of the usual size; nothing sound has more.
 _MOST_BYTES_PER_BYTE = 10_000
+
 # Files without points that a warning names.
 _NAMED = 5
 
@@ -98,7 +100,7 @@ def read_points(path: Path, header: Header, monitor: Monitor) -> np.ndarray:
     try:
         points = np.empty(header.count, header.layout.dtype)
     except MemoryError:
-        size = header.count * header.layout.dtype.itemsize / 2**30
+        size = header.count * header.layout.dtype.itemsize / 1e9
         raise ValueError(
             f"{path.name} needs {size:.0f} GB of memory for its points, more than there is; cut it into tiles."
         ) from None
@@ -109,8 +111,6 @@ def read_points(path: Path, header: Header, monitor: Monitor) -> np.ndarray:
 
 def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the records that lie within a box (2, 2) in plan, in the file's order; at its edges they are within.
-
-    ``box`` holds the least and the greatest easting and northing, in the coordinates of the file.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -
     """Yield (position of the first point, records) of the parts of a file that may have points in a box (2, 2) in plan.
 
     Of a COPC file these are the chunks whose nodes touch the box, of any other file with points there all points. The
-    box is in coordinates of the file; the array is used again.
+    array is used again.
 
     Parameters
     ----------

@@ -12,8 +12,9 @@ from .groups import components
 # A cell of a raster and the eight around it.
 EIGHT = np.ones((3, 3), bool)
 
-# A raster larger than this, in cells and in cells for each point, is a mistake in the coordinates.
-_MOST_CELLS, _MOST_CELLS_PER_POINT = 10_000_000, 20
+# A raster that has more cells than this, and more for each point, is a mistake in the coordinates.
+_MOST_CELLS = 10_000_000
+_MOST_CELLS_PER_POINT = 20
 
 # Longest table, in multiples of the count of numbers in it, that takes less memory and time than sorting them.
 _TABLE = 4
@@ -116,8 +117,13 @@ def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     values : ndarray of shape (m,), int64
+        The numbers that occur.
     which : ndarray of shape (n,), int32 or int64
-        As ``numpy.unique`` gives them; where numbers are not far apart, as those of occupied cells, without sorting.
+        Where among these each number is.
+
+    Notes
+    -----
+    As ``numpy.unique``; where numbers are not far apart, as those of occupied cells, without sorting.
     """
     least = int(numbers.min()) if len(numbers) else 0
     length = int(numbers.max()) - least + 1 if len(numbers) else 0

@@ -21,8 +21,8 @@ TOUCH = 1e-7
 # With more voxels along an axis, float64 could not separate cells.
 _MOST_ALONG_AXIS = 2.0**46
 
-# Keys of voxels are of 64 bits.
-_MOST_KEYS = 2**63 - 1
+# Keys of voxels are int64.
+MOST_KEYS = np.iinfo(np.int64).max
 
 # Neighbors that differ in at most this many of the three indices.
 _AXES = {6: 1, 18: 2, 26: 3}
@@ -34,6 +34,21 @@ _NORMS = {"euclidean": 2.0, "taxicab": 1.0, "chessboard": math.inf}
 def voxel_index(scaled: np.ndarray, size: float) -> np.ndarray:
     """Return the index of the voxel along an axis, a whole float64, of coordinates divided by the voxel's ``size``."""
     return np.floor(scaled + TOUCH / size)
+
+
+def refuse_fine(farthest: float, size: float) -> None:
+    """Refuse voxels of a ``size`` (m) that float64 can't separate at the ``farthest`` coordinate (m).
+
+    Raises
+    ------
+    ValueError
+        If there are more than 2^46 along an axis.
+    """
+    if farthest / size > _MOST_ALONG_AXIS:
+        raise ValueError(
+            f"Voxels of {size:g} m are too fine for coordinates up to {farthest:g} m; "
+            "take larger voxels or check the coordinates."
+        )
 
 
 def voxelize(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -60,11 +75,7 @@ def voxelize(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.n
     ValueError
         If the voxels are too fine for the coordinates or for the extent.
     """
-    if len(xyz) and np.abs(xyz).max() / size > _MOST_ALONG_AXIS:
-        raise ValueError(
-            f"Voxels of {size:g} m are too fine for coordinates up to {np.abs(xyz).max():g} m; "
-            "take larger voxels or check the coordinates."
-        )
+    refuse_fine(float(np.abs(xyz).max(initial=0.0)), size)
     index = np.column_stack([voxel_index(column / size, size).astype(np.int64) for column in xyz.T])
     key = Keys(index).of(index)
     order = np.argsort(key, kind="stable")
@@ -109,7 +120,7 @@ class Keys:
         low, high = (cells.min(axis=0), cells.max(axis=0)) if len(cells) else (np.zeros(3, np.int64),) * 2
         self.low = low - margin
         self.shape = high - low + 1 + 2 * margin
-        if math.prod(self.shape.tolist()) > _MOST_KEYS:
+        if math.prod(self.shape.tolist()) > MOST_KEYS:
             spread = " by ".join(f"{extent:,}" for extent in (high - low + 1).tolist())
             raise ValueError(
                 f"The points are spread over {spread} voxels, more than can be numbered; remove points that lie far "

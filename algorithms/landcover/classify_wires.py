@@ -26,9 +26,12 @@ _OPEN = (
     PointClass.HIGH_NOISE,
 )
 
-# Distance (m) within which points show the direction of a wire: five points of a wire in a thin
-# cloud, which has one every three to four spacings.
-_LEAST_REACH, _REACH_SPACINGS, _MOST_REACH = 8.0, 20.0, 15.0
+# Distance (spacings) within which points show the direction of a wire: five points of a wire in a thin cloud, which has
+# one every three to four spacings.
+_REACH_SPACINGS = 20.0
+
+# Bounds of this distance (m).
+_LEAST_REACH, _MOST_REACH = 8.0, 15.0
 
 
 @stage(
@@ -139,7 +142,7 @@ def _spans(
     if not len(free):
         return []
     free = free[thinned(points[free])]
-    reach = min(max(_REACH_SPACINGS * spacing, _LEAST_REACH), _MOST_REACH)
+    reach = float(np.clip(_REACH_SPACINGS * spacing, _LEAST_REACH, _MOST_REACH))
     strand, direction = strands(points[free], reach)
     monitor.progress(0.7)
     return list(spans_of(points[free], strand, direction, around, reach, np.random.default_rng(seed)))

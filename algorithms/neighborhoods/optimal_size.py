@@ -154,7 +154,7 @@ def eigenentropies(covariances: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    The trigonometric solution of the characteristic polynomial, as in :func:`~.eigen.symmetric_eigenvalues`. It leaves
+    The trigonometric solution of the characteristic polynomial, as in :func:`.symmetric_eigenvalues`. It leaves
     two nearly equal eigenvalues with half their digits, but in opposite directions, and the entropy, which treats both
     alike, loses nothing. Lines are the exception: both are next to nothing there and the entropy is steep. Those
     matrices go to LAPACK.

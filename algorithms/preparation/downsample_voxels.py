@@ -10,7 +10,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..geometry.groups import items, run_starts
-from ..geometry.sparse_voxels import TOUCH, voxel_index
+from ..geometry.sparse_voxels import MOST_KEYS, TOUCH, refuse_fine, voxel_index
 from ..stage import Monitor, Param, stage
 from ..threads import in_chunks
 
@@ -19,12 +19,6 @@ _CHUNK = 50_000
 
 # Positions inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
 _STEPS = 2.0**32
-
-# With more voxels along an axis, float64 could not resolve positions inside a voxel.
-_MOST_ALONG_AXIS = 2.0**46
-
-# Numbers of voxels are int64.
-_LARGEST_KEY = np.iinfo(np.int64).max
 
 # Numbers that a class can have in LAS.
 _CODES = 256
@@ -169,14 +163,10 @@ def _by_voxel(xyz: np.ndarray, size: float, monitor: Monitor) -> _Sorted:
 def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
     """Return a number for each point's voxel (n,), int64, from 0, that grows with x, then y, then z."""
     ends = np.array([(column.min(), column.max()) for column in xyz.T], float)
-    if np.abs(ends).max() / size > _MOST_ALONG_AXIS:
-        raise ValueError(
-            f"Voxels of {size:g} m are too fine for coordinates up to {np.abs(ends).max():g} m; "
-            "take larger voxels or check the coordinates."
-        )
+    refuse_fine(float(np.abs(ends).max()), size)
     low, high = voxel_index(ends / size, size).T.astype(np.int64)
     _, n_y, n_z = shape = [int(count) for count in high - low + 1]
-    if math.prod(shape) > _LARGEST_KEY:
+    if math.prod(shape) > MOST_KEYS:
         return _keys_of_wide(xyz, size)
     key = np.empty(len(xyz), np.int64)
 
@@ -194,7 +184,7 @@ def _keys_of_wide(xyz: np.ndarray, size: float) -> np.ndarray:
     key, n_keys = np.zeros(len(xyz), np.int64), 1
     for column in xyz.T:
         index, n_index = _renumbered(voxel_index(column / size, size))
-        if n_keys * n_index > _LARGEST_KEY:
+        if n_keys * n_index > MOST_KEYS:
             key, n_keys = _renumbered(key)
         key = key * n_index + index
         n_keys *= n_index

@@ -59,7 +59,7 @@ def segment_tin_planes(
             low=0,
             high=10_000,
             open_low=True,
-            automatic="4 point spacings.",
+            automatic=f"{_EDGE_SPACINGS:g} point spacings.",
         ),
     ] = None,
     min_area: Annotated[
@@ -159,6 +159,7 @@ def _triangle_planes(points: np.ndarray, facets: np.ndarray) -> Planes:
 
 
 def _longest_edges(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """Return the longest edge (m,) of each triangle, m."""
     corners = points[facets]
     return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
 

@@ -3,12 +3,11 @@
 
 ``buildings``, ``classes`` (all of them, beside Whitebox), ``ground``, ``noise`` and ``noise_apart`` are of real clouds,
 ``turned`` of the same when cells fall elsewhere, ``harder`` of the same with fewer points or more noise, ``uneven`` of
-the same with points on lines, in bands or in pairs,
-``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
-``footprints`` of outlines, ``outlines`` of how stable these are, beside Building-Regulariser's, ``towns``, ``pits``,
-``scenes``, ``villages``, ``places`` and ``confidence`` of simulated scenes, whose truth is exact, and ``maps`` of old
-maps with known differences.
-``photos`` are real clouds of matched images, ``drone`` simulated ones, ``likeness`` compares the two.
+the same with points on lines, in bands or in pairs, ``pieces`` of squares cut out of clouds, ``objects`` of real
+houses, trees, cars, fences and poles on simulated ground, ``footprints`` of outlines, ``outlines`` of how stable these
+are, beside Building-Regulariser's, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and ``confidence`` of
+simulated scenes, whose truth is exact, and ``maps`` of old maps with known differences. ``photos`` are real clouds of
+matched images, ``drone`` simulated ones, ``likeness`` compares the two.
 
 Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
 Python lines that the tests hold the program to.
@@ -32,11 +31,8 @@ from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan  # noqa: E402
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps  # noqa: E402
 from lidar_buildings.algorithms.geometry.rings import signed_area  # noqa: E402
-from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.run import (
-    run_pipeline,  # noqa: E402
-    run_stage,  # noqa: E402
-)
+from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
 from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.aged_maps import aged, with_plain_corners  # noqa: E402
@@ -70,7 +66,10 @@ from lidar_buildings.tests.villages import corner_distances, mapped, village  # 
 
 # Points per square meter, noise (m) and seed of simulated villages of 150 m.
 VILLAGES = [(density, noise, 11) for density in (50, 100) for noise in (0.02, 0.05)]
+
+# Chains that are compared, and what tables call them.
 CHAINS = {"detect_buildings": "default", "detect_buildings_2019": "2019"}
+
 # Headings of the rates (%) of points of buildings.
 RATES = ("completeness", "correctness", "F")
 
@@ -204,7 +203,7 @@ def _cloud_and_classes(name: str) -> tuple[Cloud, np.ndarray]:
 
 def area_of(cloud: Cloud, chosen: np.ndarray) -> float:
     """Return the area (m²) of the cells of 0.5 m with chosen points."""
-    return len(np.unique(np.floor(cloud.get("xyz")[chosen, :2] / 0.5), axis=0)) * 0.25
+    return len(np.unique(np.floor(cloud.get("xyz")[chosen, :2] / 0.5), axis=0)) * 0.5**2
 
 
 def changes_cell(changes: dict[str, Any]) -> str:
