@@ -12,6 +12,7 @@ from .cloud.dimensions import DIMENSIONS
 from .stage import Stage
 from .stages import STAGES
 
+# The caption of all segmentations whose picture shows nothing else.
 _SEGMENTS = "Each segment in a color of its own, points without a segment in gray."
 
 _CAPTIONS = {

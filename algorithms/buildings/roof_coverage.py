@@ -141,6 +141,6 @@ def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np
 
 
 def disk(radius: int) -> np.ndarray:
-    """Return the cells of a disk of a radius (cells): those a quarter of a cell beyond it, too, so that it looks round."""
+    """Return a disk of a radius (cells), with those a quarter of a cell beyond it, so that it looks round."""
     row, column = np.mgrid[-radius : radius + 1, -radius : radius + 1]
     return row**2 + column**2 <= radius**2 + 0.5 * radius

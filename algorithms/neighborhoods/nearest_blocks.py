@@ -28,8 +28,11 @@ _BATCH = 400_000
 # A covariance about the middle of a block loses the digits by which the spread is smaller than the second moment there.
 _LEAST_SPREAD = 1e-3
 
-# Tries for a distance that parts a point's neighbors from the others; the last few of a hundred points are sorted.
-_TRIES, _FEW = 9, 0.06
+# Tries for a distance that parts a point's neighbors from the others.
+_TRIES = 9
+
+# Share of the points of a chunk that are sorted when no others are left: that takes less time than another try.
+_FEW = 0.06
 
 # The first try in squared reaches of the block's middle: none of the distances that points on a grid have.
 _FIRST_TRY = 1.0371
@@ -285,6 +288,7 @@ def _limits(squares: np.ndarray, count: int, guess: np.ndarray) -> np.ndarray:
         end = (inside > count).view(np.int8), np.arange(len(rows))
         ends[end], counts[end] = limit, inside
         unfit = (inside != count).nonzero()[0]
+        # Copying the rest pays off only when many are done.
         if len(unfit) < 0.7 * len(rows):
             rows, squares, ends, counts = rows[unfit], squares[unfit], ends[:, unfit], counts[:, unfit]
         if len(unfit) <= few:

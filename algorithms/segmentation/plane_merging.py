@@ -16,7 +16,7 @@ _EVEN = 1 / np.sqrt(3)
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
 _MAX_ROUNDS = 1000
 
-# Planes around a voxel go on into it where together they hold this share of its points: leaves in which a plane would
+# Planes around a voxel go on into it where together they hold this share of its points. Leaves in which a plane would
 # end lie on it by chance, a fifth of them on one of automatic tolerance.
 _HELD = 2 / 3
 

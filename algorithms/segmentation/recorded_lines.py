@@ -16,9 +16,11 @@ _PAUSE = 20.0
 # Scan angles that differ by more than this many median steps are of two lines: polygon mirrors start anew.
 _JUMP = 10.0
 
-# Steps before and after a point whose directions show whether a line turns back there, and the cosine from which it
-# does (120°). Bends at edges of the scene are less, and a few steps are longer than noise.
-_STEPS, _TURN = 3, -0.5
+# Steps before and after a point whose directions show whether a line turns back there: a few are longer than noise.
+_STEPS = 3
+
+# Cosine of the angle between these from which it does (120°): bends at edges of the scene are less.
+_TURN = -0.5
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,7 @@ def recorded_lines(xyz: np.ndarray, recording: Recording, gap: float) -> np.ndar
 
 
 def _varies(values: Optional[np.ndarray]) -> bool:
+    """Return whether there are values (n,) and not all are the same."""
     return values is not None and len(values) > 0 and bool((values != values[0]).any())
 
 

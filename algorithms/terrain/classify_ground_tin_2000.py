@@ -26,9 +26,6 @@ _MIN_EDGE = 2.0
 # Distance in plan over which points are mirrored: at least this, m, and the point spacing.
 _MIN_MIRROR_REACH = 1.0
 
-# The largest building that a cell of the seeds sees past where nothing is set (m).
-_REACH = 60.0
-
 _IterationDistance = Annotated[
     Optional[float],
     Param(
@@ -63,7 +60,7 @@ _MaxBuildingSize = Annotated[
     group="Terrain",
     tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD",
     writes=("classification",),
-    reach=lambda tunables: tunables["max_building_size"] or _REACH,
+    reach=lambda tunables: tunables["max_building_size"],
 )
 def classify_ground_tin_2000(
     xyz,
@@ -105,7 +102,7 @@ def classify_ground_tin_2000(
             unit="m",
             low=0,
             high=1000,
-            automatic="the point spacing, at least 2 m.",
+            automatic=f"the point spacing, at least {_MIN_EDGE:g} m.",
             advanced=True,
         ),
     ] = None,
@@ -117,7 +114,7 @@ def classify_ground_tin_2000(
             unit="m",
             low=0,
             high=100,
-            automatic="6 times the roughness of the finished surface.",
+            automatic=f"{_SWEEP_DEVIATIONS:g} times the roughness of the finished surface.",
             advanced=True,
         ),
     ] = None,

@@ -12,13 +12,15 @@ from ..pipelines import PIPELINES
 from ..stage import Layer, Raster, TextFile
 from .run_in_tiles import can_be_tiled
 from .settings import CUT_SETTINGS, SETTINGS, Setting
+from .tiled_run import TilesOptions
 from .tiled_steps import afterwards, of_survey
 
-_DESCRIPTION = """
+# What the help says of every composite in tiles.
+_DESCRIPTION = f"""
 For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
 size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
-them. A file of more than 25 million points becomes tiles of the size of a block. The layers are those of the whole
-survey, without seams and duplicates.
+them. A file of more than {TilesOptions.largest_file / 1e6:g} million points becomes tiles of the size of a block. The
+layers are those of the whole survey, without seams and duplicates.
 
 The work is done in blocks of a lattice that starts at the origin of the coordinates, each with the points around it as
 far as the steps reach. So the result does not depend on how the points are spread over files. Density, spacing and
@@ -95,6 +97,7 @@ class TiledPipeline:
 
 
 def _is_one(output: Output, declared: Iterable[Union[Layer, Raster, TextFile]]) -> bool:
+    """Return whether an output is one of those that its step declares."""
     return output.of in [one.name for one in declared]
 
 
