@@ -192,7 +192,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Cell size (m)&lt;/b&gt;: Side of a cell of the rasters. Automatic: twice the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m. &lt;i&gt;(at least 0.01 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Cell size (m)&lt;/b&gt;: Side of a cell of the rasters. Automatic: 2 times the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m. &lt;i&gt;(at least 0.01 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -504,7 +504,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Height tolerance (m)&lt;/b&gt;: A height has changed if it differs by more. Automatic: three times the median difference between the heights of both surveys, 0.5 to 3 m. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Height tolerance (m)&lt;/b&gt;: A height has changed if it differs by more. Automatic: 3 times the median difference between the heights of both surveys, 0.5 to 3 m. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1020,7 +1020,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Points higher above the ground than this are vegetation; all others are unclassified. &lt;i&gt;(at least 0 m and at most 10 m; default 0.1 m)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Points at least this high above the ground are vegetation; all others are unclassified. &lt;i&gt;(at least 0 m and at most 10 m; default 0.1 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1492,7 +1492,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Outline tolerance (m)&lt;/b&gt;: An outline has changed if it is farther than this from the earlier one somewhere. Automatic: three times the median distance between the outlines of both surveys, 1 to 4 m. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Outline tolerance (m)&lt;/b&gt;: An outline has changed if it is farther than this from the earlier one somewhere. Automatic: 3 times the median distance between the outlines of both surveys, 1 to 4 m. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3716,6 +3716,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Automatic: 2 times the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Automatic: 2 times the root of the sum of the squares of the surface noise and 0.05 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3737,6 +3741,14 @@
     </message>
     <message>
         <source>Automatic: 3 times the mean distance of scan lines.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Automatic: 3 times the median difference between the heights of both surveys, 0.5 to 3 m.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Automatic: 3 times the median distance between the outlines of both surveys, 1 to 4 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3916,14 +3928,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: three times the median difference between the heights of both surveys, 0.5 to 3 m.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Automatic: three times the median distance between the outlines of both surveys, 1 to 4 m.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Automatic: three times the median distance of a corner from the nearest one of the other layer, pairs by chance left out, 1 to 3 m.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3937,10 +3941,6 @@
     </message>
     <message>
         <source>Automatic: twice the point spacing, at least 1 m.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Automatic: twice the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6876,6 +6876,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Points at least this high above the ground are vegetation; all others are unclassified.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Points at most this far above or below the cloth are ground.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -6909,10 +6913,6 @@
     </message>
     <message>
         <source>Points for normals</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Points higher above the ground than this are vegetation; all others are unclassified.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
