@@ -16,8 +16,9 @@ from .solid_faults import faults_of
 from .solid_levels import Levels, turns_around
 from .solids import DECIMALS, ROOF, Solid
 
-# Most rounds that clear positions where too many walls meet, that lower parts with faults and give small parts and high
-# cells another plane, and that give parts with faults another plane.
+# Most rounds that clear positions where too many walls meet, that give small parts and high cells another plane, and
+# that give parts with faults another plane. Parts with faults are lowered in the first half of the second, so that
+# corners that are high after it still change.
 _CLEARINGS, _ROUNDS, _MENDINGS = 60, 10, 40
 
 # How far (m) a part with a fault is lowered first: more than corners may be apart, and less than heights of points are
@@ -83,7 +84,7 @@ def mended(
         found = [(piece, *one) for piece in pieces for one in faults_of(piece.solid).items()]
         if not found:
             return [piece.solid for piece in pieces], ""
-        if not mending.relabel([(piece, face) for piece, face, _ in found], count < _ROUNDS):
+        if not mending.relabel([(piece, face) for piece, face, _ in found], count < _ROUNDS // 2):
             return [], found[0][2]
     return [], "no solid could be made"
 

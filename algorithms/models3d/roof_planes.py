@@ -23,10 +23,6 @@ _REFIT = 0.3
 # Points on top that lie on no plane form a patch where they are no farther from each other than this (spacings).
 _PATCH_SPACINGS = 2.0
 
-# A larger plane fits the points of a smaller one as well where these are off it by at most this many times the greater
-# of both planes' own deviations (root mean squares). Fits to some dozens of points differ by a quarter at their ends.
-_FITS_AS_WELL = 1.25
-
 # Rounds in which points choose the best plane of their neighborhood.
 _CHOICES = 3
 
@@ -80,7 +76,6 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     growth = _Growth(xyz, neighbors, normal, tolerance, float(np.cos(np.deg2rad(max_slope))))
     label = growth.all_planes(eigenvalues[:, 2], min_points)
     label = _chosen_by_neighborhood(xyz, neighbors, label, tolerance)
-    label = _joined(xyz, neighbors, label)
     planes = planes_through(xyz, _large(label, min_points))
     # Points change planes after these have grown, and the last fit may turn a plane upright.
     return _selected_planes(planes, planes.cosine >= growth.least_upward)
@@ -208,29 +203,6 @@ def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.nd
         rows = np.arange(len(xyz))
         label = np.where(off[rows, best] <= tolerance, options[rows, best], -1)
     return label
-
-
-def _joined(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray) -> np.ndarray:
-    """Return the labels after touching planes became one where the points of the smaller one fit the larger as well.
-
-    A roof that another one crosses grows from both sides. Two planes for it would meet anywhere.
-    """
-    while True:
-        label = _large(label, 1)
-        other = label[neighbors]
-        row, column = np.nonzero((other >= 0) & (other < label[:, None]))
-        if not len(row):
-            return label
-        member, count = label >= 0, int(label.max()) + 1
-        planes = planes_of(xyz[member], label[member], count)
-        # Planes are numbered from the largest.
-        smaller, larger = np.divmod(np.unique(label[row] * count + other[row, column]), count)
-        own = np.maximum(planes.deviation(smaller, smaller), planes.deviation(larger, larger))
-        ratio = planes.deviation(smaller, larger) / own
-        best = np.argmin(ratio)
-        if not ratio[best] <= _FITS_AS_WELL:
-            return label
-        label = np.where(label == smaller[best], larger[best], label)
 
 
 def _large(label: np.ndarray, min_points: int) -> np.ndarray:

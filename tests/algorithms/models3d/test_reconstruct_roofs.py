@@ -57,16 +57,6 @@ def test_ridges_eaves_and_corners_are_where_they_are(name):
     assert_valid_cityjson(written(files, "cityjson", CITYJSON))
 
 
-@pytest.mark.parametrize(("density", "seed"), [(8.0, 2), (12.0, 5), *((10.0, seed) for seed in range(4))])
-def test_a_roof_that_another_one_crosses_has_one_plane_on_both_sides(density, seed):
-    """With a plane on each side, corners in which two of the same slope met were up to 1.5 m off."""
-    shape, turn = SHAPES["L"], 17.0 * seed
-    layers, _, _ = reconstructed(*scene(shape, density, seed, turn))
-    true = np.column_stack([moved(shape.corners, turn, (0, 0)), shape.corners[:, 2]])
-    walls = np.concatenate([ring for rings in layers["walls"].geometries for ring in rings])
-    assert distances(true, np.concatenate([corners_of(layers), walls])).max() < 0.15
-
-
 @pytest.mark.parametrize("name", ["flat", "shed", "gable", "hip", "mansard", "steps"])
 def test_roof_types(name):
     layers, _, _ = reconstructed(*scene(SHAPES[name]))
