@@ -362,6 +362,31 @@ TABLES = {
         ),
         "accuracy.py villages",
     ),
+    "models": Shown(
+        ("footprints",),
+        (
+            Column("polygons", "footprints", 0),
+            Column("at level 2.2", "at level 2.2", 0),
+            Column("solids", "solids", 0),
+            Column("valid", "valid", 0),
+            Column("rms of a building, median, m", "median rms, m", 2),
+            Column("points over 0.5 m off, %", "over 0.5 m off, %"),
+            Column("roofs of type *other*", "type other", 0),
+        ),
+        (
+            Row(("base map of Delft",), "models_on_the_map", (("map", "delft-bgt"),)),
+            *(
+                Row((label,), "real_models", (("cloud", name),))
+                for name, label in (
+                    ("ahn3-delft", "those found in Delft"),
+                    ("ahn-amsterdam-1", "in two blocks of Amsterdam"),
+                    ("amsterdam-centre-10", "in Amsterdam's canal belt, thinned"),
+                    ("ign-stbarth", "of villas on a hillside"),
+                )
+            ),
+        ),
+        "models.py real map",
+    ),
     "facade_fronts": Shown(
         ("front", "openings"),
         (
