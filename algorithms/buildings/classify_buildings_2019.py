@@ -108,6 +108,7 @@ def classify_buildings_2019(
 
     Examples
     --------
+    >>> import numpy as np
     >>> rng = np.random.default_rng(1)
     >>> x, y, u = rng.uniform(0, 10, (3, 4000))
     >>> crown = np.arange(4000) >= 2000

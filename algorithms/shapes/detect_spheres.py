@@ -111,6 +111,7 @@ def detect_spheres(
 
     Examples
     --------
+    >>> import numpy as np
     >>> angle, up = np.mgrid[0:6.28:0.05, -1.5:1.5:0.05].reshape(2, -1)
     >>> level = np.column_stack([np.cos(angle), np.sin(angle)]) * np.cos(up)[:, None]
     >>> xyz = np.column_stack([level, np.sin(up)])

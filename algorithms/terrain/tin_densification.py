@@ -198,9 +198,18 @@ def _joining(
 def offset_and_angle(
     tin: Tin, facet: np.ndarray, here: np.ndarray, nearest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance (m) of points to their facets, and the largest angle (°) to the nodes of these.
+    """Return the distance (n,), m, of points to their facets, and the largest angle (n,), °, to the nodes of these.
 
-    ``nearest`` (n,) is their distance (m) to the nearest of these.
+    Parameters
+    ----------
+    tin : Tin
+        The triangulated ground.
+    facet : ndarray of shape (n,), int
+        Facet below or above each point.
+    here : ndarray of shape (n, 3)
+        The points (m).
+    nearest : ndarray of shape (n,)
+        Distance (m) to the nearest node of each point's facet.
     """
     offset = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.slope_cosine()[facet]
     return offset, np.degrees(np.arcsin(np.clip(offset / np.maximum(nearest, 1e-9), 0, 1)))

@@ -328,7 +328,7 @@ def test_json_takes_a_bounded_memory(tmp_path):
         refused.append(f"[{','.join([value] * (number + 10))}]".encode())
     said = readings(tmp_path / "a.vpc", *allowed, *refused)
     assert all("is not a virtual point cloud" in sentence for sentence in said[: len(allowed)])
-    assert all("larger than a virtual point cloud of a thousand" in sentence for sentence in said[len(allowed) :])
+    assert all("larger than a virtual point cloud of thousands" in sentence for sentence in said[len(allowed) :])
 
 
 def test_json_far_too_large_is_not_read(tmp_path):
