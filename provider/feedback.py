@@ -25,7 +25,7 @@ class ProgressBar:
         """Begin a new line if something was drawn since the last one."""
         if self._feedback is None:
             return
-        # A dot or number stands for 2.5 %; after the last one QGIS ends the line itself.
+        # QGIS draws a dot or number every 2.5 % of progress, and ends the line itself at 100 %.
         drawn = int(self._feedback.progress() / 2.5)
         if self._drawn < drawn < 40:
             self._feedback.pushInfo("")

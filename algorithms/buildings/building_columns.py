@@ -59,7 +59,7 @@ class Columns:
     Attributes
     ----------
     highest : ndarray of shape (rows, columns)
-        Elevation of the highest roof within the reach of walls, m; -inf where there is none.
+        Elevation of the highest roof near each cell, as far as walls reach, m; -inf where no roof is near.
     beside : ndarray of shape (rows, columns), int32
         Number of the building that each cell without building adjoins; 0 for others.
     """

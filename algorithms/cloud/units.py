@@ -30,7 +30,7 @@ _LENGTHS = {
     9037: 0.9143984146160287,  # Clarke's yard
     9096: 0.9144,  # International yard
 }
-# The value of a GeoKey that stands for no code of EPSG.
+# GeoTIFF's value "user-defined": the key holds no EPSG code.
 _USER_DEFINED = 32767
 # Lengths that a unit may have (m), from a micrometer to a thousand kilometers: all others are damage.
 _SHORTEST_UNIT = 1e-6
