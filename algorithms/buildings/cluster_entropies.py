@@ -7,7 +7,6 @@ from typing import Optional, Union
 
 import numpy as np
 
-from ..geometry.grid import distinct
 from ..geometry.mixing import mixed
 from ..neighborhoods.covariance import Nearest, neighborhood_eigenvalues, shannon_entropy_lps
 from ..neighborhoods.wide_in_plan import Wide
@@ -68,9 +67,8 @@ def cluster_entropies(
         Entropies of points and means of clusters.
     """
     rows = np.flatnonzero(cluster_id > 0)
-    ids, position = distinct(cluster_id[rows])
-    ids, sizes = ids.astype(cluster_id.dtype), np.bincount(position)
-    clustered = xyz.take(rows, axis=0)
+    ids, position, sizes = np.unique(cluster_id[rows], return_inverse=True, return_counts=True)
+    clustered = xyz[rows]
     tree = spatial.cKDTree(clustered, balanced_tree=False)
     chosen = None if measured is None else _sample(clustered, np.minimum(1.0, measured / sizes)[position])
     values = shannon_entropy_lps(neighborhood_eigenvalues(clustered, around, tree, monitor, chosen))

@@ -178,7 +178,7 @@ def extract_footprints(
         return _features([], [], min_area)
     sampling = sampling or CloudSampling.of(xyz, classification)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
-    spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz.take(building, axis=0))))
+    spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
     if not merge_touching and spacing > ROWS.max_spacing:
         monitor.inform(
             f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they stay in one."
@@ -271,7 +271,7 @@ def _parts(
     """Return the parts of building points that lie apart, with the points beside them that show where roofs end."""
     xyz, reason = measures.xyz, measures.reason
     # Sorted by cluster and coordinates, so that sums over points do not depend on the order of the cloud.
-    order = np.lexsort((*(column.take(building) for column in xyz.T), cluster))
+    order = np.lexsort((*xyz[building].T, cluster))
     building, cluster = building[order], cluster[order]
     is_attached = np.zeros(len(building), bool) if reason is None else np.isin(reason[building], ADDED)
     is_roof = find_roof_points(measures.local(building), cluster, is_attached, spacing)

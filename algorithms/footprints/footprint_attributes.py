@@ -89,7 +89,7 @@ class PointMeasures:
 
     def local(self, points: np.ndarray) -> np.ndarray:
         """Return coordinates (p, 3) of points, in plan from the corner (m)."""
-        return self.xyz.take(points, axis=0) - np.append(self.corner, 0.0)
+        return self.xyz[points] - np.append(self.corner, 0.0)
 
     def over_ground(self, points: np.ndarray) -> np.ndarray:
         """Return the heights (p,) of points above ground (m), NaN where they were not measured."""

@@ -9,7 +9,6 @@ from typing import Callable
 import numpy as np
 
 from ..stage import Monitor
-from .grid import distinct
 from .groups import components, run_starts
 
 # Point pairs compared at once: 130 bytes each, so 130 MB.
@@ -87,7 +86,7 @@ class Boxes:
         """Return the boxes of the ``chosen`` points only: a mask (n,) in the order of the boxes."""
         part = object.__new__(Boxes)
         part.shape = self.shape
-        part._fill(self.order[chosen], self.xyz.compress(chosen, axis=0), np.repeat(self.keys, self.size)[chosen])
+        part._fill(self.order[chosen], self.xyz[chosen], np.repeat(self.keys, self.size)[chosen])
         return part
 
     def box(self) -> np.ndarray:
@@ -172,12 +171,12 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
         monitor.progress(1.0)
         return _joined(component, box[here[near]], box[there[near]])
     n_columns = (2 * _REACH + 1) ** 2 // 2 + 1
-    first = boxes.xyz.take(boxes.start, axis=0)
+    first = boxes.xyz[boxes.start]
     # Steps of one column together: what joins boxes costs as much for few pairs as for many.
     left: list[tuple[np.ndarray, np.ndarray]] = []
     for done, column in enumerate(boxes.beside_all(), start=1):
         here, there = _apart(column, component)
-        touching = is_near(first.take(here, axis=0) - first.take(there, axis=0))
+        touching = is_near(first[here] - first[there])
         component = _joined(component, here[touching], there[touching])
         left.append((here[~touching], there[~touching]))
         monitor.progress(done / (2 * n_columns))
@@ -204,7 +203,7 @@ def _compared(
     here, there = pairs
     touching = np.zeros(len(here), bool)
     for pair, a, b in boxes.pairs(here, boxes, there):
-        touching[pair[is_near(boxes.xyz.take(a, axis=0) - boxes.xyz.take(b, axis=0))]] = True
+        touching[pair[is_near(boxes.xyz[a] - boxes.xyz[b])]] = True
     return _joined(component, here[touching], there[touching])
 
 
@@ -217,10 +216,7 @@ def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.nd
 
 def by_first_point(component: np.ndarray) -> np.ndarray:
     """Renumber components (n,) from 0 in the order of their first points, int32; negative numbers become -1."""
-    number, inverse = distinct(component)
-    # The last one that is written stays: the first point.
-    first = np.empty(len(number), np.int64)
-    first[inverse[::-1]] = np.arange(len(component))[::-1]
+    number, first, inverse = np.unique(component, return_index=True, return_inverse=True)
     negative = int(np.searchsorted(number, 0))
     rank = np.full(len(first), -1, np.int32)
     rank[negative + np.argsort(first[negative:])] = np.arange(len(first) - negative, dtype=np.int32)

@@ -113,8 +113,8 @@ def classify_wires(
     is_open = np.isin(classification, _OPEN) & (height_above_ground > 0)
     # In one order, whichever the file has: random choices are then the same.
     rows = np.flatnonzero(is_open)
-    rows = rows[np.lexsort([column.take(rows) for column in xyz.T])]
-    points, height = sampling.from_corner(xyz.take(rows, axis=0)), height_above_ground[rows]
+    rows = rows[np.lexsort(xyz[rows].T)]
+    points, height = sampling.from_corner(xyz[rows]), height_above_ground[rows]
     solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
     around = Surroundings(points, solid, max(RULES.least_off, RULES.noises * noise))
     spans = _spans(points, height, around, min_height, sampling.spacing, seed, monitor)

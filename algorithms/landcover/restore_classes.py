@@ -71,7 +71,7 @@ def restore_classes(
         return classes, None
     sampling = sampling or CloudSampling.of(xyz, classification)
     gap = max(DENSITY.link * sampling.spacing, DENSITY.least_link)
-    points = xyz.compress(is_building, axis=0)
+    points = xyz[is_building]
     number = np.zeros(len(xyz), np.int32)
     # Points above one another are of one building, whatever the difference in height.
     number[is_building] = 1 + connect(points, gap, 1 + float(np.ptp(points[:, 2])), monitor)

@@ -152,7 +152,7 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     member = np.flatnonzero(group >= 0)
     owner = group[member]
     # With an empty border the numbers of boxes next to one another differ by the same steps everywhere.
-    box = lattice(xyz.take(member, axis=0), _BOX)
+    box = lattice(xyz[member], _BOX)
     box += 1 - box.min(axis=0)
     shape = tuple((box.max(axis=0) + 2).tolist())
     boxes, which = distinct(np.ravel_multi_index(tuple(box.T), shape))

@@ -135,22 +135,21 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
     found = np.full(len(points), -1, np.int32)
 
     def work(rows: np.ndarray) -> None:
-        own, candidates = points.take(rows, axis=0), planes.neighbors.take(rows, axis=0)
+        own, candidates = points[rows], planes.neighbors[rows]
         deviation = planes.deviation[candidates]
         left = np.arange(len(rows))
         # The smoothest plane holds most points; only for the rest all planes are tested.
         for is_last in (False, True):
             if is_last:
-                off = np.einsum("ikj,ij->ik", planes.planes.take(candidates, axis=0), own)
+                off = np.einsum("ikj,ij->ik", planes.planes[candidates], own)
                 deviation[np.abs(off) > reach] = np.inf
             every, best = np.arange(len(left)), np.argmin(deviation, axis=1)
             plane = candidates[every, best]
             holds = np.isfinite(deviation[every, best])
-            holds &= np.abs(np.einsum("ij,ij->i", planes.planes.take(plane, axis=0), own)) <= reach
+            holds &= np.abs(np.einsum("ij,ij->i", planes.planes[plane], own)) <= reach
             found[rows[left[holds]]] = plane[holds]
             rest = ~holds
-            left, deviation = left[rest], deviation.compress(rest, axis=0)
-            own, candidates = (values.compress(rest, axis=0) for values in (own, candidates))
+            left, own, candidates, deviation = left[rest], own[rest], candidates[rest], deviation[rest]
 
     in_chunks(work, np.arange(len(found)), Nearest(planes.neighbors.shape[1]).rows_per_chunk(len(found)), monitor)
     return found
@@ -182,16 +181,16 @@ def _links(
     linked: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // ROWS_AT_ONCE)
 
     def work(rows: np.ndarray) -> None:
-        neighbors = planes.neighbors.take(rows, axis=0)
+        neighbors = planes.neighbors[rows]
         is_link = on_surface[rows, None] & on_surface[neighbors]
         # One plane holds both, mostly.
         apart = np.nonzero(is_link & (plane[neighbors] != plane[rows, None]))
         a, b = rows[apart[0]], neighbors[apart]
-        of_a, of_b = (planes.planes.take(plane[ends], axis=0) for ends in (a, b))
+        of_a, of_b = planes.planes[plane[a]], planes.planes[plane[b]]
         # Normals point upward, those of walls to either side by chance.
         same = np.abs(np.einsum("ij,ij->i", of_a[:, :3], of_b[:, :3])) >= np.cos(np.radians(PATCHES.same_direction))
-        same &= np.abs(np.einsum("ij,ij->i", points.take(b, axis=0), of_a)) <= reach
-        same &= np.abs(np.einsum("ij,ij->i", points.take(a, axis=0), of_b)) <= reach
+        same &= np.abs(np.einsum("ij,ij->i", points[b], of_a)) <= reach
+        same &= np.abs(np.einsum("ij,ij->i", points[a], of_b)) <= reach
         is_link[apart] = same
         n_links[rows + 1] = is_link.sum(axis=1)
         linked[rows[0] // ROWS_AT_ONCE] = neighbors[is_link]

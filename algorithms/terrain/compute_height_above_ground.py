@@ -68,8 +68,8 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     if not is_ground.any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
     above = np.flatnonzero(~is_ground)
-    surface = TiledTin(_means(xyz.compress(is_ground, axis=0)))
-    elevation = surface.elevation(xyz.take(above, axis=0), monitor)
+    surface = TiledTin(_means(xyz[is_ground]))
+    elevation = surface.elevation(xyz[above], monitor)
     outside = np.isnan(elevation)
     if outside.any():
         elevation[outside] = surface.nearest_elevation(xyz[above[outside]])
