@@ -85,9 +85,9 @@ class Cloud:
     def get(self, name: str) -> np.ndarray:
         """Return a dimension by its Python name, (n,) or (n, 3), in the dtype and unit of ``dimensions.py``.
 
-        ``xyz`` is float64, meters from ``origin``. What was set comes back as it
-        was set. Others may hold the array, so don't change it. Heights and areas
-        that the file holds in its own unit (also under an alias, with its scale) come in meters.
+        ``xyz`` is float64, meters from ``origin``, and can't be written to, as all who ask share it: change a copy, and
+        set that. What was set comes back as it was set; don't change it. Heights and areas that the file holds in its
+        own unit (also under an alias, with its scale) come in meters.
 
         Raises
         ------
@@ -118,6 +118,7 @@ class Cloud:
         for i, axis in enumerate("XYZ"):
             np.multiply(self.points[axis], scale[i], out=xyz[:, i])
             xyz[:, i] += shift[i]
+        xyz.flags.writeable = False
         self._shared = ref(xyz), self.points, self.origin.copy()
         return xyz
 

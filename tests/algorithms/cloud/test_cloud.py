@@ -283,7 +283,7 @@ def test_halves_of_a_step_are_rounded_up_whatever_the_offset(town, moved):
 def test_points_moved_out_of_the_file_are_refused(town, far):
     cloud = create_cloud(town)
     before = cloud.points
-    xyz = cloud.get("xyz")
+    xyz = cloud.get("xyz").copy()
     xyz[3, 1] += far
     with pytest.raises(ValueError, match=r"^Points are moved too far for the file, which reaches 2147484 m .* in Y "):
         cloud.set("xyz", xyz)
@@ -295,6 +295,8 @@ def test_coordinates_are_shared_by_those_that_hold_them_until_points_move(town):
     held = cloud.get("xyz")
     assert cloud.get("xyz") is held
     assert cloud.copy().get("xyz") is held
+    with pytest.raises(ValueError, match="read-only"):
+        held += 1.0
     east = held + [1.0, 0.0, 0.0]
     cloud.set("xyz", east)
     np.testing.assert_allclose(cloud.get("xyz"), east, rtol=0, atol=1e-3)
