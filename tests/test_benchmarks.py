@@ -6,12 +6,13 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.terrain import free_standing
-from lidar_buildings.tests.benchmarks import history, worth
+from lidar_buildings.tests.benchmarks import benchmark, history, measured, worth
 from lidar_buildings.tests.benchmarks.classes import rates
 from lidar_buildings.tests.benchmarks.results import Table
 from lidar_buildings.tests.benchmarks.surveys import Job, simulate
@@ -66,6 +67,19 @@ def test_every_script_starts_and_says_where_its_results_go(script):
     done = subprocess.run([sys.executable, FOLDER / script, "--help"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "--output" in done.stdout
+
+
+def test_every_step_of_detect_buildings_is_measured_on_what_the_steps_before_it_left(tmp_path, monkeypatch):
+    def in_this_process(command, **_):
+        return SimpleNamespace(returncode=0, stdout=json.dumps(measured.main(json.loads(command[2]))))
+
+    monkeypatch.setattr(benchmark.subprocess, "run", in_this_process)
+    bench = benchmark.Bench(0.03, tmp_path, tmp_path)
+    # It is the last but for the removal of auxiliary codes, and reads a layer of the step before.
+    bench.run(["report_buildings"])
+    steps = [step.stage_name for step in benchmark.CHAIN.steps]
+    until = steps[: steps.index("report_buildings") + 1]
+    assert [row["name"] for row in bench.rows][-len(until) :] == until
 
 
 def times(**cpu_seconds):

@@ -43,6 +43,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.pipeline import Step  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.algorithms.threads import n_threads  # noqa: E402
@@ -84,8 +85,8 @@ class Bench:
         needed = max((_place(name) for name in wanted if name in STAGES), default=0)
         states: list[str] = []
         for place, step in enumerate(CHAIN.steps[:needed]):
-            state = str(self.states / f"{self.millions:g}-{place}.npz")
-            self._row(step.stage_name, step.stage_name, states, state, step.tunables)
+            state = str(self.states / f"{self.millions:g}-{place}.pickle")
+            self._row(step.stage_name, step.stage_name, states, state, step)
             states = [*states, state]
         for name in others:
             self._row(name, name, states[: _place(name)])
@@ -119,16 +120,19 @@ class Bench:
     def _scene(self, wanted: bool) -> None:
         if wanted or not all(path.exists() for path in (self.cloud, self.truth)):
             size = (self.millions * 1e6 / (DENSITY * POINTS_PER_PULSE)) ** 0.5
-            self._row("simulate_town", "simulate", tunables={"size": size, "density": DENSITY})
+            town = Step("town", "simulate_town", {"size": size, "density": DENSITY})
+            self._row("simulate_town", "simulate", step=town)
 
-    def _row(self, name: str, what: str, states: Any = (), state: str = "", tunables: Any = None) -> None:
+    def _row(self, name: str, what: str, states: Any = (), state: str = "", step: Step | None = None) -> None:
         job = {
             "what": what,
             "cloud": str(self.cloud),
             "truth": str(self.truth),
             "states": list(states),
             "state": state,
-            "tunables": tunables or {},
+            "step": step.name if step else "",
+            "layers": dict(step.layers) if step else {},
+            "tunables": dict(step.tunables) if step else {},
         }
         command = [sys.executable, str(Path(__file__).with_name("measured.py")), json.dumps(job)]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import pickle
 import resource
 import sys
 import time
@@ -25,6 +26,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # no
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town  # noqa: E402
+from lidar_buildings.algorithms.stage.inputs_outputs import LayerFeatures  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 
 # Neighbors of each point in the pass over all neighborhoods.
@@ -43,9 +45,9 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
     ----------
     job : dict
         ``what``: "simulate", "read", "neighbors", "write", "files" (a chain from file to file), the name of a peer, or
-        that of a stage or chain; ``cloud``: file; ``truth``:
-        array file with the true classes; ``states``: files with what the steps before left; ``state``: where to
-        leave what this one wrote; ``tunables``: of the stage.
+        that of a stage or chain; ``cloud``: file; ``truth``: array file with the true classes; ``states``: files with
+        what the steps before left; ``state``: where to leave what this one wrote; ``step``: what the chain calls the
+        stage; ``layers``: those that it reads, by name as ``<step>.<layer>``; ``tunables``: of the stage.
 
     Returns
     -------
@@ -63,19 +65,21 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
         return {"points": len(cloud), **found}
     if what == "files" or what in PEERS:
         return _from_file_to_file(job, path, base)
-    cloud = _cloud(path, job["states"])
+    cloud, layers = _before(path, job["states"])
     try:
-        found, made = _timed(_work(job, cloud), base)
+        found, made = _timed(_work(job, cloud, layers), base)
     except ValueError as error:
         return {"refused": str(error)}
     if what in STAGES and STAGES[what].creates:
         return {"points": len(made.cloud), **found}
     if what in STAGES and job["state"]:
-        np.savez(job["state"], **{name: cloud.get(name) for name in STAGES[what].writes if cloud.has(name)})
+        dimensions = {name: cloud.get(name) for name in STAGES[what].writes if cloud.has(name)}
+        named = {f"{job['step']}.{name}": layer for name, layer in made.layers.items()}
+        Path(job["state"]).write_bytes(pickle.dumps((dimensions, named)))
     return {"points": len(cloud), **found}
 
 
-def _work(job: dict[str, Any], cloud: Cloud) -> Callable[[], Any]:
+def _work(job: dict[str, Any], cloud: Cloud, layers: dict[str, LayerFeatures]) -> Callable[[], Any]:
     """Return the function to be timed, with its inputs loaded."""
     what = job["what"]
     if what == "neighbors":
@@ -88,7 +92,8 @@ def _work(job: dict[str, Any], cloud: Cloud) -> Callable[[], Any]:
     reference = _reference(Path(job["cloud"]), job["truth"]) if stage.reads_reference else None
     # A stage that merges is given the scan twice.
     given = [cloud, cloud.copy()] if stage.merges else cloud
-    return lambda: run_stage(stage, given, reference, **job["tunables"])
+    inputs = {name: layers[made] for name, made in job["layers"].items()}
+    return lambda: run_stage(stage, given, reference, input_layers=inputs, **job["tunables"])
 
 
 def _from_file_to_file(job: dict[str, Any], path: Path, base: int) -> dict[str, Any]:
@@ -147,14 +152,16 @@ def _simulated(job: dict[str, Any], base: int) -> dict[str, Any]:
     return {"points": len(scan), **found}
 
 
-def _cloud(path: Path, states: list[str]) -> Cloud:
-    """Return the cloud as the steps before left it."""
+def _before(path: Path, states: list[str]) -> tuple[Cloud, dict[str, LayerFeatures]]:
+    """Return the cloud as the steps before left it, and their layers."""
     cloud = read_cloud(path)
+    layers: dict[str, LayerFeatures] = {}
     for state in states:
-        with np.load(state) as arrays:
-            for name in arrays.files:
-                cloud.set(name, arrays[name])
-    return cloud
+        dimensions, made = pickle.loads(Path(state).read_bytes())
+        for name, values in dimensions.items():
+            cloud.set(name, values)
+        layers.update(made)
+    return cloud, layers
 
 
 def _reference(path: Path, truth: str) -> Cloud:
