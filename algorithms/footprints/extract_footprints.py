@@ -21,7 +21,7 @@ from ..threads import made_ahead
 from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces
-from .roof_points import edge_weights, find_non_building_points, find_roof_points, topmost
+from .roof_points import edge_weights, find_non_building_points, find_roof_points, thinned
 from .row_houses import ROWS, Houses, split_row
 from .soft_shares import APART, LEAST_SPACING, Shares, find_shares
 
@@ -314,8 +314,8 @@ def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list
 
 def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidence:
     """Return the shares, pieces and rings of the buildings of a part."""
-    top = topmost(measures.local(part.roof), part.label, how.spacing)
-    other = topmost(measures.local(part.beside), np.zeros(len(part.beside), np.int64), how.spacing)
+    top = thinned(measures.local(part.roof), part.label, how.spacing)
+    other = thinned(measures.local(part.beside), np.zeros(len(part.beside), np.int64), how.spacing)
     roof, beside = measures.local(part.roof[top]), measures.plan(part.beside[other])
     walls = np.setdiff1d(part.members, part.roof)
     weight = edge_weights(roof, measures.local(walls), how.spacing)

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.grid import distinct, find_cells, fixed_grid_over, grid_over
+from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, grid_over
+from ..geometry.groups import topmost
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
@@ -61,12 +62,9 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
         is compared.
     """
     grid = fixed_grid_over(xyz, spacing)
-    # One number for cell and cluster; a cluster's cells are as far from the next one's as the grid is large.
-    number = distinct(cluster)[1].astype(np.int64)
-    cell = grid.number(xyz) + number * (grid.rows * grid.columns)
-    order = np.lexsort((xyz[:, 2], cell))
-    last = np.flatnonzero(np.diff(cell[order], append=-1))
-    cells, top = cell[order][last], xyz[order[last]]
+    cell = _numbers(grid, xyz, cluster)
+    highest = topmost(xyz[:, 2], cell)
+    cells, top = cell[highest], xyz[highest]
     is_roof = np.ones(len(xyz), bool)
     step = np.where(is_attached, max(_BELOW, _UPRIGHT * spacing), _STEP)
     steepest = np.where(is_attached, 0.0, _UPRIGHT)
@@ -82,7 +80,12 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
     return is_roof
 
 
-def topmost(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
+def _numbers(grid: Grid, xyz: np.ndarray, cluster: np.ndarray) -> np.ndarray:
+    """Return one number (n,) for cell and cluster; those of two clusters are as far apart as the grid is large."""
+    return grid.number(xyz) + distinct(cluster)[1].astype(np.int64) * (grid.rows * grid.columns)
+
+
+def thinned(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
     """Return the highest points (k,) of each cluster in each cell of half a square spacing, ascending.
 
     Walls, and strips that overlap, have many points in little area: one for each cell shows where roofs are as evenly
@@ -98,18 +101,13 @@ def topmost(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
     """
     if not len(xyz):
         return np.zeros(0, np.int64)
-    grid = fixed_grid_over(xyz, spacing * _THINNED)
-    order = np.lexsort((xyz[:, 2], cluster, grid.number(xyz)))
-    number = grid.number(xyz)[order]
-    is_last = np.ones(len(order), bool)
-    is_last[:-1] = (number[1:] != number[:-1]) | (cluster[order][1:] != cluster[order][:-1])
-    return np.sort(order[is_last])
+    return np.sort(topmost(xyz[:, 2], _numbers(fixed_grid_over(xyz, spacing * _THINNED), xyz, cluster)))
 
 
 def edge_weights(top: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarray:
     """Return the weights (n,), 0 to 1, of the highest points of cells: less where a wall below ends the roof.
 
-    ``top`` (n, 3) are points that :func:`topmost` has kept, ``walls`` (m, 3) points on walls, m.
+    ``top`` (n, 3) are points that :func:`thinned` has kept, ``walls`` (m, 3) points on walls, m.
     """
     if not len(walls) or not len(top):
         return np.ones(len(top))

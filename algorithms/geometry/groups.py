@@ -29,6 +29,24 @@ def ordered(key: np.ndarray, *ties: np.ndarray) -> np.ndarray:
     return order
 
 
+def topmost(elevation: np.ndarray, cell: np.ndarray, *ties: np.ndarray) -> np.ndarray:
+    """Return the row of the highest point of each occupied cell (m,), int64, by cell.
+
+    Parameters
+    ----------
+    elevation : ndarray of shape (n,)
+        Of each point, m.
+    cell : ndarray of shape (n,), int64
+        Number of the cell that each is in.
+    *ties : ndarrays of shape (n,)
+        Of points equally high that with the greatest number counts; the first numbers before the second, and the last
+        row where all are equal.
+    """
+    order = np.lexsort((*ties[::-1], elevation, cell))
+    # Each run ends before the next one starts, the last one with the points.
+    return order[np.append(run_starts(cell[order]), len(order))[1:] - 1]
+
+
 def least_of(values: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
     """Return the least of the finite ``values`` (n,) of each ``group`` (n,), (count,); infinite where it has none.
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass, parse_classes
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import Grid, connected_cells, find_cells, grid_over
+from ..geometry.groups import topmost
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
 from ..params import IgnoredClasses, MinBuildingArea
@@ -174,7 +175,7 @@ def assess_buildings(
     monitor.progress(0.3)
     grid = grid_over(xyz, cell_size)
     cell = grid.number(xyz)
-    top = topmost_points(cell, xyz[:, 2])
+    top = topmost(xyz[:, 2], cell)
     values = {f"points_{name}": value for name, value in rates(predicted, true).items()}
     values.update({f"cells_{name}": value for name, value in rates(predicted[top], true[top]).items()})
     monitor.progress(0.6)
@@ -213,12 +214,6 @@ def rates(predicted: np.ndarray, true: np.ndarray) -> dict[str, float]:
         "misses": misses,
         "false": false,
     }
-
-
-def topmost_points(cell: np.ndarray, elevation: np.ndarray) -> np.ndarray:
-    """Return the row of the highest point of each occupied cell, by cell; of equals the last."""
-    order = np.lexsort((elevation, cell))
-    return order[np.diff(cell[order], append=-1) != 0]
 
 
 def _share(part: float, whole: float) -> float:

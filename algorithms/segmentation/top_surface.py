@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.grid import fixed_grid_over, raster_cells, refuse_sparse
-from ..geometry.groups import least_of
+from ..geometry.grid import distinct, fixed_grid_over, raster_cells, refuse_sparse
+from ..geometry.groups import least_of, topmost
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.closed_surface import CLOSED
@@ -75,8 +75,4 @@ def highest_of_cells(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarr
     Of points equally high the one farthest to the east counts, so that their order in the file does not matter.
     """
     number = fixed_grid_over(xyz, size).number(xyz)
-    order = np.lexsort((xyz[:, 1], xyz[:, 0], xyz[:, 2], number))
-    is_last = np.append(number[order][1:] != number[order][:-1], True)
-    under = np.empty(len(xyz), np.int64)
-    under[order] = np.concatenate([[0], np.cumsum(is_last)[:-1]])
-    return order[is_last], under
+    return topmost(xyz[:, 2], number, xyz[:, 0], xyz[:, 1]), distinct(number)[1]

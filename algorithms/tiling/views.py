@@ -11,6 +11,8 @@ import numpy as np
 from ..cloud.asprs import NOISE
 from ..cloud.cloud import Cloud
 from ..cloud.outputs import replacing
+from ..geometry.grid import fixed_grid_over
+from ..geometry.groups import topmost
 
 
 @dataclass(frozen=True)
@@ -31,21 +33,13 @@ class View:
         classes = cloud.get("classification")
         rows = np.flatnonzero(~np.isin(classes, NOISE) & ~cloud.withheld)
         xyz = cloud.get("xyz")[rows] + (cloud.origin - self.origin)
-        shown = self._topmost(xyz)
+        shown = np.zeros(len(xyz), bool)
+        if len(xyz):
+            shown[topmost(xyz[:, 2], fixed_grid_over(xyz, self.cell).number(xyz))] = True
         for low, high in self.boxes:
             shown |= ((xyz[:, :2] >= low) & (xyz[:, :2] <= high)).all(axis=1)
         with replacing(self.folder / f"view-{name}.npz") as stream:
             np.savez(stream, xyz=xyz[shown], classification=classes[rows[shown]])
-
-    def _topmost(self, xyz: np.ndarray) -> np.ndarray:
-        """Return which points (n,) are the highest of their cells."""
-        column, row = np.floor(xyz[:, :2] / self.cell).astype(np.int64).T
-        order = np.lexsort((xyz[:, 2], column, row))
-        is_last = np.ones(len(order), bool)
-        is_last[:-1] = (np.diff(column[order]) != 0) | (np.diff(row[order]) != 0)
-        shown = np.zeros(len(xyz), bool)
-        shown[order[is_last]] = True
-        return shown
 
     def points(self, tiles: Iterable[Path]) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates (n, 3), m from the origin, and classes (n,) of what tiles have left."""

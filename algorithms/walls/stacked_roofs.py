@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.grid import Grid, find_cells, grid_over
+from ..geometry.groups import topmost
 
 # A roof of which more than this share of the border meets one larger roof is a part of that one. A house between two
 # others of its size has at most a third of it beside each, an annex in a nook half; a stair house at the edge of a
@@ -70,9 +71,8 @@ def _labelled(xyz: np.ndarray, cluster: np.ndarray, size: float) -> tuple[Grid, 
     west, south = tight.origin
     grid = Grid((west - room * size, south - room * size), size, tight.rows + 2 * room, tight.columns + 2 * room)
     number = grid.number(xyz)
-    order = np.lexsort((cluster, -xyz[:, 2], number))
-    cells, first = np.unique(number[order], return_index=True)
-    return grid, cells, cluster[order][first]
+    top = topmost(xyz[:, 2], number, -cluster)
+    return grid, number[top], cluster[top]
 
 
 def _borders(grid: Grid, cells: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -13,6 +13,7 @@ from lidar_buildings.algorithms.geometry.groups import (
     ordered,
     run_starts,
     split_groups,
+    topmost,
 )
 
 numbers = st.lists(st.integers(-1, 4), max_size=12).map(lambda values: np.array(values, np.int64))
@@ -28,6 +29,14 @@ def test_a_run_starts_where_the_number_before_is_another(values):
 def test_items_are_counted_from_0_in_each_group(counts):
     wanted = [(group, item) for group, count in enumerate(counts.tolist()) for item in range(count)]
     assert list(zip(*(part.tolist() for part in items(counts)))) == wanted
+
+
+@given(st.lists(st.tuples(*[st.integers(0, 2)] * 4), max_size=30))
+def test_the_topmost_point_of_each_cell_is_found(points):
+    cell, elevation, tie, rest = np.array(points, np.int64).reshape(-1, 4).T
+    keys = list(zip(elevation.tolist(), tie.tolist(), rest.tolist(), range(len(points))))
+    wanted = [max(key for key, own in zip(keys, cell) if own == one)[-1] for one in np.unique(cell)]
+    assert topmost(elevation, cell, tie, rest).tolist() == wanted
 
 
 @given(st.lists(st.tuples(st.integers(0, 4), st.integers(-3, 3)), max_size=30))

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.geometry.grid import grid_over
-from lidar_buildings.algorithms.quality.assess_buildings import assess_buildings, rates, topmost_points
+from lidar_buildings.algorithms.quality.assess_buildings import assess_buildings, rates
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 
 
@@ -58,11 +57,6 @@ def test_cells_that_touch_by_a_corner_are_one_object():
     xyz = np.concatenate([block(0, 0, 20, 0.0), block(2, 2, 2, 4.0), block(4, 4, 2, 4.0)])
     true = np.where(xyz[:, 2] > 0, 6, 2)
     assert assess_buildings(xyz, true, xyz, true, cell_size=0.5, min_area=8.0)[1].values["objects_true"] == 1
-
-
-def test_topmost_of_equals_is_the_last():
-    xyz = np.array([[0.1, 0.1, 1], [0.2, 0.2, 3], [0.3, 0.3, 3], [5, 5, 0]])
-    assert topmost_points(grid_over(xyz, 1.0).number(xyz), xyz[:, 2]).tolist() == [2, 3]
 
 
 def listed(layer):
