@@ -302,6 +302,28 @@ def working_folder(parent: Path) -> Iterator[Path]:
 
 
 @contextmanager
+def made_folder(folder: Path) -> Iterator[None]:
+    """Make a folder, and those above it, where they are missing; remove those again that are empty if the block fails.
+
+    Raises
+    ------
+    ValueError
+        If the folder can't be made.
+    """
+    missing = [one for one in (folder, *folder.parents) if not one.exists()]
+    try:
+        with os_errors_as_messages(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except BaseException:
+        # What has files in it stays.
+        with suppress(OSError):
+            for one in missing:
+                one.rmdir()
+        raise
+
+
+@contextmanager
 def locked_folder(folder: Path) -> Iterator[bool]:
     """Yield whether no other running program has locked a folder, and lock it for as long as the block lasts.
 

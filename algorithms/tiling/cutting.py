@@ -14,7 +14,7 @@ from ..cloud.vpc import fill_merged
 from ..geometry.groups import run_starts
 from ..stage import Monitor
 from .blocks import Block
-from .survey import Survey, check_folder
+from .survey import Survey, tiles_folder
 
 # Share of the time that reading takes; the rest is writing.
 _READ = 0.5
@@ -55,9 +55,8 @@ def cut_into_tiles(
         If a file is damaged, no point lies within the extent, one of the files would be overwritten, or a tile can't
         be written.
     """
-    check_folder(folder, [source.path for source in survey.sources])
     kind = LAZ if compressed else LAS
-    with working_folder(folder) as heaps:
+    with tiles_folder(folder, [source.path for source in survey.sources]), working_folder(folder) as heaps:
         blocks = _sort_out(survey, side, heaps, monitor.part(0.0, _READ))
         if not blocks:
             raise ValueError("The survey has no points within the extent; choose another extent.")

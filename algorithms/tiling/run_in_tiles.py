@@ -28,7 +28,7 @@ from .cutting import cut_into_tiles
 from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
 from .mosaics import join_rasters
-from .survey import Survey, check_folder, files_of_survey, open_survey
+from .survey import Survey, files_of_survey, open_survey, tiles_folder
 from .survey_sampling import samplings_of
 from .survey_steps import SurveySteps
 from .tile_writing import TileWriter, unique_stems
@@ -95,8 +95,7 @@ def run_in_tiles(
         step.stage.check(chosen)
     given = [Path(path) for path in paths]
     survey = open_survey(given, options.crs_units, monitor, options.extent, options.crs)
-    check_folder(folder, [*files_of_survey(given), *given])
-    with work_folder(folder) as work:
+    with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder) as work:
         outcome = _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
     if not outcome.failures:
         # Windows removes no lock that is open.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 from ..cloud.cloud import Cloud, origin_before
 from ..cloud.files import files_of, header_with_crs, readable
 from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
-from ..cloud.outputs import check_not_read, kind_of
+from ..cloud.outputs import check_not_read, kind_of, made_folder, os_errors_as_messages
 from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
 from ..cloud.units import Resolver, Units, units_of, wkt_of
 from ..cloud.vpc import check_tiles, fill_merged, merged_header
@@ -308,12 +309,15 @@ def _box(header: Header, units: Units) -> np.ndarray:
     if not np.isfinite(box).all():
         raise ValueError("The bounds in the header of a file are not finite; repair its header first.")
     # Some files have rounded bounds: a margin of one step of the scale includes all points.
-    step = np.abs(header.scale[:2]) * units.horizontal
+    step = header.scale[:2] * units.horizontal
     return box + np.array([-step, step])
 
 
-def check_folder(folder: Path, inputs: Iterable[Path]) -> None:
-    """Refuse a folder in which a name leads to an input of the run, or make the folder where it is missing.
+@contextmanager
+def tiles_folder(folder: Path, inputs: Iterable[Path]) -> Iterator[None]:
+    """Make the folder of the tiles where it is missing, or refuse it where a name in it leads to an input of the run.
+
+    If the block fails and leaves it empty, it is removed again.
 
     Parameters
     ----------
@@ -329,9 +333,8 @@ def check_folder(folder: Path, inputs: Iterable[Path]) -> None:
     """
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{folder} is a file; choose a folder for the tiles.")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        names = sorted(folder.iterdir())
-    except OSError as error:
-        raise ValueError(f"The folder {folder} can't be made ({error.strerror}); choose another one.") from error
-    check_not_read(names, inputs)
+    with made_folder(folder):
+        with os_errors_as_messages(folder):
+            names = sorted(folder.iterdir())
+        check_not_read(names, inputs)
+        yield

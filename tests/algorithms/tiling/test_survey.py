@@ -174,7 +174,22 @@ def test_a_full_disk_is_reported_of_the_folder_that_was_chosen(tmp_path, monkeyp
         cut_into_tiles(open_survey([path]), 10.0, tmp_path / "cut", "tile", False, Monitor())
     sentence = f"The disk is full: {tmp_path / 'cut'} was not written; free some space or choose another folder."
     assert str(raised.value) == sentence
-    assert not list((tmp_path / "cut").iterdir())
+    assert not (tmp_path / "cut").exists(), "an empty folder was left"
+
+
+def test_folders_that_are_left_empty_are_removed_and_no_others(tmp_path):
+    path = tile(tmp_path / "a.las", (0, 0))
+    (tmp_path / "there").mkdir()
+
+    class Stopped(Monitor):
+        def progress(self, fraction):
+            raise Cancelled
+
+    for folder in (tmp_path / "new" / "cut", tmp_path / "there", tmp_path / "there" / "cut"):
+        with pytest.raises(Cancelled):
+            cut_into_tiles(open_survey([path]), 10.0, folder, "tile", False, Stopped())
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["a.las", "there"]
+    assert not list((tmp_path / "there").iterdir())
 
 
 KILLED = """
