@@ -165,8 +165,8 @@ class Cloud:
             np.floor(steps + (0.5 + _HALF), out=steps)
             if not max(steps.max(), -steps.min()) <= LARGEST_STEP:
                 raise ValueError(
-                    f"Points are moved too far for the file, which reaches {LARGEST_STEP * abs(step[i]):.0f} m from "
-                    f"its offset in {axis} at a scale of {abs(step[i]):g} m; check the coordinates."
+                    f"Points are moved too far for the file, which reaches {LARGEST_STEP * step[i]:.0f} m from "
+                    f"its offset in {axis} at a scale of {step[i]:g} m; check the coordinates."
                 )
             points[axis] = steps
         return points

@@ -81,9 +81,9 @@ def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree
 def _cube(points: np.ndarray, header: Header) -> tuple[np.ndarray, float]:
     """Return the least corner (3,) and the side of the root cube, in coordinates of the file."""
     ends = np.array([[points[axis].min(), points[axis].max()] for axis in "XYZ"], float).T
-    low, high = np.sort(ends * header.scale + header.offset, axis=0)
+    low, high = ends * header.scale + header.offset
     # One step wider, so that the largest coordinate lies inside the last cell.
-    return low, float((high - low).max() + np.abs(header.scale).max())
+    return low, float((high - low).max() + header.scale.max())
 
 
 def _morton(points: np.ndarray, header: Header, low: np.ndarray, side: float) -> np.ndarray:

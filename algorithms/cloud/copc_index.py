@@ -82,7 +82,7 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
         raise _damaged(path, f"it names a node {key} (level, column, row)")
     side = (2 * half / 2.0**level)[:, None]
     # Coordinates are rounded to steps of the scale, also those on the faces of nodes.
-    margin = np.abs(header.scale[:2])
+    margin = header.scale[:2]
     low = np.array([x, y]) - half + position * side
     return CopcIndex(low - margin, low + side + margin)
 

@@ -150,10 +150,7 @@ class Header:
         return replace(self, layout=layout, vlrs=same)
 
     def las(self) -> Any:
-        """Return a new LasHeader of laspy, which has the VLRs as bytes of no known meaning.
-
-        It counts coordinates in steps, so that bounds are right where a scale is negative.
-        """
+        """Return a new LasHeader of laspy, which has the VLRs as bytes of no known meaning and bounds in steps."""
         lowest = _FIRST_MINOR.get(self.layout.point_format, 4)
         made = need_laspy().LasHeader(version=f"1.{max(self.minor, lowest)}", point_format=self.layout.las)
         made.vlrs.clear()
@@ -203,8 +200,7 @@ class Header:
             if record.key == WAVEFORMS and self.encoding & WAVEFORMS_INSIDE:
                 las.start_of_waveform_data_packet_record = stream.tell()
             record.write(stream, extended=True)
-        bounds = np.sort([bound * self.scale + self.offset for bound in (las.mins, las.maxs)], axis=0)
-        las.mins, las.maxs = bounds
+        las.mins, las.maxs = (bound * self.scale + self.offset for bound in (las.mins, las.maxs))
         las.scales, las.offsets = self.scale, self.offset
         self.write(stream, las)
 
@@ -293,7 +289,13 @@ class _Reader:
         return need_laspy().LasHeader.read_from(io.BytesIO(plain))
 
     def _check_scale(self, header: Header) -> None:
-        step = np.abs(header.scale)
+        step = header.scale
+        if (step < 0).any():
+            # laspy and PDAL multiply by it as it is, and lasvalidate fails such a file: the sign is an error.
+            raise ValueError(
+                f"{self.path.name} has a negative scale in its header, {step.tolist()}, which mirrors the cloud; get "
+                "the file again, or have its header repaired."
+            )
         with np.errstate(over="ignore"):
             farthest = np.abs(header.offset) + 2.0**31 * step
         # Beyond, all coordinates are one and the same; of NaN and infinity the comparison is false. Below, areas are 0.

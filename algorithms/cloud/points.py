@@ -151,7 +151,7 @@ def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -
         If the file or its index is damaged.
     """
     # The bounds of some files are rounded.
-    step = np.abs(header.scale[:2])
+    step = header.scale[:2]
     if (box[1] < header.low[:2] - step).any() or (box[0] > header.high[:2] + step).any():
         return
     if has_index(header) and has_variable_chunks(header):

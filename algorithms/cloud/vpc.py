@@ -297,7 +297,7 @@ def _union(lists: list[list[Vlr]]) -> list[Vlr]:
 
 def _grid(headers: list[Header], what: str) -> tuple[np.ndarray, np.ndarray]:
     """Return scale and offset that hold all tiles: the first's offset if the finest scale reaches from there."""
-    scale = np.min([np.abs(header.scale) for header in headers], axis=0)
+    scale = np.min([header.scale for header in headers], axis=0)
     low = np.min([header.low for header in headers], axis=0)
     high = np.max([header.high for header in headers], axis=0)
     offset = headers[0].offset.copy()
