@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from collections.abc import Iterable
 from typing import Callable, Optional
 
 from .captions import captions
@@ -72,7 +73,9 @@ def output_text(pipeline: Pipeline, output: Output) -> str:
 
 def written_by(pipeline: Pipeline) -> str:
     """Return the dimensions that the steps of a composite write, by their names in files."""
-    return _disk_names(dict.fromkeys(name for step in pipeline.steps for name in _written(step)))
+    written = [(step.stage, name) for step in pipeline.steps for name in _written(step)]
+    always = dict.fromkeys(name for stage, name in written if name not in stage.written_if)
+    return _with_conditions(always, {name: stage.written_if[name] for stage, name in written if name not in always})
 
 
 def _written(step: Step) -> tuple[str, ...]:
@@ -199,7 +202,8 @@ def outputs(stage: Stage) -> list:
 
 
 def _cloud_text(stage: Stage) -> str:
-    written = f" with {_disk_names(stage.writes)}" if stage.writes else ""
+    always = [name for name in stage.writes if name not in stage.written_if]
+    written = f" with {_with_conditions(always, stage.written_if)}" if stage.writes else ""
     chosen = _chosen(stage)
     if chosen is not None:
         meanings = [_meaning(name) for name in stage.writes]
@@ -211,6 +215,16 @@ def _cloud_text(stage: Stage) -> str:
     if stage.selects:
         return f"a cloud of the points selected{written}; everything else of them stays, withheld points are left out."
     return f"the cloud{written}; everything else in it stays as it was."
+
+
+def _with_conditions(always: Iterable[str], written_if: dict[str, str]) -> str:
+    """Return dimensions by their names in files: those always written, then others with when they are."""
+    groups: dict[str, list[str]] = {"": list(always)}
+    for name, when in written_if.items():
+        groups.setdefault(when, []).append(name)
+    return "; ".join(
+        f"{_disk_names(names)} {html.escape(when, quote=False)}".strip() for when, names in groups.items() if names
+    )
 
 
 def _chosen(stage: Stage) -> Optional[Tunable]:

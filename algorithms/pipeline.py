@@ -132,6 +132,11 @@ class Pipeline:
         return next((step.stage for step in self.steps if step.stage.reads_reference), None)
 
     @property
+    def input_title(self) -> str:
+        """Label of the cloud that the composite is given: where there are two, what distinguishes it from the other."""
+        return (self.compared or self.steps[0].stage).input_title
+
+    @property
     def input_layers(self) -> dict[str, InputLayer]:
         """Vector layers that the composite is given, by name."""
         found: dict[str, InputLayer] = {}

@@ -46,16 +46,16 @@ def with_setting(
     return with_help(definition, tr(setting.help))
 
 
-def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
+def input_parameter(several: bool, title: str = "Point cloud") -> QgsProcessingParameterDefinition:
     """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
     if several:
         return with_help(CloudsParameter(INPUTS, tr("Point clouds")), tr("Files or layers of points, one or more."))
-    return with_help(CloudParameter(INPUT, tr("Point cloud")), tr("File or layer of the points."))
+    return with_help(CloudParameter(INPUT, tr(title)), tr("File or layer of the points."))
 
 
 def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:
     """Return the parameter of the second cloud that a stage reads."""
-    definition = CloudParameter(REFERENCE, tr("Reference point cloud"))
+    definition = CloudParameter(REFERENCE, tr(stage.reference_title))
     if not stage.needs_reference:
         definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Optional)
     return with_help(definition, f"{tr('File or layer.')} {tr(stage.reference)}")

@@ -121,11 +121,13 @@ def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
     The designer runs a model with QGIS's own parameters; those for layers take no LAS and LAZ where QGIS has no PDAL.
     """
     if pipeline.compared is not None:
-        both = ((INPUT, "Point cloud"), (REFERENCE, "Reference point cloud"))
+        both = ((INPUT, pipeline.input_title), (REFERENCE, pipeline.compared.reference_title))
         return [QgsProcessingParameterFile(name, title, fileFilter=FILTER) for name, title in both]
     if pipeline.merges:
         return [QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", Qgis.ProcessingSourceType.File)]
-    return [QgsProcessingParameterFile(INPUT, "Point cloud", fileFilter=FILTER)] if pipeline.reads_cloud else []
+    if not pipeline.reads_cloud:
+        return []
+    return [QgsProcessingParameterFile(INPUT, pipeline.input_title, fileFilter=FILTER)]
 
 
 def output_title(pipeline: Pipeline, output: Output) -> str:

@@ -134,7 +134,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
     ) -> QgsProcessingParameterDefinition:
         """Return a parameter of the model with its help, an output under the name that the chain gives it."""
         if definition.name() in (INPUT, INPUTS):
-            return input_parameter(self.pipeline.merges)
+            return input_parameter(self.pipeline.merges, self.pipeline.input_title)
         if definition.name() == REFERENCE and self.pipeline.compared is not None:
             return reference_parameter(self.pipeline.compared)
         mended = definition.clone()

@@ -101,7 +101,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare inputs, tunables and outputs."""
         if self.stage.reads_cloud:
-            self.addParameter(input_parameter(self.stage.merges))
+            self.addParameter(input_parameter(self.stage.merges, self.stage.input_title))
         if self.stage.reads_reference:
             self.addParameter(reference_parameter(self.stage))
         for input_layer in self.stage.input_layers:

@@ -568,6 +568,9 @@ def test_docstring_describes_what_comes_in_and_goes_out(stage):
     assert bool(stage.section("References")) != (stage.name in WITHOUT_REFERENCES)
     for name in stage.tunables:
         assert f"\n{name} : " in stage.function.__doc__
+    # Coordinates are in every cloud, whether a stage moves them or not.
+    none = re.findall(r"^(\w+) : .*, or None$", stage.section("Returns"), re.MULTILINE)
+    assert [name for name in none if name != "xyz"] == list(stage.written_if), "the help says when they are written"
 
 
 # --- The bounds.

@@ -37,6 +37,7 @@ COMPLETION = CompletionRules()
     group="Buildings",
     tags="building,roof,facade,chimney,dormer,attach",
     writes=("classification", "cluster_id", "confidence", "reason"),
+    written_if={"confidence": "where the cloud has them", "reason": "where the cloud has them"},
     # Gaps are closed from both sides. An automatic gap is wider than this only where points are over 2.5 m apart.
     reach=lambda tunables: tunables["gap"] or 10.0,
 )

@@ -51,6 +51,11 @@ _RULES = _Rules()
     group="Buildings",
     tags="building,self-training,learning,logistic regression,refine",
     writes=("classification", "cluster_id", "confidence", "reason", "building_probability"),
+    written_if={
+        "confidence": "where the cloud has them",
+        "reason": "where the cloud has them",
+        "building_probability": "where the buildings of the scene could be learned",
+    },
     # Points within the distance of edges, and the cells around those around them, decide on a point.
     reach=10.0,
     of_whole=(_LEARNED,),

@@ -47,7 +47,9 @@ _MEANINGS = {
     ),
     layers=PIERCED,
     measures=_MEASURES,
-    reference="The street scan, from a vehicle or a tripod.",
+    input_title="Airborne point cloud",
+    reference_title="Street scan",
+    reference="The scan of the street, from a vehicle or a tripod.",
 )
 def register_street(
     xyz,

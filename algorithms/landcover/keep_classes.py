@@ -26,6 +26,7 @@ _KEPT = {
     group="Land cover",
     tags="class,keep,existing,classified,freeze,lock,ground,building,reclassify",
     writes=("earlier_class",),
+    written_if={"earlier_class": "where classes are kept"},
 )
 def keep_classes(
     xyz,

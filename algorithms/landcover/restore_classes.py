@@ -21,6 +21,7 @@ _WHOLE = (PointClass.GROUND, PointClass.BUILDING)
     group="Land cover",
     tags="class,restore,keep,existing,classified,ground,building",
     writes=("classification", "cluster_id"),
+    written_if={"cluster_id": "where buildings are kept"},
 )
 def restore_classes(
     xyz, classification, cluster_id=None, earlier_class=None, *, sampling: Optional[CloudSampling] = None, monitor=None

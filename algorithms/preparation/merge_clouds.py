@@ -48,6 +48,7 @@ class Transform:
     tags="combine,append,join,union,tiles,scans,register,lasmerge,"
     "relative orientation,transform,rotate,shift,matrix,4x4",
     writes=("xyz", "point_source_id", "previous_source_id"),
+    written_if={"previous_source_id": "where PointSourceId was not 0 everywhere"},
     merges=True,
 )
 def merge_clouds(

@@ -34,6 +34,7 @@ _LARGEST_VOXEL = 3.0
     group="Segmentation",
     tags="plane,RANSAC,voxel,roof,wall,facade,planar,segmentation",
     writes=("segment_id", "normal"),
+    written_if={"normal": "with 'Write normals'"},
 )
 def segment_planes_ransac(
     xyz,

@@ -39,6 +39,8 @@ class Stage:
     tunables: dict[str, Tunable] = field(repr=False)
     doc: str = field(repr=False)
     writes: tuple[str, ...] = ()  #: Dimensions of the points that it returns
+    #: When it writes those that it may leave out, by name: "where the cloud has them"
+    written_if: dict[str, str] = field(default_factory=dict)
     creates: tuple[str, ...] = ()  #: Dimensions of the cloud that it makes
     layers: tuple[Layer, ...] = ()  #: Vector layers that it makes
     measures: tuple[Measure, ...] = ()  #: Numbers of its report
@@ -53,7 +55,9 @@ class Stage:
     #: Values that it measures on its results, and of which parts of a cloud take those of the whole, see
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
-    #: Description of the second cloud of a stage that reads one
+    input_title: str = "Point cloud"  #: Label of the cloud that it reads
+    reference_title: str = "Reference point cloud"  #: Label of the second cloud of a stage that reads one
+    #: Description of that second cloud
     reference: str = "The same points with the true values, to compare with."
     #: For a stage that makes a page of layers and, optionally, points: a function that returns the boxes (k, 2, 2), m,
     #: in which it shows every point. Elsewhere it shows the topmost points, and of a survey it gets no others there.
@@ -147,9 +151,9 @@ def stage(title: str, *, group: str, tags: str = "", **made: Any) -> Callable[[C
 
     The function returns its results in the order below, and not in a tuple when there is only one. With ``selects`` the
     first are the positions of the points that its result has, int64 (m,). Then comes one array per name in ``writes``:
-    of length n, with ``selects`` m, with ``merges`` that of all clouds together; None for one that the user did not ask
-    for. With ``creates`` it is one per name there, a new cloud of any length. One :class:`LayerFeatures` per layer
-    follows, one :class:`RasterSurface` per raster, the items of each file, and a :class:`Report` when there are
+    of length n, with ``selects`` m, with ``merges`` that of all clouds together; None for one of ``written_if`` that it
+    leaves out. With ``creates`` it is one per name there, a new cloud of any length. One :class:`LayerFeatures` per
+    layer follows, one :class:`RasterSurface` per raster, the items of each file, and a :class:`Report` when there are
     measures. A stage that merges and writes nothing returns None for the cloud that it makes. The decorated function
     checks its arrays and tunables on every call and carries its :class:`Stage` as ``function.stage``.
 
@@ -228,6 +232,9 @@ def _check_declaration(declared: Stage) -> None:
         raise TypeError(f"{declared.name} creates a cloud, so it can't read anything.")
     if (declared.selects or declared.merges) and not declared.reads:
         raise TypeError(f"{declared.name} makes a cloud of the points it reads, so it must read some.")
+    other = [name for name in declared.written_if if name not in declared.writes]
+    if other:
+        raise TypeError(f"{declared.name} says when it writes {other[0]!r}, which is not among what it writes.")
     if declared.selects and declared.merges:
         raise TypeError(f"{declared.name} selects and merges; make it two stages.")
     if "xyz" in declared.writes and not (declared.selects or declared.merges):

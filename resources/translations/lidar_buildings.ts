@@ -1344,15 +1344,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, HeightAboveGround, SegmentID, ClusterID, Reason, Entropy, ClusterEntropy, Confidence; EarlierClass where classes are kept; BuildingProbability where the buildings of the scene could be learned, and a virtual point cloud over all of them.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, SegmentID, and a virtual point cloud over all of them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, X, Y, Z, VoxelCount, HeightAboveGround, SegmentID, NormalX, NormalY, NormalZ, ClusterID, WallOf, and a virtual point cloud over all of them.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with EarlierClass, Classification, ClusterID, HeightAboveGround, SegmentID, Reason, Entropy, ClusterEntropy, Confidence, BuildingProbability, and a virtual point cloud over all of them.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, X, Y, Z, VoxelCount, HeightAboveGround, SegmentID, ClusterID, WallOf; NormalX, NormalY, NormalZ with 'Write normals', and a virtual point cloud over all of them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1392,15 +1392,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, ClusterID, Confidence, Reason, BuildingProbability; everything else in it stays as it was.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, ClusterID, Confidence, Reason; everything else in it stays as it was.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, ClusterID, Entropy, ClusterEntropy, Confidence, Reason.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, ClusterID; Confidence, Reason where the cloud has them; BuildingProbability where the buildings of the scene could be learned; everything else in it stays as it was.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, ClusterID; Confidence, Reason where the cloud has them; everything else in it stays as it was.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1412,6 +1412,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, HeightAboveGround, SegmentID, ClusterID, Reason, Entropy, ClusterEntropy, Confidence; EarlierClass where classes are kept; BuildingProbability where the buildings of the scene could be learned.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, SegmentID.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -1420,7 +1424,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, X, Y, Z, VoxelCount, HeightAboveGround, SegmentID, NormalX, NormalY, NormalZ, ClusterID, WallOf.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, X, Y, Z, VoxelCount, HeightAboveGround, SegmentID, ClusterID, WallOf; NormalX, NormalY, NormalZ with 'Write normals'.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification; ClusterID where buildings are kept; everything else in it stays as it was.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1436,11 +1444,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with EarlierClass, Classification, ClusterID, HeightAboveGround, SegmentID, Reason, Entropy, ClusterEntropy, Confidence, BuildingProbability.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with EarlierClass; everything else in it stays as it was.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with EarlierClass where classes are kept; everything else in it stays as it was.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1449,10 +1453,6 @@
     </message>
     <message>
         <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with SegmentID, ClusterID, Reason; everything else in it stays as it was.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with SegmentID, NormalX, NormalY, NormalZ; everything else in it stays as it was.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1468,15 +1468,19 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with SegmentID; NormalX, NormalY, NormalZ with 'Write normals'; everything else in it stays as it was.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with SegmentID; everything else in it stays as it was.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with X, Y, Z, PointSourceId, PreviousSourceId, Classification, VoxelCount, Linearity, Planarity, Scattering, Verticality, OptimalKNN, Dimensionality.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with X, Y, Z, PointSourceId, Classification, VoxelCount, Linearity, Planarity, Scattering, Verticality, OptimalKNN, Dimensionality; PreviousSourceId where PointSourceId was not 0 everywhere.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the points of all clouds in one with X, Y, Z, PointSourceId, PreviousSourceId; withheld points are left out.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the points of all clouds in one with X, Y, Z, PointSourceId; PreviousSourceId where PointSourceId was not 0 everywhere; withheld points are left out.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1620,7 +1624,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;REFERENCE&lt;/b&gt;: The street scan, from a vehicle or a tripod.</source>
+        <source>&lt;b&gt;REFERENCE&lt;/b&gt;: The scan of the street, from a vehicle or a tripod.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1632,7 +1636,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;REFERENCE&lt;/b&gt;: reads X, Y, Z, Classification. The street scan, from a vehicle or a tripod.</source>
+        <source>&lt;b&gt;REFERENCE&lt;/b&gt;: reads X, Y, Z, Classification. The scan of the street, from a vehicle or a tripod.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3513,6 +3517,10 @@
     </message>
     <message>
         <source>Airborne laser, fewer points</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Airborne point cloud</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7964,6 +7972,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Street scan</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Street, vehicle or tripod</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8244,6 +8256,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>The scan of the street, from a vehicle or a tripod.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>The scanners are those of the publication: 40 lines per second, a beam every 0.25° in all directions but a quarter of the circle, behind the horizontal one and above the vertical one. They reach 30 m, with 3 cm of noise along the beam. The drone sways by up to 0.3 m and 2°. Its position is known exactly: points lie on surfaces but for the range noise. With nothing set there are 6.7 million points in 320,000 voxels of 0.1 m, about as many as in the publication.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8269,10 +8285,6 @@
     </message>
     <message>
         <source>The slope of a plane is the angle of its normal from the vertical: roofs are kept up to 60°, walls have 90°. Leaves and other scattered points are no plane: it must have more points than a plane found by chance in one of a thousand voxels of scattered points. A strip narrower than 3.5 tolerances has no plane of its own. The result depends on the seed, not on the order of points or the number of threads.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>The street scan, from a vehicle or a tripod.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

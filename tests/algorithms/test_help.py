@@ -84,6 +84,20 @@ def test_dimensions_to_choose_from_are_explained_one_by_one():
     assert "<li><i>plan_radius</i>: PlanRadius, reach of the neighbors in plan (m)</li>\n" in text
 
 
+def test_dimensions_that_may_be_left_out_have_their_condition():
+    """Those of 'Segment planes (RANSAC)' were promised, and are written only if asked for."""
+    assert (
+        "<b>OUTPUT</b>: the cloud with SegmentID; NormalX, NormalY, NormalZ with 'Write normals'; everything else"
+    ) in stage_help(STAGES["segment_planes_ransac"])
+    assert "<b>OUTPUT</b>: the cloud with EarlierClass where classes are kept; everything else" in stage_help(
+        STAGES["keep_classes"]
+    )
+    mapped = pipeline_help(PIPELINES["map_footprints"])
+    assert "ClusterID, WallOf; NormalX, NormalY, NormalZ with 'Write normals'.</li>" in mapped
+    # One step writes the confidence always, others change it.
+    assert "where the cloud has them" not in pipeline_help(PIPELINES["detect_buildings"])
+
+
 def test_the_command_line_shows_text():
     text = as_text(stage_help(TOYS["toy_lift"]))
     assert text.startswith("A text in two parts, with code and emphasis.\n\nInputs\n- INPUT: reads X, Y, Z")

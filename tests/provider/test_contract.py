@@ -200,6 +200,15 @@ def test_words_that_users_type_find_it(provider, word, wanted):
     assert word in [tag.lower() for tag in provider.algorithm(wanted).tags()]
 
 
+@pytest.mark.parametrize("name", ["registerstreet", "modelcityblock"])
+def test_two_clouds_are_told_apart_by_their_labels(provider, name):
+    """They were called "Point cloud" and "Reference point cloud"."""
+    algorithm = provider.algorithm(name).create()
+    labels = {d.name(): d.description() for d in algorithm.parameterDefinitions()}
+    assert labels["INPUT"] == "Airborne point cloud"
+    assert labels["REFERENCE"] == "Street scan"
+
+
 def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm):
     clouds = [d.name() for d in algorithm.parameterDefinitions() if isinstance(d, (CloudParameter, CloudsParameter))]
     own = "INPUTS" if stage.merges else "INPUT"
