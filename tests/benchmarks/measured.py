@@ -26,7 +26,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # no
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town  # noqa: E402
-from lidar_buildings.algorithms.stage.inputs_outputs import LayerFeatures  # noqa: E402
+from lidar_buildings.algorithms.stage import LayerFeatures  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 
 # Neighbors of each point in the pass over all neighborhoods.
