@@ -84,7 +84,10 @@ def _by_pip(missing: list[str]) -> list[str]:
 
 
 def python() -> str:
-    """Return the Python interpreter of this QGIS, of its version; ``sys.executable`` may be QGIS itself."""
+    """Return the Python interpreter that this QGIS runs, by its version where none is found.
+
+    ``sys.executable`` may be QGIS itself.
+    """
     found = own_python()
     if Path(found).stem.lower().startswith("python"):
         return found

@@ -151,7 +151,7 @@ def extract_facades(
     segment_id : ndarray of shape (n,), int32
         Facades from 1, from west to east; 0 if unassigned.
     facades : LayerFeatures
-        Polygons with Z, counterclockwise seen from outside, with the fields above.
+        Polygons with Z, counterclockwise seen from outside, with the fields ``FACADE_FIELDS``.
 
     Raises
     ------

@@ -98,7 +98,7 @@ def extract_openings(
     facades : LayerFeatures
         Polygons with Z; openings are their holes.
     openings : LayerFeatures
-        Polygons with Z in the planes of the facades, with the fields above.
+        Polygons with Z in the planes of the facades, with the fields ``OPENING_FIELDS``.
 
     Notes
     -----

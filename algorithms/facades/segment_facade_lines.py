@@ -137,7 +137,7 @@ def segment_facade_lines(
     segment_id : ndarray of shape (n,), int32
         Segments from 1, by scanner, line and time; 0 for stray points.
     lines : LayerFeatures
-        A line with Z from the first to the last point of each segment, with the fields above.
+        A line with Z from the first to the last point of each segment, with the fields ``LINE_FIELDS``.
 
     Raises
     ------

@@ -11,6 +11,9 @@ from .cheapest_labels import cheapest_cut
 # Lines are moved by up to this distance (m) where three of them meet in one point to within rounding.
 _NUDGE = 1e-6
 
+# Distance from a side of the rectangle, as a share of its coordinate (m) plus 1, at which ends of lines are on it.
+_ON_SIDE = 1e-6
+
 
 @dataclass(frozen=True)
 class Edges:
@@ -33,7 +36,7 @@ class Arrangement:
     Parameters
     ----------
     points, directions : ndarray of shape (m, 2)
-        A point on each line (m), and its direction.
+        A point on each line (m), and the unit vector along it.
     low, high : ndarray of shape (2,)
         Corners of the rectangle (m), outside of all cells that may be chosen.
 
@@ -46,9 +49,9 @@ class Arrangement:
     is_border : ndarray of shape (count,), bool
         Which cells touch the sides of the rectangle.
     crossing : ndarray of shape (k, 2), int64
-        The two lines that meet in each crossing; those numbered from ``k`` on are the ends of lines at the sides.
+        The two lines that meet in each crossing.
     positions : ndarray of shape (k + ends, 2)
-        Where crossings and ends are (m).
+        Where the crossings are (m), then the ends of lines at the sides of the rectangle; ``edges`` count them alike.
     around : ndarray of shape (k, 4), int64
         The cells around a crossing: left and right of its first line before it, left and right of that line after it.
 
@@ -115,7 +118,7 @@ class Arrangement:
         on_sides = np.concatenate([ends, corners])
         for axis in (0, 1):
             for limit in (low[axis], high[axis]):
-                own = np.sort(on_sides[np.abs(on_sides[:, axis] - limit) < 1e-6 * (1 + abs(limit)), 1 - axis])
+                own = np.sort(on_sides[np.abs(on_sides[:, axis] - limit) < _ON_SIDE * (1 + abs(limit)), 1 - axis])
                 middles = np.empty((max(len(own) - 1, 0), 2))
                 middles[:, axis], middles[:, 1 - axis] = limit, (own[1:] + own[:-1]) / 2
                 cells = self.cells_at(sides_of(middles, self.points, self.directions))

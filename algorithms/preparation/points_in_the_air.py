@@ -19,22 +19,25 @@ from .points_under_ground import mask_of, near_cells
 # wires closer.
 _LINK = 2.4
 
-# The same in point spacings, where that is more: hardly any point of a random sample has no other within it.
+# Least such distance in point spacings: hardly any point of a random sample has no other within it.
 _LINK_SPACINGS = 3.5
 
 # Share of the pulses that an object stops, below which it is not solid.
 _SOLID_SHARE = 0.3
 
-# Side (point spacings) of the columns in which this share is measured: 16 points of the scene in each.
+# Side (point spacings) of the columns in which the share of stopped pulses is measured: 16 points of the scene in each.
 _SHARE_SPACINGS = 4.0
 
 # Least number of points assumed in a column: columns cut by the edge of the cloud count as half full.
 _LEAST_IN_COLUMN = 8
 
-# Size (m) up to which three points or more are the head of a lamp: birds are farther apart.
+# Fewest points of a component whose form is examined: one or two have none.
+_FORM_POINTS = 3
+
+# Size (m) up to which the points of a component are the head of a lamp: birds are farther apart.
 _COMPACT = 1.0
 
-# The same in point spacings, where that is more.
+# Least such size in point spacings, which counts in sparse clouds.
 _COMPACT_SPACINGS = 1.5
 
 # Largest standard deviation (m) of points across a plane: roofs of glass are no thicker.
@@ -46,31 +49,31 @@ _THIN_RATIO = 0.1
 # Wires in bundles are lines in small neighborhoods only: share of the points whose neighbors must lie along a line.
 _BUNDLE_SHARE = 0.5
 
-# Points of these neighborhoods.
+# Points of the neighborhoods that show the wires of a bundle.
 _BUNDLE_NEIGHBORS = 8
 
 # Largest variance of a neighborhood across its line, as a share of that along it.
 _BUNDLE_RATIO = 0.1
 
-# Fewest points near one line that show a wire of which little is seen.
-_TUBE_POINTS = 5
+# Fewest points that show a line, such as a wire of which little is seen; a plane takes twice as many.
+_LINE_POINTS = 5
 
-# Largest distance (m) of these from the line, sideways.
+# Largest distance (m) of the points of a wire from a straight line, sideways.
 _TUBE_ACROSS = 0.35
 
-# Largest distance (m) of these from the line, up and down: wires sag.
+# Largest distance (m) of the points of a wire from a straight line, up and down: wires sag.
 _TUBE_UP = 0.6
 
-# Least length (m) along the line over which they are spread.
+# Least length (m) along the line over which the points of a wire are spread.
 _TUBE_LENGTH = 12.0
 
-# Nearest points of each point through which lines are tried.
+# Lines are tried from each point through as many of the nearest ones.
 _TUBE_NEIGHBORS = 24
 
-# Least distance (m) between the two points of a line: between nearer ones its direction is random.
+# Least distance (m) between the two points that give a line: between nearer ones its direction is random.
 _TUBE_NEAREST = 1.0
 
-# Largest distance (m) between the two points of a line.
+# Largest distance (m) between the two points that give a line.
 _TUBE_REACH = 16.0
 
 
@@ -113,19 +116,19 @@ def _components(xyz: np.ndarray, link: float) -> np.ndarray:
 def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
     """Return which components let most pulses pass and are neither compact, nor lines, nor planes."""
     n_points = np.bincount(component)
-    small = np.flatnonzero((n_points < n_points.max())[component])
+    in_smaller = np.flatnonzero((n_points < n_points.max())[component])
     cell = fixed_grid_over(xyz, _SHARE_SPACINGS * spacing).number(xyz)
     cells, which = distinct(cell)
     in_cell = np.bincount(which)
-    pairs = np.unique(component[small].astype(np.int64) * len(cells) + which[small])
+    pairs = np.unique(component[in_smaller].astype(np.int64) * len(cells) + which[in_smaller])
     in_columns = np.bincount(
         pairs // len(cells), np.maximum(in_cell[pairs % len(cells)], _LEAST_IN_COLUMN), len(n_points)
     )
     is_loose = (in_columns > 0) & (n_points < _SOLID_SHARE * in_columns)
 
-    order = small[np.argsort(component[small], kind="stable")]
+    order = in_smaller[np.argsort(component[in_smaller], kind="stable")]
     ends = np.searchsorted(component[order], np.arange(len(n_points) + 1))
-    for number in np.flatnonzero(is_loose & (n_points >= 3)).tolist():
+    for number in np.flatnonzero(is_loose & (n_points >= _FORM_POINTS)).tolist():
         points = xyz[order[ends[number] : ends[number + 1]]]
         is_loose[number] = not _has_form(points, max(_COMPACT, _COMPACT_SPACINGS * spacing))
         monitor.progress(0.5)
@@ -133,22 +136,22 @@ def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Moni
 
 
 def _is_cut(xyz: np.ndarray, component: np.ndarray, link: float) -> np.ndarray:
-    """Return which components of three and more points reach the border of the cloud: they may be parts of others."""
+    """Return which components of ``_FORM_POINTS`` and more reach the cloud's border: they may be parts of others."""
     low, high = plan_box(xyz)
     x, y = xyz[:, 0], xyz[:, 1]
     is_outer = (x < low[0] + link) | (x > high[0] - link) | (y < low[1] + link) | (y > high[1] - link)
-    return (np.bincount(component, is_outer) > 0) & (np.bincount(component) >= 3)
+    return (np.bincount(component, is_outer) > 0) & (np.bincount(component) >= _FORM_POINTS)
 
 
 def _has_form(points: np.ndarray, compact: float) -> bool:
     """Return whether points fill a small volume, or lie along lines or in a plane."""
     if (np.ptp(points, axis=0) <= compact).all():
         return True
-    if len(points) < _TUBE_POINTS:
+    if len(points) < _LINE_POINTS:
         return False
     deviation = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(points.T)), 0))
     is_line = deviation[1] <= _THIN_RATIO * deviation[2]
-    is_plane = len(points) >= 2 * _TUBE_POINTS and deviation[0] <= min(_THIN, _THIN_RATIO * deviation[1])
+    is_plane = len(points) >= 2 * _LINE_POINTS and deviation[0] <= min(_THIN, _THIN_RATIO * deviation[1])
     return bool(is_line or is_plane or _share_of_lines(points) > _BUNDLE_SHARE)
 
 
@@ -178,15 +181,13 @@ def _is_open(xyz: np.ndarray, is_loose: np.ndarray, rows: np.ndarray, link: floa
 def _on_wires(points: np.ndarray) -> np.ndarray:
     """Return which of few points lie in a line with others, as the points of wires do that a scanner rarely hits."""
     on_wire = np.zeros(len(points), bool)
-    if len(points) < _TUBE_POINTS:
+    if len(points) < _LINE_POINTS:
         return on_wire
     count = min(_TUBE_NEIGHBORS, len(points))
     distance, near = spatial.cKDTree(points).query(points, count, distance_upper_bound=_TUBE_REACH)
-    # Missing neighbors are at infinity.
-    positions = np.concatenate([points, np.full((1, 3), np.inf)])
-    for row in np.flatnonzero(np.isfinite(distance).sum(axis=1) >= _TUBE_POINTS).tolist():
+    for row in np.flatnonzero(np.isfinite(distance).sum(axis=1) >= _LINE_POINTS).tolist():
         others = near[row][np.isfinite(distance[row])]
-        off = positions[others] - points[row]
+        off = points[others] - points[row]
         along = off[1:, :2]
         length = np.linalg.norm(along, axis=1)
         usable = length > _TUBE_NEAREST
@@ -195,6 +196,6 @@ def _on_wires(points: np.ndarray) -> np.ndarray:
         across = np.abs(along[:, :1] * off[:, 1] - along[:, 1:] * off[:, 0])
         inside = (across <= _TUBE_ACROSS) & (np.abs(off[:, 2] - rise[:, None] * at) <= _TUBE_UP)
         reach = np.where(inside, at, -np.inf).max(axis=1) - np.where(inside, at, np.inf).min(axis=1)
-        for line in np.flatnonzero((inside.sum(axis=1) >= _TUBE_POINTS) & (reach >= _TUBE_LENGTH)):
+        for line in np.flatnonzero((inside.sum(axis=1) >= _LINE_POINTS) & (reach >= _TUBE_LENGTH)):
             on_wire[others[inside[line]]] = True
     return on_wire

@@ -79,10 +79,10 @@ def segment_patches(
     """
     if len(used) < LEAST_NEIGHBORS:
         return np.full(len(used), -1, np.int32)
-    # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
+    # Only the used points are copied: all points of the cloud would take as much memory again.
     xyz = xyz.take(used, axis=0)
-    # The used points only: a copy of the whole cloud would take as much memory again.
     xyz[:, :2] -= corner
+    # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
     order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(used)))
     xyz = xyz.take(order, axis=0)
@@ -156,7 +156,7 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
 
 
 def _keep_linked(neighbors: np.ndarray) -> None:
-    """Keep those of the neighbors (n, k), nearest first, that links are looked for among: as many as show a plane.
+    """Keep as many of the neighbors (n, k), nearest first, as show a plane: links are looked for among these only.
 
     Memory of the others is freed, without a copy.
     """
@@ -183,7 +183,7 @@ def _links(
     def work(rows: np.ndarray) -> None:
         neighbors = planes.neighbors[rows]
         is_link = on_surface[rows, None] & on_surface[neighbors]
-        # One plane holds both, mostly.
+        # Most neighbors have the same plane, so that only the others are compared.
         apart = np.nonzero(is_link & (plane[neighbors] != plane[rows, None]))
         a, b = rows[apart[0]], neighbors[apart]
         of_a, of_b = planes.planes[plane[a]], planes.planes[plane[b]]

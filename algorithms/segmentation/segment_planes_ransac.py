@@ -108,7 +108,7 @@ def segment_planes_ransac(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
-        ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
+        ASPRS classes; ground (2, 20), noise (7, 18), water (9) and bridge decks (17) are left out.
     height_above_ground : ndarray of shape (n,), float32, optional
         Heights, m; needed for a minimum height.
 

@@ -77,7 +77,7 @@ def detect_spheres(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
-        ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
+        ASPRS classes; ground (2, 20), noise (7, 18), water (9) and bridge decks (17) are left out.
     segment_id : ndarray of shape (n,), int32, optional
         Segments; needed to search in each of them.
     shape : ndarray of shape (n,), uint8, optional

@@ -47,7 +47,7 @@ def whole_axis(pieces: LayerFeatures, points: int) -> LayerFeatures:
 def whole_plane(pieces: LayerFeatures, points: int) -> LayerFeatures:
     """Return the plane of pieces that overlap in it, with the outline around all of them.
 
-    Where no piece goes beyond the largest, its polygon stays as it is; else the outline is drawn of cells of 0.1 m.
+    Where no piece goes beyond the largest, its polygon stays as it is; else the outline is drawn around cells.
 
     Parameters
     ----------

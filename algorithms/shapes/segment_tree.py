@@ -118,7 +118,7 @@ def segment_tree(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
-        ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
+        ASPRS classes; ground (2, 20), noise (7, 18), water (9) and bridge decks (17) are left out.
 
     Returns
     -------

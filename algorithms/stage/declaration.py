@@ -34,8 +34,8 @@ class Stage:
     title: str
     group: str
     tags: str
-    reads: tuple[str, ...]
-    optional: tuple[str, ...]
+    reads: tuple[str, ...]  #: Arrays that it needs: positional arguments without a default
+    optional: tuple[str, ...]  #: Arrays that it uses where a cloud has them: positional arguments with a default
     tunables: dict[str, Tunable] = field(repr=False)
     doc: str = field(repr=False)
     writes: tuple[str, ...] = ()  #: Dimensions of the points that it returns
@@ -52,7 +52,7 @@ class Stage:
     #: How far (m) from a point others may lie that decide on it, a number or a function of all tunables by name. Where
     #: a cloud is worked on in parts, each is seen with the points around it that far.
     reach: Reach = 0.0
-    #: Values that it measures on its results, and of which parts of a cloud take those of the whole, see
+    #: Values that it measures on its results; a part of a cloud takes those of the whole instead of its own, see
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
     input_title: str = "Point cloud"  #: Label of the cloud that it reads
@@ -146,7 +146,7 @@ class Stage:
         )
 
 
-def stage(title: str, *, group: str, tags: str = "", **made: Any) -> Callable[[Callable], Callable]:
+def stage(title: str, *, group: str, tags: str = "", **fields: Any) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
     The function returns its results in the order below, and not in a tuple when there is only one. With ``selects`` the
@@ -165,7 +165,7 @@ def stage(title: str, *, group: str, tags: str = "", **made: Any) -> Callable[[C
         Group in the toolbox.
     tags : str
         Words to search for, with commas between.
-    **made
+    **fields
         What the stage makes and reads: fields of :class:`Stage` from ``writes`` on.
 
     Returns
@@ -175,7 +175,7 @@ def stage(title: str, *, group: str, tags: str = "", **made: Any) -> Callable[[C
     """
 
     def declare(function: Callable) -> Callable:
-        declared = _declared(function, title, group, tags, made)
+        declared = _declared(function, title, group, tags, fields)
         _check_declaration(declared)
         checked = _checked(function, declared)
         checked.stage = replace(declared, function=checked)  # type: ignore[attr-defined]
@@ -205,13 +205,13 @@ def _checked(function: Callable, declared: Stage) -> Callable:
     return checked
 
 
-def _declared(function: Callable, title: str, group: str, tags: str, made: dict[str, Any]) -> Stage:
-    """Return the declaration of a function: what its signature and docstring say, and what it ``made``."""
+def _declared(function: Callable, title: str, group: str, tags: str, fields: dict[str, Any]) -> Stage:
+    """Return the declaration of a function: what its signature and docstring say, and the ``fields`` given."""
     hints = typing.get_type_hints(function, include_extras=True)
     reads: list[str] = []
     optional: list[str] = []
     tunables = {}
-    layers = {input_layer.name for input_layer in made.get("input_layers", ())}
+    layers = {input_layer.name for input_layer in fields.get("input_layers", ())}
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY:
             if name not in (MONITOR, SAMPLING):
@@ -219,11 +219,11 @@ def _declared(function: Callable, title: str, group: str, tags: str, made: dict[
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
     doc = with_values(inspect.cleandoc(function.__doc__ or ""), function.__globals__)
-    return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **made)
+    return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **fields)
 
 
 def _check_declaration(declared: Stage) -> None:
-    """Refuse what no run could keep to."""
+    """Refuse a declaration that contradicts itself or the signature of its function."""
     arguments = inspect.signature(declared.function).parameters
     absent = [input_layer.name for input_layer in declared.input_layers if input_layer.name not in arguments]
     if absent:

@@ -18,9 +18,11 @@ from ..sampling.surface_noise import LEAST_NEIGHBORS
 class DeckRules:
     """Objects on the deck of a bridge."""
 
-    hidden: float = rule(2.0, "m", "physics: cars and trucks hide the deck beneath them, to points on both sides")
+    hidden: float = rule(
+        2.0, "m", "physics: from points over a deck to the nearest one of it that is seen; vehicles hide the others"
+    )
     rough: float = rule(
-        0.25, "m", "crown, camber and railings: how far objects reach below a deck, and the width that shows of a side"
+        0.25, "m", "crown, camber and railings: how far objects reach below a deck, and how wide its side is in plan"
     )
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
 
@@ -84,8 +86,8 @@ def _spacing(deck: np.ndarray, tree: Any) -> float:
 def _has_deck_behind(positions: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
     """Return which positions (n, 2) have points of the deck on the side away from their ``nearest`` (n, 2), too.
 
-    These are looked for in the circle that touches the position on that side, and which the straight edge of a deck
-    next to it stays out of.
+    They are looked for in the circle on that side that touches the position. A deck that ends beside the position with
+    a straight edge does not reach into it.
     """
     away = positions - nearest
     away /= np.linalg.norm(away, axis=1, keepdims=True)

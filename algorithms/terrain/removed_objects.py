@@ -26,15 +26,17 @@ class RemovalRules:
     step: float = rule(0.1, "m", "physics: terrain has kerbs, ruts and tussocks as high within any window")
     flat_slope: float = rule(0.1, "tangent", "physics: slope that terrain may have besides the one measured around it")
     slope_share: float = rule(
-        0.4, "share", "fitted on eight ISPRS samples: of the measured slope that may come on top of these"
+        0.4, "share", "fitted on eight ISPRS samples: of the measured slope, which adds to the flat slope"
     )
     join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
     level_share: float = rule(
-        0.25, "share", "of a smooth part level with the terrain around, as of a bank beside a cut; objects are not"
+        0.25, "share", "of the area of a smooth part, level with the terrain around, from which it is a bank"
     )
     steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
-    smoothing: float = rule(2.0, "m", "physics: bushes are as wide; surfaces are smoothed over it, slopes over twice")
+    smoothing: float = rule(
+        2.0, "m", "physics: standard deviation of the smoothing of surfaces, half that of slopes; bushes are as wide"
+    )
 
 
 REMOVAL = RemovalRules()
@@ -71,16 +73,18 @@ class ObjectRemoval:
         objects = self.without_joined(self.removed_by_opening(REMOVAL.slope_share * slope, monitor), slope)
         return self._without_level(objects)
 
-    def rise(self, slope: np.ndarray) -> np.ndarray:
-        """Return how far (m) terrain of such slopes may rise within a cell."""
-        return REMOVAL.step + (REMOVAL.flat_slope + slope) * self.cell_size
+    def rise(self, slope: np.ndarray, radius: int = 1) -> np.ndarray:
+        """Return how far (m) terrain may rise over a ``radius`` (cells), with ``slope`` on top of the flat slope."""
+        return REMOVAL.step + (REMOVAL.flat_slope + slope) * (radius * self.cell_size)
 
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return the radius (cells) of the first window that removes each cell, 0 where none does."""
+        """Return the radius (cells) of the first window that removes each cell, 0 where none does.
+
+        Cells are removed that are higher than terrain may rise, see :meth:`rise`.
+        """
         removed_by = np.zeros(self.surface.size, np.int32)
         for radius, cells, fall in self._lowered_by(monitor):
-            reach = radius * self.cell_size
-            removed = cells[fall > REMOVAL.step + (REMOVAL.flat_slope + slope.ravel()[cells]) * reach]
+            removed = cells[fall > self.rise(slope.ravel()[cells], radius)]
             removed_by[removed[removed_by[removed] == 0]] = radius
         return removed_by.reshape(self.surface.shape)
 
@@ -91,11 +95,11 @@ class ObjectRemoval:
         """
         if self._lowered:
             return self._lowered
-        opened, lowered = self.surface, []
+        opened, lowered, level = self.surface, [], np.zeros(())
         for done, radius in enumerate(self.windows, start=1):
             previous, opened = opened, open_surface(opened, radius, self.is_free_standing)
-            fall, reach = (previous - opened).ravel(), radius * self.cell_size
-            cells = np.flatnonzero(fall > REMOVAL.step + REMOVAL.flat_slope * reach)
+            fall = (previous - opened).ravel()
+            cells = np.flatnonzero(fall > self.rise(level, radius))
             lowered.append((radius, cells, fall[cells]))
             monitor.progress(done / len(self.windows))
         self._lowered.extend(lowered)
@@ -112,7 +116,9 @@ class ObjectRemoval:
             Slope of the terrain (rise over run).
         """
         objects = (removed_by > 0) | self.is_free_standing
-        is_large = removed_by > FREE.most * self.windows[-1]
+        # Cells that only windows over half the largest remove are judged apart: together with others, the banks of a
+        # cut under a bridge become an object.
+        is_large = removed_by > self.windows[-1] / 2
         sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
         for group in (objects & ~is_large, is_large):
             region, count = ndimage.label(group)
@@ -151,8 +157,8 @@ class _Side:
 def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
     """Yield the four sides of the cells of a surface, in the order of ``adjacent_cells``.
 
-    Low steps are left out, and those where the surface goes on as steeply on one of its sides: the flank of a bank.
-    Flanks are measured from point to point, over a spacing where that is more than a cell.
+    Low steps join, and those beside which the surface goes on as steeply on either side: the flank of a bank. Flanks
+    are measured from point to point, over a spacing where that is more than a cell.
     """
     bank_cells = max(1, round(spacing / cell_size))
     bank = bank_cells * cell_size
@@ -212,6 +218,7 @@ def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
     filled = np.where(unknown, np.nan, surface)
     weight = (~unknown).astype(float)
     weighted = np.where(unknown, 0.0, surface)
+    # Standard deviation in cells, doubled until every unknown cell is reached or rounding is all that is left.
     scale, widest = 1.0, 4.0 * max(surface.shape)
     while np.isnan(filled).any() and scale < widest:
         share = ndimage.gaussian_filter(weight, scale, mode="nearest")

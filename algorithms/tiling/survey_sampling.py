@@ -26,8 +26,8 @@ _SAMPLE_SIDE = 100.0
 # Share of the windows that must have points; else windows are put around points of the survey.
 _LEAST_FILLED = 0.25
 
-# Most points that values are measured on that steps find in their results and blocks take of the whole, if more than
-# one window: a core takes a second for each 60,000 of *Detect buildings*.
+# Most points on which steps measure the values that blocks take of the whole; one window may have more. *Detect
+# buildings* takes a core half a minute for as many.
 _MEASURED = 1_500_000
 
 
@@ -37,7 +37,7 @@ def samplings_of(
     """Return the sampling of a survey, "", and those of the clouds that its preparing steps make, by their names.
 
     Each has the values that blocks take of the whole (``of_whole``). All is measured on windows that depend on the
-    extent of the survey alone.
+    survey alone, not on its blocks.
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ def _made(
     step: Pipeline, cloud: Cloud, sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
 ) -> Optional[Cloud]:
     """Return the cloud that a step makes of a part of a survey."""
-    heard = ProgressOnly(monitor)
-    return run_pipeline(step, cloud, heard, kept=(), samplings={"": sampling}, **tunables_of(step, tunables)).cloud
+    own = tunables_of(step, tunables)
+    return run_pipeline(step, cloud, ProgressOnly(monitor), kept=(), samplings={"": sampling}, **own).cloud
 
 
 def _measured(
