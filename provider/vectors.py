@@ -71,7 +71,7 @@ def _all_fields(layer: Layer, features: LayerFeatures) -> list[Field]:
 
 
 def _type_of(column: Sequence) -> type:
-    """Return the type that all values of a column have, text where they differ."""
+    """Return the type of all values of a column, float for numbers of both types, text where they differ otherwise."""
     types = {type(value) for value in column if value is not None}
     return bool if types == {bool} else next((kind for kind in (int, float) if types and types <= {int, kind}), str)
 
@@ -118,7 +118,7 @@ def _column(
 
 
 def plain(value: Any) -> Any:
-    """Return a numpy scalar as Python's own (QGIS shows others as empty), other values as NULL."""
+    """Return a value, a numpy scalar as Python's own (QGIS shows others as empty), NaN and infinity as NULL."""
     value = value.item() if isinstance(value, np.generic) else value
     return None if isinstance(value, float) and not np.isfinite(value) else value
 

@@ -21,7 +21,7 @@ _BLOCK = re.compile(r"(<!-- measured: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 class Column(NamedTuple):
-    """A column of a page: heading, figure in the file, decimals, which row of a group, factor of the unit."""
+    """A column of a page: heading, figure in the file, decimals, which row of a group, style, factor of the unit."""
 
     heading: str
     figure: str
@@ -502,7 +502,7 @@ def written(table: Shown, folder: Path = MEASURED) -> str:
 
 
 def _cell(rows: Sequence[dict[str, Any]], row: Row, column: Column) -> str:
-    """Return a figure; a cell is empty where the file has no such row, and a row without a figure is refused."""
+    """Return a figure, "" where the file has none in this column; rows that are missing or ambiguous are refused."""
     wanted = dict((*row.where, *column.where))
     found = [one for one in rows if all(one[key] == value for key, value in wanted.items())]
     if len(found) > 1 or (not found and not column.where):

@@ -19,7 +19,7 @@ _MIN_NEIGHBORS = 3
 
 _SPLITS = {"exact": two_means, "k-means": k_means}
 
-# Neighborhoods of 4 m², in sparse clouds more (m).
+# How far neighborhoods reach (m): those of 4 m² 1.1 m, those of sparse clouds more.
 _REACH = 5.0
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.reasons import Reason
 from ..geometry.grid import raster_cells, refuse_sparse
+from ..geometry.groups import least_of
 from ..params import MinBuildingArea, PointDensity, PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
@@ -131,7 +132,7 @@ def complete_buildings(
     confidence : ndarray of shape (n,), float32, or None
         Points added to a building get the mean of its roofs, rejected roofs at most 0.5; None where not given.
     reason : ndarray of shape (n,), uint8, or None
-        The same for added points and rejected roofs; None where not given.
+        Why points were added to a building and roofs rejected; other points keep theirs. None where not given.
 
     Raises
     ------
@@ -267,8 +268,7 @@ def _in_order(owner: np.ndarray, cell: np.ndarray) -> np.ndarray:
     """Return the numbers (n,), int32, of buildings with points, from 1 without gaps, in the order of their cells."""
     rows = np.flatnonzero(owner)
     found, which = np.unique(owner[rows], return_inverse=True)
-    least = np.full(len(found), np.iinfo(np.int64).max)
-    np.minimum.at(least, which, cell[rows])
+    least = least_of(cell[rows], which, len(found))
     rank = np.empty(len(found), np.int32)
     rank[np.argsort(least, kind="stable")] = np.arange(1, len(found) + 1, dtype=np.int32)
     final = np.zeros(len(owner), np.int32)

@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..footprints.outline_pieces import sampled
+from ..geometry.groups import least_of
 from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
 from ..geometry.ring_directions import direction_weights, main_directions
 from ..geometry.ring_drawing import Prices, draw_ring
@@ -67,6 +68,9 @@ _MITER = 3.0
 
 # Sine of the angle below which two edges count as parallel: their lines meet too far away for an accurate position.
 _PARALLEL = 0.05
+
+# Distances (m) up to this are zero: above rounding, below the resolution of files.
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -187,8 +191,7 @@ def sparse_spacing(positions: np.ndarray, triangles: np.ndarray) -> float:
     """
     corners = positions[triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    smallest = np.full(len(positions), np.inf)
-    np.minimum.at(smallest, triangles.ravel(), np.repeat(longest, 3))
+    smallest = least_of(np.repeat(longest, 3), triangles.ravel(), len(positions))
     return float(np.percentile(smallest[np.isfinite(smallest)], _PERCENTILE)) / np.sqrt(2)
 
 
@@ -212,9 +215,9 @@ def _traced(positions: np.ndarray, triangulation: Any, spacing: float, drawing: 
 def key_points(ring: np.ndarray) -> np.ndarray:
     """Return the closed ring of the points of a boundary where it turns.
 
-    In each of 30 rounds the points at which the boundary turns by less than the threshold are removed; the threshold
-    goes from 10° up by one degree a round. Of two neighbors only one is removed at a time, so that the angles are those
-    of the rest.
+    In a first round and 30 that follow the points at which the boundary turns by less than the threshold are removed;
+    the threshold goes from 10° up by one degree a round. Of two neighbors only one is removed at a time, so that the
+    angles are those of the rest.
     """
     positions = ring[:-1]
     for angle in _FIRST_ANGLE + np.arange(_ROUNDS + 1):
@@ -250,13 +253,13 @@ def pushed_out(ring: np.ndarray, positions: np.ndarray, limit: float) -> np.ndar
         # How far positions lie outside the lines of the edges.
         out = outside @ outward.T - np.einsum("ij,ij->i", starts, outward)
         # At a corner two edges are equally near: the one that is farther behind has to move.
-        nearest = np.argmax(np.where(distance <= distance.min(axis=1, keepdims=True) + 1e-9, out, -np.inf), axis=1)
+        nearest = np.argmax(np.where(distance <= distance.min(axis=1, keepdims=True) + _ROUNDING, out, -np.inf), axis=1)
         rows = np.flatnonzero(distance.min(axis=1) <= limit)
         shift = np.zeros(len(starts))
         np.maximum.at(shift, nearest[rows], out[rows, nearest[rows]])
         moved = ring_of_lines(starts + shift[:, None] * outward, ends - starts, starts)
         is_spike = np.isfinite(limit) and np.linalg.norm(moved - ring, axis=1).max() > _MITER * shift.max()
-        if shift.max() < 1e-9 or is_spike or not is_valid([moved]):
+        if shift.max() < _ROUNDING or is_spike or not is_valid([moved]):
             break
         ring = moved
     return ring
@@ -272,7 +275,7 @@ def inside_ring(positions: np.ndarray, ring: np.ndarray) -> np.ndarray:
     inside = are_inside(positions, ring)
     rest = np.flatnonzero(~inside)
     if len(rest):
-        inside[rest] = nearest_edge_distances(positions[rest], ring[:-1], ring[1:]) < 1e-9
+        inside[rest] = nearest_edge_distances(positions[rest], ring[:-1], ring[1:]) < _ROUNDING
     return inside
 
 

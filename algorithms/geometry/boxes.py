@@ -105,9 +105,9 @@ class Boxes:
         return here, there[here]
 
     def beside_all(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield, for one of each two opposite columns of boxes around, which boxes have one there, and which that is.
+        """Yield the pairs of occupied boxes that may hold near points, each pair once: which boxes, and which others.
 
-        A box occurs as often as there are boxes in the column.
+        Others lie in one column of the boxes around; of two opposite columns the second has the same pairs.
         """
         half = {offset[:2] for offset in around() if offset > (0, 0, 0)}
         for column in sorted(half, key=lambda step: (step[0] ** 2 + step[1] ** 2, step)):

@@ -10,7 +10,7 @@ from ..geometry.grid import fixed_grid_over
 from ..geometry.groups import components, items, run_starts
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
-from .wire_spans import RULES
+from .wire_spans import RULES as SPAN
 
 
 @dataclass(frozen=True)
@@ -18,14 +18,18 @@ class _Rules:
     """Where wires are looked for."""
 
     least_column: float = 1.0  #: Least side of the columns in which heights are compared, m
-    column_spacings: float = 2.0  #: Their least side in point spacings, so that columns in crowns hold several points
+    column_spacings: float = 2.0  #: Least side of these columns in point spacings: those in crowns hold several points
     free: float = 3.0  #: Height (m) below a bundle of wires that holds no points: crowns hold some
     thickest: float = 1.5  #: Largest height (m) of a bundle of wires one above the other
     thinning: float = 1.0  #: Side (m) of the voxels of which one point each is looked at
     around: float = 3.0  #: Radius (m) in which other points are counted
-    #: Most points in it, thinned: three parallel wires have 18 in dense clouds, surfaces 28, crowns more
+    #: Most thinned points around one of a wire: three parallel wires have 18 in dense clouds, surfaces 28, crowns more
     most_around: int = 20
     most_trials: int = 8  #: Lines through each point that are tried
+    #: gap, gap_end: Multiples of ``SPAN.aside`` from a line between which points show a surface: parallel wires are
+    #: farther away
+    gap: float = 1.5
+    gap_end: float = 2.5
     steepest: float = 0.4  #: Steepest slope of a wire (tangent), at masts in hills
     turn: float = 8.0  #: Largest angle (°) between directions at points of one wire
     bend: float = 0.02  #: Height over the tangent of a wire that farther points may have, as a share of their distance
@@ -68,7 +72,7 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     reach : float
         Distance (m) within which points are on a line together.
     """
-    if len(xyz) < RULES.least_points:
+    if len(xyz) < SPAN.least_points:
         return np.full(len(xyz), -1), np.zeros((len(xyz), 3))
     # Wires run far in plan and little in height.
     pairs = spatial.cKDTree(xyz * [1.0, 1.0, 2.0]).query_pairs(reach, output_type="ndarray")
@@ -77,23 +81,24 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     one, other = one[order], other[order]
     offset = xyz[other] - xyz[one]
     count, direction = _best_lines(one, offset, len(xyz), reach)
-    is_linear = count >= RULES.least_points - 1
+    is_linear = count >= SPAN.least_points - 1
     near = is_linear[one] & is_linear[other]
     one, other, offset = one[near], other[near], offset[near]
     aside, off_height, along = _off_line(offset, direction[one])
     alike = np.abs((direction[one, :2] * direction[other, :2]).sum(axis=1)) > np.cos(np.radians(_RULES.turn))
     # A wire bends: farther points are higher than its tangent.
-    on_line = (aside <= RULES.aside) & (off_height <= RULES.aside + _RULES.bend * np.abs(along)) & alike
+    on_line = (aside <= SPAN.aside) & (off_height <= SPAN.aside + _RULES.bend * np.abs(along)) & alike
     _, line = components(one[on_line], other[on_line], len(xyz))
     return np.where(is_linear, line, -1), direction
 
 
 def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Return how many neighbors (n,) are on the best line through each point, and its direction (n, 3), 1 m in plan."""
-    distance = np.hypot(offset[:, 0], offset[:, 1])
+    distance, gap = np.hypot(offset[:, 0], offset[:, 1]), _RULES.gap * SPAN.aside
     # Neighbors above or below all lines count neither as on a line nor as beside one.
-    near = np.abs(offset[:, 2]) <= _RULES.steepest * distance + 1.5 * RULES.aside
+    near = np.abs(offset[:, 2]) <= _RULES.steepest * distance + gap
     one, offset, distance = one[near], offset[near], distance[near]
+    # Nearer neighbors give the direction of a line less accurately.
     far = np.flatnonzero((distance >= reach / 3) & (np.abs(offset[:, 2]) <= _RULES.steepest * distance))
     start, size = np.searchsorted(one, np.arange(count)), np.bincount(one, minlength=count)
     # Evenly spread over the neighbors of a point.
@@ -106,9 +111,8 @@ def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -
         line = offset[tried[chunk]] / distance[tried[chunk], None]
         which, item = items(size[rows])
         aside, off_height, _ = _off_line(offset[start[rows][which] + item], line[which])
-        on_line = np.bincount(which, (aside <= RULES.aside) & (off_height <= RULES.aside), len(rows))
-        in_gap = (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside) & (off_height <= 1.5 * RULES.aside)
-        # Parallel wires are farther away; surfaces have points in the gap.
+        on_line = np.bincount(which, (aside <= SPAN.aside) & (off_height <= SPAN.aside), len(rows))
+        in_gap = (aside > gap) & (aside <= _RULES.gap_end * SPAN.aside) & (off_height <= gap)
         beside = np.bincount(which, in_gap, len(rows))
         score = np.where(beside <= on_line / 2, on_line - beside, 0).astype(np.int64)
         order = np.lexsort((-score, rows))

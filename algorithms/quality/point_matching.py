@@ -79,7 +79,7 @@ def match_points(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
     Returns
     -------
     ndarray of shape (n,), int64
-        ``reference_xyz[result]`` is ``xyz`` within 1 mm; no row is used twice. Of several points
+        ``reference_xyz[result]`` is ``xyz`` within 2 mm; no row is used twice. Of several points
         at one position the first goes with the first, the second with the second.
 
     Raises

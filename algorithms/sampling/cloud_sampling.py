@@ -32,7 +32,7 @@ _MEASURES = {
 # second returns, see :func:`.closed_surface.seen_through_share`.
 _MOST_SEEN_THROUGH = 0.02
 
-# Least density (points/m²) at which that is measured: ten points share a cell then.
+# Least density (points/m²) at which the share seen through distinguishes them: nine points share a cell then.
 _LEAST_DENSITY = 8.0
 
 # Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
@@ -214,7 +214,7 @@ class CloudSampling:
         alone = CloudSampling(_no_points, self.single_returns, self.corner)
         alone.__dict__.update({name: getattr(self, name) for name in _MEASURES})
         alone.__dict__["_surfaces"] = self._surfaces.measured()
-        alone.of_whole, alone.found = dict(self.of_whole), dict(self.found)
+        alone.of_whole = dict(self.of_whole)
         return alone
 
 

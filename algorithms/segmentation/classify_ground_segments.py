@@ -9,19 +9,19 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
+from ..geometry.groups import least_of
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..sampling.kinds import LASER
 from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
-from .bridge_decks import Decks, cell_size
+from .bridge_decks import DECK, Decks, cell_size
 
 # A segment is an object if it is raised along at least this share of its border, that of the cloud included.
 _RAISED_BORDER = 0.5
 
-# Greatest height of points of the bare earth over the lowest one of their cell: from a slope (degrees), and from noise
-# (standard deviations).
-_SLOPE, _NOISE_STEP = 30.0, 4.0
+# Steepest terrain (degrees) within a cell: about the angle of repose of soil.
+_STEEPEST = 30.0
 
 
 @stage(
@@ -124,7 +124,7 @@ def classify_ground_segments(
     is_terrain = classification[used] == PointClass.GROUND
     if not is_terrain.any():
         is_terrain = is_earth.copy()
-        is_terrain[is_earth] = _is_low(points[is_earth], cell / 2, _NOISE_STEP * noise)
+        is_terrain[is_earth] = _is_low(points[is_earth], cell / 2, DECK.noise_step * noise)
         monitor.inform("The cloud has no ground points (class 2); bare earth is found by the segments alone.")
     is_deck = decks.find(points, is_earth, is_terrain, monitor.part(0.2, 0.9))
     is_ground = is_terrain & ~is_deck
@@ -148,8 +148,7 @@ def _bare_earth(
     grid = fixed_grid_over(points, cell)
     room = grid.rows * grid.columns
     cells, which = distinct(grid.number(points))
-    low = np.full(len(cells), np.inf)
-    np.minimum.at(low, which, points[:, 2])
+    low = least_of(points[:, 2], which, len(cells))
     member = np.flatnonzero(segment > 0)
     # Other programs number segments as they like.
     segments, of = distinct(segment[member].astype(np.int64))
@@ -174,9 +173,8 @@ def _bare_earth(
 
 
 def _is_low(points: np.ndarray, cell: float, step: float) -> np.ndarray:
-    """Return which points (n,) are no higher over the lowest of their cell than terrain rises in it."""
+    """Return which points (n,) are no higher over the lowest of their cell than terrain rises in it, and a step (m)."""
     which = distinct(fixed_grid_over(points, cell).number(points))[1] if len(points) else np.zeros(0, int)
-    low = np.full(int(which.max(initial=-1)) + 1, np.inf)
-    np.minimum.at(low, which, points[:, 2])
-    rises = float(np.tan(np.radians(_SLOPE))) * np.sqrt(2) * cell
+    low = least_of(points[:, 2], which, int(which.max(initial=-1)) + 1)
+    rises = float(np.tan(np.radians(_STEEPEST))) * np.sqrt(2) * cell
     return points[:, 2] <= low[which] + rises + step

@@ -38,6 +38,9 @@ _LINE_GAPS = 3.0
 # Largest step between points of a line in median steps of the lines, if that is more.
 _STEP_GAPS = 10.0
 
+# Nearest points on pieces whose regions a point on no piece may join.
+_NEAREST = 3
+
 _Tolerance = Annotated[
     Optional[float],
     Param(
@@ -156,8 +159,8 @@ def segment_recorded_lines(
     The paper works on range images. Here adjacent lines are found by their points: the nearest one to the side of a
     piece, and the nearest one on the opposite side, also of another flight line. The ends of a piece are those of the
     straight line through its points by least squares, so that noise of single points does not count. Points that are
-    on no piece, such as those at bends and first returns, join the region of one of the 3 nearest points that have one
-    if they lie on its plane. The published method merges planes only.
+    on no piece, such as those at bends and first returns, join the region of one of the
+    ``_NEAREST`` nearest points that have one if they lie on its plane. The published method merges planes only.
 
     References
     ----------
@@ -247,7 +250,7 @@ def _with_others(
     if not known.any() or not len(others):
         return segment
     row, piece = row[known], piece[known]
-    count = min(3, len(row))
+    count = min(_NEAREST, len(row))
     tree = spatial.cKDTree(points[row])
     _, found = tree.query(points[others], count, distance_upper_bound=distance, workers=n_threads())
     for near in found.reshape(len(others), count).T:

@@ -22,7 +22,8 @@ _DIRECTION_BIN = 0.14
 # Largest angle (°) between a normal and a great circle while the circle is searched for: a bin and half a bin.
 _ON_CIRCLE = 12.0
 
-# The same when the circle is fitted to normals, as its sine: 15°, as its first direction is off by up to half a bin.
+# Sine of the largest angle between a normal and a great circle that is fitted to normals: 15°, as the direction that
+# the fit begins with is off by up to half a bin.
 _SINE_ON_FITTED = float(np.sin(np.radians(15.0)))
 
 # Fewest bins that the normals of a cylinder fill along their great circle: the faces of a box fill three.
@@ -191,11 +192,11 @@ class CylinderSearch:
             return None
         cylinder = self._circle(on_circle, axis, low, high)
         reaches = (*(share * low for share in _FIRST_FITS), 2 * self.tolerance, self.tolerance)
-        for fits_left, reach in enumerate(reaches, start=1 - len(reaches)):
+        for fit, reach in enumerate(reaches, start=1):
             points = on_circle[self._is_on(on_circle, cylinder, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None
-            cylinder = self._fitted(points, cylinder, *([_FIRST_ROUNDS] if fits_left else []))
+            cylinder = self._fitted(points, cylinder, *([_FIRST_ROUNDS] if fit < len(reaches) else []))
             if not LEAST_OF_LEVEL * low <= cylinder.radius <= MOST_OF_LEVEL * high:
                 return None
         if not low / _WIDER <= cylinder.radius <= high * _WIDER:
@@ -217,6 +218,7 @@ class CylinderSearch:
         every = np.bincount(bins, minlength=len(self.directions))
         occupied = np.flatnonzero(every)
         count = every[occupied]
+        # Of twenty normals and more, a bin with one counts as noise.
         is_common = count >= min(2, len(bins) // 20 + 1)
         if is_common.sum() < _LEAST_BINS:
             return None
@@ -246,8 +248,8 @@ class CylinderSearch:
         side = int(np.ceil(2 * reach / cell)) + 2
         number = np.tile(np.arange(_RADII), 2)
         index = [
-            np.floor((axis + signed * way + reach) / cell).astype(np.int64)
-            for axis, way in ((positions[:, k, None], toward[:, k, None]) for k in (0, 1))
+            np.floor((position + signed * way + reach) / cell).astype(np.int64)
+            for position, way in ((positions[:, k, None], toward[:, k, None]) for k in (0, 1))
         ]
         inside = (index[0] >= 0) & (index[0] < side) & (index[1] >= 0) & (index[1] < side)
         key = (number * side + index[0]) * side + index[1]

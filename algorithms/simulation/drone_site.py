@@ -8,18 +8,18 @@ from ..cloud.asprs import PointClass
 from .scene import Scene
 from .solids import Rect, Solid, flat
 from .town_houses import Site
-from .town_layout import TownPlan, build_town, park_car
+from .town_layout import CAR, TownPlan, build_town, park_car
 
 # Least and greatest length of halls (m).
 _HALL_SIZES = (10.0, 100.0)
 
-# Least and greatest height of their roofs (m).
+# Least and greatest height of the roofs of halls (m).
 _HALL_HEIGHTS = (3.0, 9.0)
 
-# Height of the parapets around them (m).
+# Height of the parapets around the roofs of halls (m).
 _PARAPET_HEIGHT = 0.6
 
-# Width of these parapets (m).
+# Width of parapets (m).
 _PARAPET_WIDTH = 0.35
 
 # Number of flat roofs that touch in a block.
@@ -28,7 +28,7 @@ _BLOCK_ROOFS = 4
 # Depth of a block (m).
 _BLOCK_DEPTH = 12.0
 
-# Largest difference of a roof of a block from their mean height (m).
+# Largest difference of a roof of a block from the mean height of its roofs (m).
 _BLOCK_STEP = 0.8
 
 # Length and width of vans (m).
@@ -128,7 +128,7 @@ def _add_van(scene: Scene, rng: np.random.Generator) -> None:
     if rect is None:
         return
     if rng.random() < 0.5:
-        park_car(scene, rect.part(0.0, 0.0, 4.3, 1.8))
+        park_car(scene, rect.part(0.0, 0.0, *CAR))
         return
     ground = float(scene.relief.ground(rect.x, rect.y))
     scene.add_box(rect, ground - 1.0, ground + rng.uniform(*_VAN_HEIGHT), PointClass.UNCLASSIFIED)

@@ -28,6 +28,9 @@ _PLOT = (14.0, 16.0)
 # Plots of a block along the street, between two side streets.
 _PLOTS_PER_BLOCK = 6
 
+# Length and width of a car (m).
+CAR = (4.3, 1.8)
+
 # Length and width of a hall (m).
 _HALL = (40.0, 27.0)
 
@@ -136,7 +139,7 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor:
     for i, (plot, line, free) in enumerate(zip(plots, lines, is_free)):
         car, border, position = rng.random(3)
         if car < 0.5:
-            park_car(scene, plot.part(8.0 * position - 4.0, -plot.width / 2 - 1.4, 4.3, 1.8))
+            park_car(scene, plot.part(8.0 * position - 4.0, -plot.width / 2 - 1.4, *CAR))
         if free and border < 0.3:
             plant_hedge(scene, line, 1.7)
         elif free and border < 0.5:

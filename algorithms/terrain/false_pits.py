@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
+from ..geometry.groups import split_groups
 from ..geometry.tin import node_residuals
 from ..packages import spatial
 from ..stage import Monitor
@@ -214,9 +215,7 @@ class _Near:
         grid = grid_over(self.xyz[low], max(_LINK, _LINK_SPACINGS * self.spacing))
         cells, which = distinct(grid.number(self.xyz[low]))
         n_groups, group = connected_cells(grid, cells)
-        order = np.argsort(group[which], kind="stable")
-        ends = np.searchsorted(group[which][order], np.arange(1, n_groups))
-        return np.split(low[order], ends)
+        return [low[rows] for rows in split_groups(group[which], n_groups)]
 
     def is_false(self, group: np.ndarray) -> bool:
         """Return whether a group is small, deep enough, has ground around, and does not fill its pit."""
@@ -242,6 +241,7 @@ class _Near:
 
     def _is_floor(self, plan: np.ndarray, ground: np.ndarray) -> bool:
         """Return whether points (m, 2) fill the pit that they make, and those of the ground (k, 2) lie around it."""
+        # Points on a line have no hull.
         if len(plan) < _FLOOR_POINTS or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
             return False
         hull = spatial.ConvexHull(plan)

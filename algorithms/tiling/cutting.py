@@ -32,7 +32,7 @@ def cut_into_tiles(
     Parameters
     ----------
     survey : Survey
-        The file to cut.
+        The files to cut.
     side : float
         Side of a tile, m.
     folder : Path
@@ -90,13 +90,13 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
                 np.floor((chunk[axis] * (header.scale[i] * unit) + header.offset[i] * unit) / side).astype(np.int64)
                 for i, axis in enumerate("XY")
             )
-            order = np.lexsort([np.arange(len(chunk)), column, row])
+            order = np.lexsort([column, row])
             column, row, records = column[order], row[order], records[order]
             starts = run_starts(row * (1 << 32) + column)
             for start, stop in zip(starts, [*starts[1:], len(records)]):
                 position = int(column[start]), int(row[start])
                 blocks.add(position)
-                # Of the tiles' folder: users don't see the hidden one in it.
+                # Messages name the folder of the tiles, as users don't see the hidden one in it.
                 with os_errors_as_messages(folder.parent), (folder / Block(*position, side).name).open("ab") as heap:
                     # numpy's own way does not say why it could not write.
                     heap.write(records[start:stop].tobytes())
