@@ -61,13 +61,13 @@ class SpaceCells:
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Number of points, sums of x, y, z and of their six products (m, 10), m and m², about the points' middle."""
+        """Number of points, sums of x, y, z and of their six products (m, 10), m and m², about a point amid them."""
         products = (self._off(a) * self._off(b) for a, b in PAIRS)
         sums = [self.sums(values) for values in chain(map(self._off, range(3)), products)]
         return np.column_stack([self.count.astype(float), *sums])
 
     def _off(self, axis: int) -> np.ndarray:
-        """Return how far (n,) the points are from their middle along an axis, m."""
+        """Return how far (n,) the points are along an axis from a point amid them, m."""
         return self.xyz[:, axis] - self._origin[axis]
 
     @cached_property

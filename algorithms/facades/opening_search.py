@@ -15,7 +15,7 @@ from .facade_outline import grown
 from .facade_surfaces import Facade
 
 # Points farther than this from the plane, in standard deviations of the wall, are not of the wall.
-_OFF_WALL = 3.0
+OFF_WALL = 3.0
 
 # Least distance (m) from the plane of points that are not of the wall.
 _LEAST_OFF = 0.03
@@ -139,7 +139,7 @@ def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: 
         Least width and height (m).
     """
     local = facade.frame.local(xyz[rows])
-    off_wall = max(_OFF_WALL * facade.rms, _LEAST_OFF)
+    off_wall = max(OFF_WALL * facade.rms, _LEAST_OFF)
     # Outward from the wall is positive.
     distance = local[:, 2]
     is_wall = np.abs(distance) <= off_wall

@@ -6,10 +6,10 @@ import numpy as np
 
 from ..packages import spatial
 from .facade_surfaces import Facade
-from .opening_search import Opening
+from .opening_search import OFF_WALL, Opening
 
-# Openings that share this part of the points of one are one opening seen through two walls, and so is the part of an
-# opening before which a wall hides it: most of it.
+# Share of the points of an opening that others have, from which it is one of these seen through another wall; and share
+# of an opening before which a wall lies that hides it: most of both.
 _SHARED = 0.5
 
 # Walls whose normals enclose less than this angle (cosine: 20°) face the same way.
@@ -60,7 +60,7 @@ class _Wall:
     def hides(self, ring: np.ndarray, max_depth: float) -> bool:
         """Return whether the wall lies before most of an opening (m, 3) of another one."""
         local = self.facade.frame.local(ring)
-        if not 3 * self.facade.rms <= -local[:, 2].mean() <= max_depth:
+        if not OFF_WALL * self.facade.rms <= -local[:, 2].mean() <= max_depth:
             return False
         low, size = local[:, :2].min(axis=0), np.ptp(local[:, :2], axis=0)
         share = (np.arange(_STEPS) + 0.5) / _STEPS

@@ -14,22 +14,23 @@ from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
 from .soft_shares import REACH
 
-# Height (m) of another point of the building steeply above one that is no part of the roof: more than roofs are rough.
+# Height (m) above a point from which another one of the building, steeply above it, shows that it is no part of the
+# roof: roofs are less rough.
 _STEP = 0.4
 
 # Height (m) of a roof above adjacent non-building points, and above points that were only attached to the building,
 # however steeply: bushes under eaves.
 _BELOW = 1.0
 
-# Slope (tangent) up to which the point is a part of a steep roof all the same: 72°. Such a roof rises by as many
-# spacings from one point to the next, which is the least height above attached points.
+# Slope (tangent) up to which a higher point is of the same steep roof: 72°. Such a roof rises by as many spacings from
+# one point to the next, which is the least height above attached points.
 _UPRIGHT = 3.0
 
 # Side (spacings) of the cells of which one point is taken for all: four fifths of evenly scattered points remain.
 _THINNED = 0.71
 
-# Weight of the highest point of a cell with points on a wall: half of the cell is roof. Two fifths of such cells have a
-# point of it, while nearly all of these have one.
+# Weight of the highest point of a cell with points on a wall. Half of such a cell is roof, and nearly all of them have
+# a highest point, while two fifths of the cells of a roof without walls have one.
 _AT_WALL = 0.43
 
 # Radius (spacings) in which roof points are counted to decide whether a point lies under a roof: 12 on the average.
@@ -38,8 +39,8 @@ _AROUND = 2.0
 # Number of nearest roof points whose surroundings give the density of the roof.
 _NEAREST = 24
 
-# A point lies under a roof that has this share of that density around it: beside a straight edge it has half. Measured
-# on simulated roofs.
+# A point lies under a roof that is this share as dense around it as around its nearest roof points: beside a straight
+# edge it is half. Measured on simulated roofs.
 _UNDER = 0.7
 
 # Least density of a roof, as a share of what the mean spacing gives: bushes that are taken for it are thinner.
@@ -96,6 +97,7 @@ def thinned(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
     xyz : ndarray of shape (n, 3)
         Coordinates (m); cells begin at multiples of their size.
     cluster : ndarray of shape (n,), int64
+        Building of each.
     spacing : float
         Mean distance of neighboring points (m).
     """
@@ -126,8 +128,8 @@ def find_non_building_points(
         Points, m.
     classification : ndarray of shape (n,)
         Classes.
-    roof : ndarray of shape (k, 3)
-        Points of roofs, m.
+    roof : ndarray of shape (k,), int64
+        Rows of the points of roofs.
     spacing : float
         Point spacing, m.
     """

@@ -25,7 +25,7 @@ class _Rules:
     cell_spacings: float = 1.5  #: Least side of the cells in point spacings, so that cells of land hold a point
     window: float = 5.0  #: Side (m) of the square in which pulses are counted: the least width of a ditch that is seen
     most_pulses: float = 0.5  #: Most pulses, as a share of those of land: canals and simulated rivers give 0.1 to 0.4
-    half: float = 0.5  #: Least share of a body's ground that has its level, and of the ground around it that is higher
+    most: float = 0.5  #: Least share of a body's ground that has its level, and of the ground around it that is higher
     #: Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water
     land: float = 0.25
     #: Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents
@@ -75,9 +75,9 @@ def water_levels(
     if level is None:
         return np.full(len(xyz), np.nan)
     # Beside land, pulses that come back from it hide that water gives few.
-    edge = ndimage.binary_dilation(body, EIGHT, iterations=_RULES.ring)
+    with_edge = ndimage.binary_dilation(body, EIGHT, iterations=_RULES.ring)
     monitor.progress(0.9)
-    return np.where(edge, level, np.nan)[row, column]
+    return np.where(with_edge, level, np.nan)[row, column]
 
 
 def _sparse(pulses: np.ndarray, is_seen: np.ndarray, size: float) -> np.ndarray:
@@ -125,6 +125,6 @@ def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Opt
     level = float(np.median(lowest[seen]))
     on_level = seen & (np.abs(lowest - level) <= _RULES.level)
     banks = ndimage.binary_dilation(inside, EIGHT, iterations=_RULES.ring) & ~inside & np.isfinite(lowest)
-    if on_level.sum() < _RULES.half * seen.sum() or not banks.any():
+    if on_level.sum() < _RULES.most * seen.sum() or not banks.any():
         return None
-    return on_level if (lowest[banks] > level + _RULES.level).mean() >= _RULES.half else None
+    return on_level if (lowest[banks] > level + _RULES.level).mean() >= _RULES.most else None

@@ -14,10 +14,10 @@ from .optimal_size import nested_covariances
 # Least width in plan, as a share of the length, of a neighborhood that is not a line.
 LEAST_WIDTH = 0.45
 
-# Most points of a neighborhood: this number is nearly always that wide, however it is spread.
+# Most points of a neighborhood: as many are nearly always wide enough, however they are spread.
 MOST_ACROSS_LINES = 60
 
-# It grows by this factor until it is.
+# Factor by which a neighborhood grows until it is wide enough.
 _GROWTH = 1.5
 
 # Number of sampled neighbors, spread over their ranks.

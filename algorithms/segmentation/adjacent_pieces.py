@@ -28,7 +28,7 @@ class Adjacency:
     other: np.ndarray
     #: (k,), float64: share of the points of the shorter piece that have a neighbor in the longer one
     overlap: np.ndarray
-    offset: np.ndarray  #: (k, 3), float64: mean way to the neighbors, square to ``one``, m: its side
+    offset: np.ndarray  #: (k, 3), float64: mean way to the neighbors across ``one``, m: to the side on which they lie
 
     def neighbors(self, count: int) -> list[list[int]]:
         """Return the adjacent pieces of each of ``count`` pieces."""

@@ -19,7 +19,8 @@ _JUMP = 10.0
 # Steps before and after a point whose directions show whether a line turns back there: a few are longer than noise.
 _STEPS = 3
 
-# Cosine of the angle between these from which it does (120°): bends at edges of the scene are less.
+# Cosine of the angle between the directions before and after a point from which a line turns back there (120°): bends
+# at edges of the scene are less.
 _TURN = -0.5
 
 
@@ -27,8 +28,8 @@ _TURN = -0.5
 class Recording:
     """What a scanner recorded of its points, each array (n,), or None where the cloud lacks it."""
 
-    gps_time: Optional[np.ndarray] = None  #: Time of the pulses
-    scan_angle: Optional[np.ndarray] = None  #: Angles of the beams
+    gps_time: Optional[np.ndarray] = None  #: Time of the pulses, s
+    scan_angle: Optional[np.ndarray] = None  #: Angles of the beams, °
     point_source_id: Optional[np.ndarray] = None  #: Flight line or scanner
     #: scan_direction_flag, edge_of_flight_line: Direction in which the mirror turns, and whether a point is the last
     #: one before it turns

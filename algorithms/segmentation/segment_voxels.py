@@ -212,6 +212,7 @@ def segment_voxels(
     of_point = np.where(where >= 0, component[where] if len(component) else -1, -1)[voxel]
     segment_id = np.zeros(len(xyz), np.int32)
     segment_id[used] = number_large(by_first_point(of_point), min_points)
+    # Points of no component write to the last position, which no component has.
     of_component = np.zeros(len(component) + 1, np.int32)
     of_component[of_point] = segment_id[used]
 

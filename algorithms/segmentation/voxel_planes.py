@@ -39,6 +39,7 @@ class VoxelPlanes:
 
     def __init__(self, boxes: Boxes, side: float, tolerance: float, max_planes: int, trials: int, seed: int) -> None:
         self.boxes, self.tolerance = boxes, tolerance
+        # Below 1, also where a tolerance is as wide as a voxel: see :func:`more_than_chance`.
         self.by_chance = min(0.99, 2 * tolerance / side)
         # The same shares for all voxels: the planes drawn in one depend on its own points only.
         self.shares = np.random.default_rng(seed).random((max_planes, trials, 3))

@@ -16,6 +16,9 @@ Sampler = Callable[[np.random.Generator, int], tuple[np.ndarray, np.ndarray]]
 # Distance between the bars of a grating (m).
 _MESH = 0.04
 
+# Height and thickness of the bars of a grating (m).
+_BAR = (0.03, 0.004)
+
 
 @dataclass(frozen=True)
 class Part:
@@ -26,7 +29,7 @@ class Part:
     area: float  #: Its area, m²
     middle: np.ndarray  #: (3,): a position in its middle (m)
     sample: Sampler  #: Draws points on it
-    #: (2, 3): ends of the axis of a pipe or tank, or twice the center of a sphere (m)
+    #: (2, 3): ends of the axis of a pipe or tank, or the center of a sphere in both rows (m)
     axis: Optional[np.ndarray] = None
     radius: float = 0.0  #: Radius of a pipe, tank or sphere (m), otherwise 0
 
@@ -84,7 +87,7 @@ def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer:
 
 
 def sphere(center: np.ndarray, radius: float) -> Part:
-    """Return a sphere."""
+    """Return a sphere around a center (3,), m, of a radius (m)."""
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         away = rng.normal(size=(count, 3))
@@ -109,7 +112,7 @@ def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float,
     center, side = start + bend * toward, np.cross(along, toward)
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
-        # The outside of a bend is longer: of twice the points those are taken that area asks for.
+        # The outside of a bend is longer: points are kept by the area around them, of three times as many as needed.
         turn, around, keep = rng.uniform(0, 1, (3, 3 * count))
         turn, around = turn * np.pi / 2, around * 2 * np.pi
         kept = np.flatnonzero(keep * (bend + radius) <= bend + radius * np.cos(around))[:count]
@@ -166,23 +169,23 @@ def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np
 
 
 def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> Part:
-    """Return a level grating from a corner (3,) along two edges (3,), m: bars of 4 mm by 3 cm with gaps."""
+    """Return a level grating from a corner (3,) along two edges (3,), m: upright bars with gaps."""
     long, wide = float(np.linalg.norm(first)), float(np.linalg.norm(second))
-    n_bars = max(1, int(wide / _MESH))
+    n_bars, (high, thick) = max(1, int(wide / _MESH)), _BAR
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         along = rng.uniform(0, 1, count)[:, None]
         bar = (rng.integers(0, n_bars, count) / n_bars)[:, None]
-        down = rng.uniform(0, 0.03, count)[:, None]
+        down = rng.uniform(0, high, count)[:, None]
         side = np.where(rng.random(count) < 0.5, 1.0, -1.0)[:, None]
-        positions = corner + along * first + bar * second + 0.002 * side * second / wide - down * [0.0, 0.0, 1.0]
+        positions = corner + along * first + bar * second + thick / 2 * side * second / wide - down * [0.0, 0.0, 1.0]
         return positions, side * second / wide
 
-    return Part("grating", Shape.NONE, 2 * n_bars * long * 0.03, corner + (first + second) / 2, sample)
+    return Part("grating", Shape.NONE, 2 * n_bars * long * high, corner + (first + second) / 2, sample)
 
 
 def heap(center: np.ndarray, size: float) -> Part:
-    """Return clutter: surfaces of all directions at random in a ball (hoses, tools, cables, bushes)."""
+    """Return clutter in a ball of a radius ``size`` (m): surfaces of random directions, as of hoses and bushes."""
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         away, normal = rng.normal(size=(2, count, 3))

@@ -34,7 +34,7 @@ def simulate_power_line(
     seed: Seed = 1,
     monitor=None,
 ):
-    """Scan made-up power lines from the air, and the true class of every point.
+    """Scan made-up power lines from the air, with the true class of every point.
 
     A transmission line on towers of 30 m carries six conductors and a guard wire; a line of low voltage on poles of 9 m
     carries three wires, and one to a house at every second pole. Trees and a forest grow under both.

@@ -36,7 +36,7 @@ class JoinRules:
 
     max_angle: float  #: Largest angle between the facet and the lines to its nodes, °
     max_distance: Optional[float]  #: Largest distance from the facet, m; None is estimated in each round
-    bend: float  #: Part of an estimated distance that allows for bends of the terrain between points, m
+    bend: float  #: What bends of the terrain between points add to half of an estimated distance, if that is more, m
     edge_length: float  #: Facets whose edges are all shorter are closed, m
     least: float = LEAST_RESOLUTION  #: Least roughness of a surface, m: that of rounded heights
     #: Whether the largest angle is estimated in each round, and ``max_angle`` bounds the estimate
@@ -178,25 +178,25 @@ def _joining(
     # Small facets mostly get smaller, and a point beside a node makes a sliver and adds no information.
     is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]
-    here = surface.points.take(candidates, axis=0)
-    nearest = to_nearest_node(tin, facet, here)
+    xyz = surface.points.take(candidates, axis=0)
+    nearest = to_nearest_node(tin, facet, xyz)
     apart = nearest > DENSIFICATION.node_distance * rules.edge_length
-    candidates, facet, here = candidates[apart], facet[apart], here.compress(apart, axis=0)
-    offset, angle = offset_and_angle(tin, facet, here, nearest[apart])
-    fits = (offset <= distance) & (angle <= max_angle) & _is_terrain(tin, facet, here, rules.terrain_angle)
+    candidates, facet, xyz = candidates[apart], facet[apart], xyz.compress(apart, axis=0)
+    offset, angle = offset_and_angle(tin, facet, xyz, nearest[apart])
+    fits = (offset <= distance) & (angle <= max_angle) & _is_terrain(tin, facet, xyz, rules.terrain_angle)
     if rules.beyond is not None:
         others = np.flatnonzero(~fits)
-        angle[others] = rules.beyond(tin, facet[others], here[others], distance, n_start)
+        angle[others] = rules.beyond(tin, facet[others], xyz[others], distance, n_start)
         fits |= angle <= max_angle
     # Ties go to the south-west, so that the points' order doesn't matter.
-    order = np.lexsort((here[fits, 1], here[fits, 0], angle[fits], facet[fits]))
+    order = np.lexsort((xyz[fits, 1], xyz[fits, 0], angle[fits], facet[fits]))
     first = np.unique(facet[fits][order], return_index=True)[1]
     joining = candidates[fits][order][first]
     return candidates, joining
 
 
 def offset_and_angle(
-    tin: Tin, facet: np.ndarray, here: np.ndarray, nearest: np.ndarray
+    tin: Tin, facet: np.ndarray, xyz: np.ndarray, nearest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the distance (n,), m, of points to their facets, and the largest angle (n,), °, to the nodes of these.
 
@@ -206,29 +206,29 @@ def offset_and_angle(
         The triangulated ground.
     facet : ndarray of shape (n,), int
         Facet below or above each point.
-    here : ndarray of shape (n, 3)
+    xyz : ndarray of shape (n, 3)
         The points (m).
     nearest : ndarray of shape (n,)
         Distance (m) to the nearest node of each point's facet.
     """
-    offset = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.slope_cosine()[facet]
+    offset = np.abs(xyz[:, 2] - tin.elevation(xyz, facet)) * tin.slope_cosine()[facet]
     return offset, np.degrees(np.arcsin(np.clip(offset / np.maximum(nearest, 1e-9), 0, 1)))
 
 
-def _is_terrain(tin: Tin, facet: np.ndarray, here: np.ndarray, terrain_angle: float) -> np.ndarray:
+def _is_terrain(tin: Tin, facet: np.ndarray, xyz: np.ndarray, terrain_angle: float) -> np.ndarray:
     """Return whether no line from a point to the nodes of its facet is steeper than ``terrain_angle`` (°)."""
     if terrain_angle >= 90.0:
-        return np.ones(len(here), bool)
-    lines = tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None]
+        return np.ones(len(xyz), bool)
+    lines = tin.nodes[tin.facets[facet]] - (xyz - tin.shift)[:, None]
     slopes = np.arctan2(np.abs(lines[..., 2]), np.linalg.norm(lines[..., :2], axis=2))
     return np.degrees(slopes).max(axis=1) <= terrain_angle
 
 
-def to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarray:
+def to_nearest_node(tin: Tin, facet: np.ndarray, xyz: np.ndarray) -> np.ndarray:
     """Return the distance (m) to the nearest node of each point's facet: the largest angle is there."""
-    here, least = here - tin.shift, np.full(len(here), np.inf)
+    xyz, least = xyz - tin.shift, np.full(len(xyz), np.inf)
     for node in tin.facets.take(facet, axis=0).T:
         # Column by column: numpy is slow on rows of three.
-        x, y, z = (tin.nodes.take(node, axis=0) - here).T
+        x, y, z = (tin.nodes.take(node, axis=0) - xyz).T
         least = np.minimum(least, x * x + y * y + z * z)
     return np.sqrt(least)

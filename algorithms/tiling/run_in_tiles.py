@@ -174,7 +174,7 @@ class _Run:
         of_features = feature_numbers(self.settings.pipeline, blocks.found)
         edges = [path for _, path in blocks.done]
         blocks.numbers[:] = join_numbers(
-            blocks.positions, blocks.found, lambda at: BlockResult.edges(edges[at]), of_features
+            blocks.done_blocks, blocks.found, lambda at: BlockResult.edges(edges[at]), of_features
         )
         outcome.layers, kept = self._layers(blocks, self.monitor.part(WORKED, JOINED))
         return kept
@@ -308,7 +308,7 @@ class _Run:
                 layers[name] = join_belonging(of_blocks, clusters, column, kept[of])
                 continue
             layers[name], kept[name] = join_features(
-                blocks.positions,
+                blocks.done_blocks,
                 of_blocks,
                 clusters,
                 self.survey.origin,

@@ -54,7 +54,7 @@ class TileWriter:
         if settings.options.shown:
             (settings.folder / SHOWN).mkdir(exist_ok=True)
         tasks: list[TileTask] = []
-        done, boxes, lost = blocks.done, _boxes(blocks.positions), _boxes([block for block, _ in blocks.failed])
+        done, boxes, lost = blocks.done, _boxes(blocks.done_blocks), _boxes([block for block, _ in blocks.failed])
         for number, (source, stem) in enumerate(zip(survey.sources, unique_stems(survey.sources))):
             near = np.flatnonzero(boxes_meet(boxes, source.box))
             is_lost = boxes_meet(lost, source.box).any()

@@ -19,7 +19,8 @@ from .mosaics import RasterMosaic
 from .survey import Survey
 from .workers import Workers
 
-# Shares of the progress: cutting, sampling, blocks, layers; the rest is writing.
+# Progress when large files are cut, the survey is sampled, blocks are worked on, and layers are joined; the rest is
+# writing.
 CUT, SAMPLED, WORKED, JOINED = 0.05, 0.1, 0.88, 0.9
 
 # What finds the layers that a composite is given, and what takes the rasters and text files that it makes.
@@ -91,7 +92,7 @@ class WorkedOn:
     numbers: list[dict[str, np.ndarray]] = field(default_factory=list)
 
     @property
-    def positions(self) -> list[Block]:
+    def done_blocks(self) -> list[Block]:
         """The blocks that are done."""
         return [block for block, _ in self.done]
 

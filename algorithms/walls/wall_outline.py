@@ -20,7 +20,7 @@ from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wal
 # Fewest points that show where a wall is, where a side of the roof makes it likely.
 _FEW = 5
 
-# Least share of the length of this wall that they cover.
+# Least share of the length of a wall that the few points which show it must cover.
 _LEAST_COVERED = 0.2
 
 # Largest angle (radians) between a side of the roof and walls that are seen, whose direction the side then takes.
