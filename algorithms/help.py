@@ -171,7 +171,7 @@ def tunable_help(tunable: Tunable, default: object = _NOT_GIVEN) -> str:
     param = tunable.param
     facts = [tunable.range] if tunable.range else []
     facts.append(f"default {_default_text(tunable, tunable.default if default is _NOT_GIVEN else default)}")
-    automatic = f" {inline(param.unset_text)}" if tunable.is_automatic else ""
+    automatic = f" {inline(param.unset_text)}" if tunable.is_optional else ""
     return (
         f"<b>{html.escape(param.title)}</b>: {inline(param.help)}{automatic} <i>({html.escape('; '.join(facts))})</i>"
     )
@@ -195,7 +195,7 @@ def outputs(stage: Stage) -> list:
     made += [_file_text(file, file.name.upper()) for file in stage.files]
     if stage.measures:
         made.append(_report_text(stage, "REPORT"))
-    used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)]
+    used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_optional and t.type in (int, float)]
     if used:
         made.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
     return made

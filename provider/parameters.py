@@ -35,7 +35,7 @@ def used_name(tunable: Tunable) -> str:
 def label(tunable: Tunable) -> str:
     """Return the label with its unit, and for automatic numbers how to ask for it."""
     facts = [tunable.param.unit] if tunable.param.unit else []
-    if tunable.is_automatic:
+    if tunable.is_optional:
         facts.append(f"{tr('empty')} = {tr(tunable.param.unset)}")
     return f"{tr(tunable.param.label)} ({', '.join(facts)})" if facts else tr(tunable.param.label)
 
@@ -51,7 +51,7 @@ def help_text(tunable: Tunable) -> str:
     parts = [tr(tunable.param.help)]
     if tunable.param.bounds:
         parts.append(f"Range: {tunable.param.bounds}.")
-    if tunable.is_automatic:
+    if tunable.is_optional:
         parts.append(tr(tunable.param.unset_text))
     return " ".join(parts)
 
@@ -67,7 +67,7 @@ def parameter(tunable: Tunable) -> QgsProcessingParameterDefinition:
 
 def _number(tunable: Tunable) -> QgsProcessingParameterDefinition:
     definition = QgsProcessingParameterNumber(
-        parameter_name(tunable), label(tunable), _NUMBERS[tunable.type], tunable.default, tunable.is_automatic
+        parameter_name(tunable), label(tunable), _NUMBERS[tunable.type], tunable.default, tunable.is_optional
     )
     # QGIS has inclusive bounds only: the dialog takes an open bound too, the core refuses it.
     if tunable.param.low is not None:
@@ -87,7 +87,7 @@ def _decimals(tunable: Tunable) -> int:
 
 
 def _boolean(tunable: Tunable) -> QgsProcessingParameterDefinition:
-    return QgsProcessingParameterBoolean(parameter_name(tunable), label(tunable), tunable.default, tunable.is_automatic)
+    return QgsProcessingParameterBoolean(parameter_name(tunable), label(tunable), tunable.default, tunable.is_optional)
 
 
 def _word(tunable: Tunable) -> QgsProcessingParameterDefinition:
@@ -111,7 +111,7 @@ def _enum(tunable: Tunable, several: bool) -> QgsProcessingParameterDefinition:
         list(tunable.param.choices),
         allowMultiple=several,
         defaultValue=default,
-        optional=tunable.is_automatic,
+        optional=tunable.is_optional,
         usesStaticStrings=True,
     )
 
@@ -121,7 +121,7 @@ _MAKERS = {float: _number, int: _number, bool: _boolean, str: _word, tuple: _wor
 
 def automatic_numbers(stage: Stage) -> list:
     """Return the automatic tunables of a stage that are numbers."""
-    return [t for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)]
+    return [t for t in stage.tunables.values() if t.is_optional and t.type in (int, float)]
 
 
 def number_outputs(stage: Stage) -> dict[str, str]:

@@ -41,7 +41,7 @@ class Section:
             self.pickers[name] = DIMENSION
         elif tunable.name in _CLASSES:
             self.pickers[name] = "classes"
-        if tunable.is_automatic:
+        if tunable.is_optional:
             self.unset[name] = tr(tunable.param.unset)
 
     def add_setting(self, name: str) -> None:

@@ -50,8 +50,11 @@ _WORD = re.compile(r"[A-Za-z][\w'-]*")
 # Code and formulas are read as one word, which may begin a sentence.
 _CODE = re.compile(r"`[^`]*`|\$[^$]*\$")
 
-# Lines that begin a paragraph of their own in docstrings: sections, parameters, references, items.
-_OWN = re.compile(r"-{3,}|[\w, *`]+ : |\.\. |[-*] |>>>|\$\$")
+# Lines of docstrings that are no prose: underlines of sections, parameters, examples.
+_NO_PROSE = re.compile(r"-{3,}|[\w, *`]+ : |>>>")
+
+# Lines that begin a paragraph of their own in docstrings: these, references, items, formulas.
+_OWN = re.compile(_NO_PROSE.pattern + r"|\.\. |[-*] |\$\$")
 
 
 def paragraphs(path: Path) -> Iterator[tuple[int, str]]:
@@ -65,7 +68,7 @@ def paragraphs(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def _parted(text: str, line: int) -> Iterator[tuple[int, str]]:
-    """Yield paragraphs of a text that begins at a line: items and cells of tables are some of their own."""
+    """Yield paragraphs of a text that begins at a line: items and cells of tables are paragraphs, too."""
     own: list[str] = []
     start = line
     for number, one in enumerate([*text.splitlines(), ""], line):
@@ -75,7 +78,7 @@ def _parted(text: str, line: int) -> Iterator[tuple[int, str]]:
                 yield start, " ".join(own)
             own = []
             yield from ((number, cell.strip()) for cell in bare.strip("|").split("|") if bare.startswith("|"))
-        if bare and bare[0] not in "|#" and not re.match(r"-{3,}|[\w, *`]+ : |>>>", bare):
+        if bare and bare[0] not in "|#" and not _NO_PROSE.match(bare):
             start = start if own else number
             own.append(bare)
 

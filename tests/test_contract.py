@@ -211,7 +211,7 @@ TUNABLES = [
     for tunable in stage.tunables.values()
 ]
 NUMBERS = [p for p in TUNABLES if p.values[1].type in (int, float)]
-AUTOMATIC = [p for p in TUNABLES if p.values[1].is_automatic]
+AUTOMATIC = [p for p in TUNABLES if p.values[1].is_optional]
 each_stage = pytest.mark.parametrize("stage", ALL.values(), ids=lambda stage: stage.name)
 each_reader = pytest.mark.parametrize(
     "stage", [stage for stage in ALL.values() if stage.reads_cloud], ids=lambda stage: stage.name
@@ -514,7 +514,7 @@ def test_tunable_is_labeled_and_explained(stage, tunable):
     assert is_sentence_case(param.label)
     assert not param.label.endswith((".", ":", ")"))
     assert is_sentences(param.help)
-    assert [bool(param.automatic), bool(param.empty)].count(True) == tunable.is_automatic
+    assert [bool(param.automatic), bool(param.empty)].count(True) == tunable.is_optional
     assert not param.unset_text or param.unset_text.endswith(".")
 
 
@@ -590,7 +590,7 @@ def values_outside(tunable: Tunable) -> list:
     step = 1 if tunable.type is int else 1e-6
     if tunable.type is int:
         outside.append(tunable.default + 0.5 if tunable.default is not None else 1.5)
-    if not tunable.is_automatic:
+    if not tunable.is_optional:
         outside.append(None)
     if param.low is not None:
         outside.append(param.low if param.open_low else param.low - step)

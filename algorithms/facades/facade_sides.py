@@ -137,15 +137,15 @@ def _decided(evidence: np.ndarray, one: np.ndarray, other: np.ndarray, agree: np
     A corner counts as much as the smaller of its two facades.
     """
     area = evidence[:, 1]
-    field = area * evidence[:, 0]
-    side, is_open = np.ones(len(field)), np.ones(len(field), bool)
-    beside: list[list[tuple[int, float]]] = [[] for _ in field]
+    support = area * evidence[:, 0]
+    side, is_open = np.ones(len(support)), np.ones(len(support), bool)
+    beside: list[list[tuple[int, float]]] = [[] for _ in support]
     for a, b, sign in zip(one, other, agree * np.minimum(area[one], area[other])):
         beside[a].append((int(b), float(sign)))
         beside[b].append((int(a), float(sign)))
-    for _ in range(len(field)):
-        clearest = int(np.argmax(np.where(is_open, np.abs(field), -1.0)))
-        side[clearest], is_open[clearest] = (1.0 if field[clearest] >= 0 else -1.0), False
+    for _ in range(len(support)):
+        clearest = int(np.argmax(np.where(is_open, np.abs(support), -1.0)))
+        side[clearest], is_open[clearest] = (1.0 if support[clearest] >= 0 else -1.0), False
         for neighbor, weight in beside[clearest]:
-            field[neighbor] += weight * side[clearest]
+            support[neighbor] += weight * side[clearest]
     return side

@@ -28,6 +28,12 @@ from .soft_shares import APART, LEAST_SPACING, Shares, find_shares
 # Tolerance (spacings) of outlines: samples along an edge lie within one spacing of it, and corners are rounded.
 _TOLERANCE_SPACINGS = 1.75
 
+# Automatic tolerance in words, for the help.
+_AUTOMATIC_TOLERANCE = (
+    f"{_TOLERANCE_SPACINGS:g} times the mean spacing of the building points, at least "
+    f"{_TOLERANCE_SPACINGS * LEAST_SPACING:.2g} m."
+)
+
 # Steps of the spacing from one to its double, in which it is rounded: the same cloud with a tenth fewer points, or a
 # part of it, mostly has the same.
 _STEPS_PER_OCTAVE = 4
@@ -43,7 +49,7 @@ _INFLUENCE = 0.5
 _ROOF_SPACING = "roof_spacing"
 
 # Progress when the evidence is found, and when the outlines are drawn; attributes take the rest.
-_TRACING, _DRAWN = 0.4, 0.9
+_FOUND, _DRAWN = 0.4, 0.9
 
 
 @stage(
@@ -83,7 +89,7 @@ def extract_footprints(
             unit="m",
             low=0.01,
             high=100,
-            automatic="1.75 times the mean spacing of the building points, at least 0.44 m.",
+            automatic=_AUTOMATIC_TOLERANCE,
             advanced=True,
         ),
     ] = None,
@@ -190,14 +196,15 @@ def extract_footprints(
     measures = PointMeasures(xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason)
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     parts = _parts(measures, classification, building, cluster, spacing)
-    traced = monitor.part(0.0, _TRACING)
-    seen = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), traced))
-    directions = _shared_directions(seen) if regularize else [dict.fromkeys(one.shares, np.zeros(0)) for one in seen]
+    searching = monitor.part(0.0, _FOUND)
+    evidence = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), searching))
+    unknown = [dict.fromkeys(one.shares, np.zeros(0)) for one in evidence]
+    directions = _shared_directions(evidence) if regularize else unknown
     # Threads work on the arrays of houses and attributes; drawing is many small calls, which hold the interpreter.
-    rows = made_ahead(
-        lambda number, _: _houses(parts[number], seen[number], directions[number], measures, how),
+    houses_of_parts = made_ahead(
+        lambda number, _: _houses(parts[number], evidence[number], directions[number], measures, how),
         len(parts),
-        monitor.part(_TRACING, _DRAWN),
+        monitor.part(_FOUND, _DRAWN),
     )
     outlines = [
         [
@@ -205,7 +212,7 @@ def extract_footprints(
             for block in blocks_of(one.pieces, spacing)
             for outlined in draw_block(block, one.shares, own, houses, how)
         ]
-        for houses, one, own in zip(rows, seen, directions)
+        for houses, one, own in zip(houses_of_parts, evidence, directions)
     ]
     described = made_ahead(
         lambda number, _: footprint_attributes(

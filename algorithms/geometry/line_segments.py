@@ -9,7 +9,7 @@ _PAIRS_AT_ONCE = 1_000_000
 
 
 def is_valid(rings: list) -> bool:
-    """Return whether no two segments of an outline meet but neighbors in their corner, and holes are inside."""
+    """Return whether the edges of closed rings meet only where they follow each other, and the holes lie inside."""
     if min(map(len, rings)) < 4:
         return False
     starts = np.concatenate([ring[:-1] for ring in rings])

@@ -17,10 +17,11 @@ _POWER = 1.5
 # Least standard deviation of a direction (°).
 _LEAST_WIDTH = 1.0
 
-# Standard deviation of the direction of a piece of one sample (°): that of longer pieces is inverse to their length.
+# Standard deviation of the direction of a piece of one sample (°), half a sample across: that of longer pieces is
+# inverse to their length.
 _WIDTH_OF_ONE = 28.6
 
-# Standard deviation (samples) across a straight piece; pieces with more bend, and their weight falls.
+# Standard deviation (samples) across a straight piece: the weight falls where it is more, as such a piece is bent.
 _STRAIGHT = 0.25
 
 # Step of the directions (°).
@@ -76,7 +77,10 @@ class RingPieces:
         return length in self._of_length
 
     def counted(self, length: int, counts: Optional[np.ndarray]) -> np.ndarray:
-        """Return the sums (180,) of the weights of pieces by direction, each shared between the two steps around it."""
+        """Return the sums (180,) of the weights of pieces by direction, each shared between the two steps around it.
+
+        ``counts`` (n,) are factors of the weights of the pieces around each sample.
+        """
         low, share, weight = self._of_length[length]
         if counts is not None:
             weight = weight * np.roll(counts, -(length // 2))

@@ -16,7 +16,7 @@ from .scattered import scattered
 # Points located at once on each core: their arrays stay small beside the cloud.
 _CHUNK = 100_000
 
-# Planes fitted at once on each core, for the same reason.
+# Planes fitted at once on each core: their arrays, of nine neighbors each, stay small beside the cloud.
 _FIT_CHUNK = 20_000
 
 # Points that a plane needs.
@@ -64,6 +64,7 @@ class Tin:
         box = plan_box(nodes) if box is None else box
         # Squares of coordinates keep their digits where these are small.
         self.shift = np.append(box.mean(axis=0), 0.0)
+        # Far enough that their facets hardly cut into the hull of the nodes, also where the box is a single position.
         self.reach = reach = 3 * float((box[1] - box[0]).max()) + 10.0
         corners = np.array([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
         nodes = nodes - self.shift
@@ -137,6 +138,7 @@ class Tin:
         found = np.empty(len(xyz), np.int32)
 
         def walk(rows: np.ndarray) -> None:
+            # Within the far corners, by more than rounding.
             plan = np.clip(xyz[rows, :2] - self.shift[:2], -0.99 * self.reach, 0.99 * self.reach)
             found[rows] = self._walk(plan, self._at_node[node(rows, plan)])
 
@@ -291,6 +293,9 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
 
 
 def robust_deviation(residuals: np.ndarray, floor: float = 0.01) -> float:
-    """Return the standard deviation that follows from the median of absolute residuals, at least ``floor`` (m)."""
+    """Return the standard deviation that follows from the median of absolute residuals, at least ``floor``.
+
+    All are in one unit, m unless the floor is given.
+    """
     # The standard deviation of normally distributed residuals is 1.4826 times the median of their absolute values.
     return max(1.4826 * float(np.median(np.abs(residuals))), floor)

@@ -169,7 +169,7 @@ def _shell(one: NamedModel, solid: Solid, vertices: _Vertices, is_best: bool) ->
     surfaces = []
     for face, kind in enumerate(solid.kinds):
         facts = (
-            _plain(in_units(face_attributes(one, solid, face), ROOF_FIELDS[1:], vertices.frame))
+            _plain(in_units(face_attributes(one, solid, face), ROOF_FIELDS, vertices.frame))
             if is_best and kind == ROOF
             else {}
         )

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.polygons import area_vector, axes_across
 
-# Corners whose triangle has less area than this (m²) are in line by rounding.
+# Corners whose triangle has less than half of this area (m²) are in line by rounding.
 _FLAT = 1e-9
 
 
@@ -84,6 +84,7 @@ def _corner(ring: list[int], i: int) -> tuple[int, int, int]:
 
 
 def _turn(a, b, c) -> float:
+    """Return twice the area (m²) of a triangle, negative where it turns clockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
@@ -112,15 +113,17 @@ def _distance(a, b) -> float:
 
 
 def _sees(ring: list[int], i: int, hole: list[int], position, positions: dict) -> bool:
-    before, here, after = (positions[v] for v in _corner(ring, i))
+    """Return whether nothing of ring and hole lies between a vertex of the ring and a position inside it."""
+    before, vertex, after = (positions[v] for v in _corner(ring, i))
     # Of a vertex that an earlier bridge doubled, the corner that faces the hole counts.
-    is_convex = _turn(before, here, after) >= 0
-    within = (_turn(before, here, position) > 0, _turn(here, after, position) > 0)
+    is_convex = _turn(before, vertex, after) >= 0
+    within = (_turn(before, vertex, position) > 0, _turn(vertex, after, position) > 0)
     if not (all(within) if is_convex else any(within)):
         return False
     edges = [*zip(ring, [*ring[1:], ring[0]]), *zip(hole, [*hole[1:], hole[0]])]
-    return not any(_cross(here, position, positions[u], positions[v]) for u, v in edges)
+    return not any(_do_cross(vertex, position, positions[u], positions[v]) for u, v in edges)
 
 
-def _cross(a, b, c, d) -> bool:
+def _do_cross(a, b, c, d) -> bool:
+    """Return whether the segments ab and cd cross between their ends."""
     return _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0

@@ -29,6 +29,9 @@ MIN_NEIGHBORS = 3
 # A neighborhood larger than this on average is a radius chosen by mistake: it would run for days.
 _MAX_MEAN_NEIGHBORS = 20_000
 
+# Closed forms within this of a degenerate case have lost half of their digits: LAPACK is asked.
+_DOUBTFUL = 1e-6
+
 
 class Neighborhood(Protocol):
     """Which points describe a point: :class:`Nearest`, :class:`Within`, the best number, or as many as are wide."""
@@ -244,7 +247,7 @@ def symmetric_eigenvalues(covariances: np.ndarray) -> np.ndarray:
     largest = mean + 2 * spread * np.cos(angle)
     smallest = mean + 2 * spread * np.cos(angle + 2 * np.pi / 3)
     eigenvalues = np.column_stack([largest, 3 * mean - largest - smallest, smallest])
-    doubtful = np.flatnonzero(np.abs(cosine) > 1 - 1e-6)
+    doubtful = np.flatnonzero(np.abs(cosine) > 1 - _DOUBTFUL)
     if len(doubtful):
         eigenvalues[doubtful] = np.linalg.eigvalsh(full_matrices(covariances[doubtful]))[:, ::-1]
     # Rounding may leave a flat neighborhood a tiny negative extent.
@@ -271,7 +274,7 @@ def smallest_eigenvectors(covariances: np.ndarray, eigenvalues: np.ndarray) -> n
     best = np.argmax(sizes, axis=0)
     every = np.arange(len(best))
     normals, size = crosses[best, :, every], np.sqrt(sizes[best, every])
-    doubtful = np.flatnonzero(size < 1e-6)
+    doubtful = np.flatnonzero(size < _DOUBTFUL)
     if len(doubtful):
         matrices = full_matrices(covariances[doubtful] / largest[doubtful, None])
         normals[doubtful] = np.linalg.eigh(matrices)[1][:, :, 0]

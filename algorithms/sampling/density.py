@@ -19,10 +19,10 @@ class DensityRules:
     points_per_cell: float = rule(5.0, "points", "statistics: random points leave one such cell in 150 empty")
     filled_cell: float = rule(1.5, "point spacings", "statistics: random points leave a tenth of such cells empty")
     least_filled: float = rule(
-        0.75, "share", "of such cells that hold points at the right spacing; usual scanners fill four fifths"
+        0.75, "share", "of filled cells that hold points at the right spacing; usual scanners fill four fifths"
     )
     link: float = rule(2.0, "point spacings", "statistics: random points of one object are hardly ever farther apart")
-    least_link: float = rule(0.5, "m", "physics: the same for objects in dense clouds")
+    least_link: float = rule(0.5, "m", "physics: points of one object are hardly ever farther apart in dense clouds")
     step: float = rule(2**0.125, "ratio", "of one trial of the spacing to the next")
     most_spacing: float = rule(
         2.0, "ratio", "of effective to mean spacing; beyond it dense parts are seen too coarsely"
@@ -30,6 +30,12 @@ class DensityRules:
 
 
 DENSITY = DensityRules()
+
+# Most rounds of the search for the density, more than it takes.
+_MOST_ROUNDS = 20
+
+# Change of the density, as a share of it, that ends the search: thresholds hardly depend on less.
+_CHANGE = 0.01
 
 
 def point_density(xyz: np.ndarray) -> float:
@@ -64,11 +70,11 @@ def point_density(xyz: np.ndarray) -> float:
             f"The cloud has no extent in plan (points: {len(xyz)}), so it has no density; choose a larger cloud."
         )
     density = len(xyz) / area
-    for _ in range(20):
+    for _ in range(_MOST_ROUNDS):
         size = max(float(np.sqrt(DENSITY.points_per_cell / density)), LEAST_RESOLUTION)
         occupied = len(distinct(grid_over(xyz, size).number(xyz))[0])
         found = len(xyz) / (occupied * size * size)
-        if abs(found - density) < 0.01 * density:
+        if abs(found - density) < _CHANGE * density:
             break
         density = float(np.sqrt(found * density))
     return found

@@ -77,7 +77,7 @@ _THROUGH = 0.7
 # Share of the pulses straight down that water sends back.
 _WATER_CHANCE = 0.25
 
-# Angle (rad) to the vertical at which that share is 1/e of this: water mirrors.
+# Angle (rad) to the vertical at which water sends back 1/e of what it does straight down: it mirrors.
 _WATER_SLANT = np.deg2rad(12.0)
 
 # Least and greatest height of birds over the ground (m).
@@ -85,6 +85,12 @@ _BIRDS = (30.0, 120.0)
 
 # Least and greatest depth of multipath points under the ground (m).
 _MULTIPATH = (2.0, 15.0)
+
+# Intensity of a single return of a material that reflects all light: the brightest roofs stay below the largest number.
+_WHITE = 60_000
+
+# Standard deviation of intensities, as a share of them.
+_SPECKLE = 0.08
 
 # Share of the light that a material reflects, by class.
 _REFLECTANCE = np.full(256, 0.3)
@@ -227,14 +233,14 @@ def _aimed(relief: Relief, pulse: np.ndarray, origin: np.ndarray, aim: np.ndarra
 
 
 def _beside(relief: Relief, beams: Beams, rng: np.random.Generator) -> Beams:
-    """Return for each beam a ray from elsewhere in its footprint."""
+    """Return for each beam a ray to another position in its footprint."""
     turn, out = rng.uniform(0.0, 2 * np.pi, len(beams)), _BEAM_RADIUS * np.sqrt(rng.random(len(beams)))
     shift = np.column_stack([out * np.cos(turn), out * np.sin(turn)])
     return _aimed(relief, beams.pulse, beams.origin, beams.aim + shift)
 
 
 def _met(world: World, kind: str, beams: Beams, strip: _Strip) -> tuple[np.ndarray, np.ndarray]:
-    """Return the pairs (beam, thing) that may meet: the beam is aimed into the shadow of the thing's box."""
+    """Return the pairs (beam, object) that may meet: the beam is aimed into the shadow of the object's box."""
     low, high = world.boxes(kind)
     corners = np.stack([low, high])
     planes = world.relief.plane(corners[:, None, :, 0], corners[None, :, :, 1]).reshape(4, -1)
@@ -276,12 +282,13 @@ def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.nda
     number = rank(pulse)
     goes_on = ~is_vegetation(echoes.classification) | (rng.random(len(echoes)) < _THROUGH)
     kept = np.zeros(len(echoes), bool)
-    last, heard = np.full(n_pulses, -np.inf), np.zeros(n_pulses, np.int64)
+    last, recorded = np.full(n_pulses, -np.inf), np.zeros(n_pulses, np.int64)
     for k in range(int(number.max()) + 1):
         at = np.flatnonzero(number == k)
-        at = at[(echoes.range[at] - last[pulse[at]] > _DEAD_ZONE) & (heard[pulse[at]] < _MAX_RETURNS)]
+        at = at[(echoes.range[at] - last[pulse[at]] > _DEAD_ZONE) & (recorded[pulse[at]] < _MAX_RETURNS)]
         kept[at] = True
-        heard[pulse[at]] += np.where(goes_on[at], 1, _MAX_RETURNS)
+        # A pulse that does not go on is used up.
+        recorded[pulse[at]] += np.where(goes_on[at], 1, _MAX_RETURNS)
         last[pulse[at]] = echoes.range[at]
     return kept
 
@@ -330,7 +337,7 @@ def _recorded(
 
 def brightness(echoes: Echoes, count: Union[int, np.ndarray], rng: np.random.Generator) -> np.ndarray:
     """Return the intensity (n,), uint16, by material; the pulse's energy is shared by its ``count`` returns."""
-    # Every roof has its own.
+    # Every roof has its own brightness, by up to 30 %: steps of the golden ratio spread the numbers of objects evenly.
     bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
-    intensity = 60_000 * bright / count * (1 + 0.08 * rng.standard_normal(len(echoes)))
+    intensity = _WHITE * bright / count * (1 + _SPECKLE * rng.standard_normal(len(echoes)))
     return np.clip(intensity, 1, 65_535).astype(np.uint16)

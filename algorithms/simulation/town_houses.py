@@ -46,7 +46,10 @@ def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
-    """Return the footprint of a house a few meters behind the street, not quite parallel to it."""
+    """Return the footprint of a house a few meters behind the street, not quite parallel to it.
+
+    ``length`` and ``width`` are the least and the greatest of each (m).
+    """
     long, wide = rng.uniform(*length), rng.uniform(*width)
     front = -plot.width / 2 + rng.uniform(2.0, 3.0)
     return plot.part(rng.uniform(-0.5, 0.5), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-4.0, 4.0)))

@@ -64,7 +64,7 @@ def with_tunables(doc: str, tunables: Collection[Tunable], samples: bool = False
     """
     rows = ["Other Parameters", "----------------"]
     for t in tunables:
-        kind = t.type.__name__ + (" or None" if t.is_automatic else "")
+        kind = t.type.__name__ + (" or None" if t.is_optional else "")
         facts = [kind, *([t.param.unit] if t.param.unit else []), *([t.range] if t.range else [])]
         rows.append(f"{t.name} : {', '.join(facts)}, default {t.default!r}")
         text = f"{t.param.help} {t.param.unset_text}".rstrip()

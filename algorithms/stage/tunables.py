@@ -40,7 +40,7 @@ class Param:
 
     @property
     def unset_text(self) -> str:
-        """The same in a sentence, empty where a value is needed."""
+        """What a tunable does that is None, as a sentence; "" where it needs a value."""
         if self.empty:
             return f"Empty: {self.empty}"
         return f"Automatic: {self.automatic}" if self.automatic else ""
@@ -71,7 +71,7 @@ class Tunable:
     param: Param
 
     @property
-    def is_automatic(self) -> bool:
+    def is_optional(self) -> bool:
         """Whether None is allowed: the stage derives the value from the data, or does without."""
         return self.default is None
 
@@ -88,7 +88,7 @@ class Tunable:
 
         The sentence names the tunable ``called``, as the user knows it, or by its own name if that is empty.
         """
-        if value is None and self.is_automatic:
+        if value is None and self.is_optional:
             return None
         try:
             value = self._converted(value)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.rings import signed_area
 from .cheapest_outline import Limits
-from .wall_edges import closed
+from .wall_edges import SEEN, closed
 from .wall_lines import WallLine
 from .wall_outline import WallOutline
 
@@ -18,9 +18,6 @@ _PARALLEL = np.cos(np.deg2rad(8.0))
 
 # The narrowest alley (m): less is a wall that is seen from both sides, or twice.
 _NARROWEST = 0.3
-
-# Of both walls at least this share along the alley has points, the same that seen edges of footprints have.
-_SEEN = 0.5
 
 
 def find_alley(outline: WallOutline, limits: Limits, min_area: float) -> Optional[WallLine]:
@@ -79,7 +76,7 @@ def _is_alley(
         covered = [outline.scale.covered(wall.along, low, high) if high > low else 0.0 for low, high in along]
         away = np.sign(alley.across(wall.point[None])[0]) * alley.normal
         behind = sum(signed_area(_clipped(ring, wall.point, away)) for ring in rings)
-        if length @ covered < _SEEN * length.sum() or behind < min_area:
+        if length @ covered < SEEN * length.sum() or behind < min_area:
             return False
     return True
 

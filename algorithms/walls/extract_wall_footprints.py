@@ -23,7 +23,7 @@ from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candid
 from .cheapest_outline import Limits
 from .roof_outline import RoofOutline, outline_roof
 from .surroundings import Surroundings
-from .wall_edges import WallEdge, closed
+from .wall_edges import SEEN, WallEdge, closed
 from .wall_lines import WallLine
 from .wall_outline import WallOutline, outline_walls, share_seen
 from .wall_report import MEASURES, WALL, point_counts, wall_report
@@ -41,9 +41,6 @@ _LEAST_TOLERANCE = 0.01
 
 # Largest value of that distance (m), that of the tunable.
 _MOST_TOLERANCE = 2.0
-
-# An edge of which this share has points was seen.
-_SEEN = 0.5
 
 _FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
@@ -297,7 +294,7 @@ def _tell_unseen(footprints: LayerFeatures, monitor: Monitor) -> None:
             f"{source.count(ROOF)} of {len(footprints)} footprints are outlines of roofs, "
             "as too few of their walls were seen."
         )
-    thin = sum(one == WALL and seen < _SEEN for one, seen in zip(source, quality))
+    thin = sum(one == WALL and seen < SEEN for one, seen in zip(source, quality))
     if thin:
         monitor.warn(
             f"Of {thin} of {len(footprints)} footprints less than half of the walls was seen; "
@@ -410,7 +407,7 @@ def _footprint(
         "area": sum(map(signed_area, corners)),
         "perimeter": sum(map(perimeter, corners)),
         "edges": len(own_edges),
-        "edges_seen": int((quality >= _SEEN).sum()),
+        "edges_seen": int((quality >= SEEN).sum()),
         "quality": share_seen(rings),
         "worst_quality": float(quality.min()),
         "deviation": _pooled(np.array([edge.deviation for edge in own_edges]), points),
@@ -434,7 +431,7 @@ def _edges(rings: list[list[WallEdge]], footprint: int, origin: np.ndarray) -> I
         facts = {
             "footprint": footprint,
             "edge": number,
-            "source": WALL if edge.quality >= _SEEN else ROOF,
+            "source": WALL if edge.quality >= SEEN else ROOF,
             "length": float(np.hypot(*(edge.end - edge.start))),
             "angle": _inner_angle(before, edge),
             "quality": edge.quality,

@@ -11,8 +11,11 @@ from .wall_lines import Scale, WallLine
 # Length (m) at both ends of an edge that is left out where its quality is measured: corners are rounded.
 _CORNER = 0.4
 
-# The same as a share of a short edge.
+# Largest such length, as a share of the edge.
 _CORNER_SHARE = 0.25
+
+# A wall of which this share has points was seen.
+SEEN = 0.5
 
 
 @dataclass(frozen=True)

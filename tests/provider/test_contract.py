@@ -226,7 +226,7 @@ def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm)
     numbers = {
         output.name() for output in algorithm.outputDefinitions() if isinstance(output, QgsProcessingOutputNumber)
     }
-    automatic = {f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)}
+    automatic = {f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_optional and t.type in (int, float)}
     assert numbers == automatic | {measure.name.upper() for measure in stage.measures}
 
 
@@ -247,10 +247,10 @@ def test_every_tunable_is_a_parameter(stage, algorithm):
         assert definition.help().startswith(tunable.param.help)
         flags = definition.flags()
         assert bool(flags & Qgis.ProcessingParameterFlag.Advanced) == tunable.param.advanced
-        assert bool(flags & Qgis.ProcessingParameterFlag.Optional) == (tunable.is_automatic or default == "")
+        assert bool(flags & Qgis.ProcessingParameterFlag.Optional) == (tunable.is_optional or default == "")
         if tunable.param.unit:
             assert f"({tunable.param.unit}" in definition.description()
-        if tunable.is_automatic:
+        if tunable.is_optional:
             assert f"empty = {tunable.param.unset}" in definition.description()
             assert tunable.param.unset_text in definition.help()
 
