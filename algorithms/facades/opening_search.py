@@ -29,7 +29,7 @@ _LEAST_CELL = 0.02
 # Gap (m) between points behind the wall that are of one opening: bars, curtains and panes leave gaps.
 _LINK = 0.3
 
-# Least half of that gap between points behind the wall, in cells.
+# Least value of half the gap ``_LINK``, in cells.
 _LINK_CELLS = 1.5
 
 # Distance (m) from the points behind the wall within which the edge of the wall is a side of their opening.
@@ -56,8 +56,11 @@ _SHARED = 0.3
 # Deviation from a straight line up to which an edge of the wall is the side of an opening, in point spacings.
 _STRAIGHT_SPACINGS = 2.0
 
-# Least such deviation of the side of an opening from a straight line (m).
+# Least deviation (m) from a straight line that the side of an opening may have, whatever the spacing.
 _LEAST_STRAIGHT = 0.06
+
+# Height (m) above the lower side of a door up to which an edge is its sill.
+_SILL = 0.05
 
 # Area of the convex hull of an opening, as a share of its rectangle, from which it is that rectangle.
 _RECTANGULAR = 0.75
@@ -237,7 +240,7 @@ def _shape(box: np.ndarray, positions: np.ndarray, spacing: float) -> tuple[np.n
     (west, low), (east, high) = box
     rectangle = np.array([[west, low], [east, low], [east, high], [west, high], [west, low]])
     inside = np.clip(positions, box[0], box[1])
-    if len(positions) < 4 or (np.ptp(inside, axis=0) < 1e-6).any():
+    if (np.ptp(inside, axis=0) < 1e-6).any():
         return rectangle, 1.0
     hull = spatial.ConvexHull(inside, qhull_options="QJ")
     share = float(hull.volume) / float(np.prod(box[1] - box[0]))
@@ -260,7 +263,7 @@ def _enclosure(raster: Raster, ring: np.ndarray, sill: Optional[float]) -> float
     length = np.linalg.norm(steps, axis=1)
     counted = np.ones(len(steps), bool)
     if sill is not None:
-        counted = ~((ring[:-1, 1] <= sill + 0.05) & (ring[1:, 1] <= sill + 0.05))
+        counted = ~((ring[:-1, 1] <= sill + _SILL) & (ring[1:, 1] <= sill + _SILL))
     pieces = np.maximum(np.ceil(length / raster.size), 1).astype(int)
     positions = [
         start + (np.arange(n)[:, None] + 0.5) / n * step

@@ -22,7 +22,7 @@ _NEAR = 0.9
 # Standard deviation (spacings) of the surroundings in which a roof's own density is measured: some hundred points.
 _WIDE = 3.0
 
-# Widths of the weights end at this many standard deviations, where a hundredth of the greatest is left.
+# Weights end at this many standard deviations, where a hundredth of the greatest is left.
 _TRUNCATE = 3.0
 
 # Distance (spacings) from a point up to which it has a weight.
@@ -43,7 +43,10 @@ _NOWHERE = 1e-3
 
 @dataclass(frozen=True)
 class Lattice:
-    """Nodes at multiples of ``step`` (m) from zero, of which ``first`` (column, row) is the south-western one."""
+    """Nodes at multiples of ``step`` (m) from zero.
+
+    ``first`` is column and row of the south-western one, ``shape`` their rows and columns.
+    """
 
     step: float
     first: tuple[int, int]
@@ -192,8 +195,8 @@ def find_shares(
     found = {}
     for number, (inner, share) in shares.items():
         window = lattice.window(inner)
-        other = np.where(leader[window] == number, second[window], best[window])
-        found[number] = Shares(inner, share, np.maximum(ground[window], other))
+        of_others = np.where(leader[window] == number, second[window], best[window])
+        found[number] = Shares(inner, share, np.maximum(ground[window], of_others))
     return found
 
 

@@ -1,4 +1,4 @@
-"""Morphological opening of height rasters, at a cost that does not depend on the window."""
+"""Morphological opening of height rasters, at a cost that grows with the logarithm of the window's size."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def open_surface(surface: np.ndarray, radius: int, absent: Optional[np.ndarray] = None) -> np.ndarray:
-    """Return the opening of a raster by an octagon: its lower envelope by a plate of that radius.
+    """Return the opening of a raster by an octagon: the surface that an octagonal plate reaches from below.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ def open_surface(surface: np.ndarray, radius: int, absent: Optional[np.ndarray] 
     radius : int
         Radius of the octagon in cells, at least 1.
     absent : ndarray of shape (rows, columns), bool, optional
-        Cells that hold no plate up and over which no plate is centered; they keep their heights.
+        Cells that do not bound the plate and over which no plate is centered; they keep their heights.
 
     Returns
     -------

@@ -23,7 +23,9 @@ class _Rules:
     spread: float = 0.08  #: Radius of towers, as a share of their height
     above: float = 2.0  #: Height (m) over the highest wire up to which a mast reaches: insulators and the tip
     part: float = 1.5  #: Height (m) of the parts in which points are counted
-    filled: float = 0.5  #: Least share of the parts with points, of those of the upper and of the lower half
+    #: Least share of the parts with points, in the upper and in the lower half of a mast; and largest share of the
+    #: parts of its trunk with more points around it than in it
+    filled: float = 0.5
     #: Shares of the height between which a mast has no arms and a tree has its crown: around it there are fewer points
     #: than in it
     trunk: tuple[float, float] = (0.25, 0.65)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.components import connect
-from ..geometry.groups import run_starts
+from ..geometry.groups import least_of
 from ..neighborhoods.covariance import Nearest, reduce_neighborhoods, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import Shapes
 from ..sampling.cloud_sampling import CloudSampling
@@ -27,7 +27,8 @@ class _Rules:
     #: chain, at least 0.5 m
     gap_spacings: float = 2.0
     least_gap: float = 0.5
-    step: float = 1.0  #: They are closer in height (m): the distance between the bonnet of a car and its roof is less
+    #: Points of one object are closer in height (m): the distance between the bonnet of a car and its roof is less
+    step: float = 1.0
     #: Highest smooth object (m): vans, containers and garden walls are lower, the smooth sides of crowns higher
     highest: float = 3.5
     #: Largest share of points whose pulse had several returns. Edges of cars give 0.1; crowns and bushes of the clouds
@@ -64,23 +65,17 @@ def find_solid_objects(
     gap = max(_RULES.gap_spacings * sampling.spacing, _RULES.least_gap)
     group = connect(xyz, gap, _RULES.step, monitor.part(0, 0.6))
     size = np.bincount(group, minlength=1)
-    low, top = _least(group, height), -_least(group, -height)
+    low, top = least_of(height, group, len(size)), -least_of(-height, group, len(size))
     is_opaque = np.bincount(group, has_passed, len(size)) < _RULES.most_passed * size
-    has_area = size >= LEAST_NEIGHBORS
-    candidates = np.flatnonzero((is_opaque & has_area & (top <= _RULES.highest))[group])
+    has_enough = size >= LEAST_NEIGHBORS
+    candidates = np.flatnonzero((is_opaque & has_enough & (top <= _RULES.highest))[group])
     is_smooth = _on_surfaces(xyz[candidates], sampling, monitor.part(0.6, 1))
     smooth = np.bincount(group[candidates], is_smooth, len(size))
     # Points of objects that are no candidates are not counted, so that these are never solid.
     is_solid = smooth >= np.maximum(_RULES.smooth_share * size, 1)
     rise = top - low
-    is_pole = has_area & (rise >= _RULES.slenderness * _extent(group, xyz, size))
+    is_pole = has_enough & (rise >= _RULES.slenderness * _extent(group, xyz, size))
     return (is_solid | is_pole)[group]
-
-
-def _least(group: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the least value of each group (m,), every number of which occurs."""
-    order = np.argsort(group, kind="stable")
-    return np.minimum.reduceat(values[order], run_starts(group[order])) if len(order) else np.zeros(1)
 
 
 def _extent(group: np.ndarray, xyz: np.ndarray, size: np.ndarray) -> np.ndarray:

@@ -17,28 +17,29 @@ class _Rules:
 
     #: tries, trials: Points from which a span is looked for along their direction, and parabolas through three points
     #: that are tried from each. If half of the points belong to one span, an eighth of the trials is right. After
-    #: ``tries`` wrong spans in a row, as in crowns, the search in a strand ends; a span is extended as often at most.
+    #: more than ``tries`` wrong spans in a row, as in crowns, the search in a strand ends. A span is extended ``tries``
+    #: times at most.
     tries: int = 10
     trials: int = 40
     longest: float = 60.0  #: Distance (m) along the wire within which these points are
     #: Points within this distance (m) of the plane of the wire are on it: the radius of the beam's footprint and the
     #: swing of the wire. Points of a trial are at least as far apart along it.
     aside: float = 0.3
-    #: least_off, noises: And within the larger of this height (m) and this many standard deviations of the noise of the
-    #: parabola
+    #: least_off, noises: Points on the wire are within the larger of this height (m) and this many standard deviations
+    #: of the noise from its parabola
     least_off: float = 0.1
     noises: float = 3.0
     #: Curvature (1/m), half of the second derivative, of the deepest parabola: a sag of a tenth over a span of 20 m
     most_bent: float = 0.02
     #: A fitted curvature exceeds zero by this many standard errors: beams, rails and edges are straight, wires sag
     certain: float = 2.0
-    #: least_points, least_length: Least number of thinned points of a span and of all its points, and least length (m)
+    #: least_points, least_length: Least number of points of a span, thinned as well as all, and its least length (m)
     least_points: int = 5
     least_length: float = 10.0
     beyond: float = 5.0  #: A span goes on where its parabola meets points within this distance (m) of its ends
     below: float = 2.0  #: Height (m) under the wire in which crowns and roofs have points
-    #: Largest share of the length of a span (in parts of 1 m) that has points there or of buildings beside it: those of
-    #: masts and plants under it
+    #: Largest share of the length of a span, counted in parts of 1 m, that has points that far below or buildings
+    #: beside it: masts and plants stand under wires
     most_below: float = 0.25
     #: Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings
     beside: float = 1.0
@@ -67,6 +68,12 @@ class Span:
         aside = offset[:, 0] * self.direction[1] - offset[:, 1] * self.direction[0]
         return along, aside, xyz[:, 2] - np.polyval(self.curve, along)
 
+    def holds(self, xyz: np.ndarray, off: float, beyond: float = 0.0) -> np.ndarray:
+        """Return which points (n, 3) lie within ``off`` (m) in height of the span, or ``beyond`` (m) its ends."""
+        along, aside, above = self.local(xyz)
+        inside = (along >= self.start - beyond) & (along <= self.end + beyond)
+        return inside & (np.abs(aside) <= RULES.aside) & (np.abs(above) <= off)
+
     def at(self, along: float) -> np.ndarray:
         """Return the point (3,) of the wire at a distance (m) from its middle."""
         return np.append(self.middle + along * self.direction, np.polyval(self.curve, along))
@@ -93,9 +100,7 @@ class Surroundings:
     def on_wire(self, span: Span, beyond: float = 0.0) -> np.ndarray:
         """Return the rows (k,) of the points on a span, and on it up to ``beyond`` (m) its ends."""
         rows = self._near(0, span, beyond + 1.0)
-        along, aside, above = span.local(self.xyz[rows])
-        inside = (along >= span.start - beyond) & (along <= span.end + beyond)
-        return rows[inside & (np.abs(aside) <= RULES.aside) & (np.abs(above) <= self.off)]
+        return rows[span.holds(self.xyz[rows], self.off, beyond)]
 
     def extended(self, span: Span) -> Span:
         """Return the span fitted anew to all points on it, and beyond its ends as far as they go on."""
@@ -119,11 +124,11 @@ class Surroundings:
         sheet = max((beside & is_left).sum(), (beside & ~is_left).sum())
         below = inside & (aside <= 2 * RULES.aside) & (above < -2 * self.off) & (above > -RULES.below)
         length = span.end - span.start
-        occupied = len(np.unique(np.floor(along[below]))) + self._edges(span)
+        occupied = len(np.unique(np.floor(along[below]))) + self._beside_buildings(span)
         is_line = on_wire.sum() >= RULES.least_points and sheet <= on_wire.sum() / 4
         return bool(is_line and occupied <= RULES.most_below * length)
 
-    def _edges(self, span: Span) -> int:
+    def _beside_buildings(self, span: Span) -> int:
         """Return along how much of a span (m) buildings are beside it."""
         solid = self.solid[self._near(1, span, RULES.beside)]
         along, aside, above = span.local(solid)
@@ -166,25 +171,18 @@ def spans_of(
         Draws the points.
     """
     for rows in members(np.where(np.bincount(1 + strand)[1 + strand] >= RULES.least_points, 1 + strand, 0)).values():
-        left, failures = rows, 0
-        while len(left) >= RULES.least_points and failures <= RULES.tries:
-            chosen = _most_points(xyz[left], direction[left], around.off, reach, rng)
+        remaining, failures = rows, 0
+        while len(remaining) >= RULES.least_points and failures <= RULES.tries:
+            chosen = _most_points(xyz[remaining], direction[remaining], around.off, reach, rng)
             if not len(chosen):
                 break
-            span = fitted(xyz[left[chosen]])
+            span = fitted(xyz[remaining[chosen]])
             span = span and around.extended(span)
             failures = 0 if span is not None and around.is_free(span) else failures + 1
             if span is not None and not failures:
                 yield span
-                chosen = np.union1d(chosen, _on(span, xyz[left], around.off))
-            left = np.delete(left, chosen)
-
-
-def _on(span: Span, xyz: np.ndarray, off: float) -> np.ndarray:
-    """Return the rows (k,) of points (n, 3) on a span."""
-    along, aside, above = span.local(xyz)
-    inside = (along >= span.start) & (along <= span.end)
-    return np.flatnonzero(inside & (np.abs(aside) <= RULES.aside) & (np.abs(above) <= off))
+                chosen = np.union1d(chosen, np.flatnonzero(span.holds(xyz[remaining], around.off)))
+            remaining = np.delete(remaining, chosen)
 
 
 def _most_points(
@@ -231,7 +229,7 @@ def _best_parabola(xyz: np.ndarray, off: float, reach: float, rng: np.random.Gen
 
 
 def fitted(xyz: np.ndarray) -> Optional[Span]:
-    """Return the span through points (n, 3), m, by least squares; None if too short or not bent as a wire."""
+    """Return the span through points (n, 3), m, by least squares; None if too few, too short or not bent as a wire."""
     if len(xyz) < RULES.least_points:
         return None
     middle = xyz[:, :2].mean(axis=0)

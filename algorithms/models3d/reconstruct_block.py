@@ -31,8 +31,8 @@ from .solids import WALL, Solid
 # The level of detail with windows and doors, as CityJSON writes it.
 LEVEL_OF_OPENINGS = "3"
 
-# A wall of the model is one that was seen if the middle of its foot lies within this distance (m) of it: rounding, and
-# the tilt of facades.
+# A wall of the model was seen from the street if the middle of its foot lies within this distance (m) of a facade:
+# rounding, and the tilt of facades.
 _ON_FACADE = 0.1
 
 STREET, AIR = "street", "air"
@@ -170,7 +170,7 @@ def reconstruct_block(
 
 
 def _openings(features: LayerFeatures) -> list[Opening]:
-    """Return windows and doors; what no attribute calls a door is a window."""
+    """Return windows and doors; what no attribute calls a door is a window. Polygons without heights are left out."""
     kinds = features.columns.get("kind", [WINDOW] * len(features))
     return [
         Opening(number, DOOR if kind == DOOR else WINDOW, np.asarray(rings[0], float)[:-1])

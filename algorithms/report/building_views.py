@@ -16,6 +16,9 @@ _WIDTH, _HEIGHT = 340, 240
 # Width of the surroundings of a building in its view, m.
 _AROUND = 4.0
 
+# Height left empty below the lowest and above the highest point of a view from the south, m.
+_ROOM = 1.0
+
 # Colors of a view (red, green, blue): background, other points, points of buildings.
 _COLORS = np.array([[255, 255, 255], [187, 187, 187], [187, 85, 102]])
 
@@ -55,7 +58,7 @@ def boxes_around(geometries: list) -> np.ndarray:
 
 
 def draw_views(views: Views, geometries: list, captions: list[str]) -> str:
-    """Return the HTML of the views of some buildings (rings of each, m), each under its caption."""
+    """Return the HTML of the views of doubtful buildings (rings of each, m), each under its caption."""
     parts = ["<h2>Doubtful buildings</h2>"]
     parts.append("<p>From above with the footprint, and from the south. Points of buildings are red.</p>")
     for rings, (low, high), caption in zip(geometries, boxes_around(geometries), captions):
@@ -66,7 +69,7 @@ def draw_views(views: Views, geometries: list, captions: list[str]) -> str:
         parts.append(f'<div class="building"><p>{html.escape(caption)} At {middle}.</p>')
         parts.append(_view(xyz[:, :2], xyz[:, 2], is_building, low, high, outer))
         if len(xyz):
-            floor, top = xyz[:, 2].min() - 1.0, xyz[:, 2].max() + 1.0
+            floor, top = xyz[:, 2].min() - _ROOM, xyz[:, 2].max() + _ROOM
             ends = np.array([low[0], floor]), np.array([high[0], top])
             parts.append(_view(xyz[:, [0, 2]], -xyz[:, 1], is_building, *ends, None))
         parts.append("</div>")

@@ -156,14 +156,14 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     box += 1 - box.min(axis=0)
     shape = tuple((box.max(axis=0) + 2).tolist())
     boxes, which = distinct(np.ravel_multi_index(tuple(box.T), shape))
-    own, whole = (np.bincount(which, weight, len(boxes)) for weight in (chosen[owner], None))
-    own_around, around = np.zeros((2, len(boxes)))
+    n_chosen, n_points = (np.bincount(which, weight, len(boxes)) for weight in (chosen[owner], None))
+    chosen_around, around = np.zeros((2, len(boxes)))
     for step in product((-1, 0, 1), repeat=3):
         there, found = find_cells(boxes, boxes + (step[0] * shape[1] + step[1]) * shape[2] + step[2])
-        own_around += np.where(found, own[there], 0)
-        around += np.where(found, whole[there], 0)
+        chosen_around += np.where(found, n_chosen[there], 0)
+        around += np.where(found, n_points[there], 0)
     size = np.bincount(owner, minlength=len(chosen))
-    return np.bincount(owner, (own_around / around)[which], len(chosen)) / np.maximum(size, 1)
+    return np.bincount(owner, (chosen_around / around)[which], len(chosen)) / np.maximum(size, 1)
 
 
 def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:

@@ -20,7 +20,7 @@ _HEIGHT_NOISE_FACTOR = 10.0
 _MIN_HEIGHT_DISTANCE = 0.2
 _MAX_HEIGHT_DISTANCE = 0.3
 
-# Points of one region are linked over less than this; the regions themselves may be of any size (m).
+# Automatic planimetric distances are less than this (m).
 _REACH = 5.0
 
 
@@ -29,7 +29,7 @@ _REACH = 5.0
     group="Segmentation",
     tags="cluster,region growing,connected components,segmentation",
     writes=("cluster_id",),
-    reach=_REACH,
+    reach=lambda tunables: max(tunables["plan_distance"] or 0.0, _REACH),
 )
 def segment_regions(
     xyz,

@@ -13,7 +13,7 @@ from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
 from .joined_cylinders import joined, without_nested
 from .joined_pieces import whole_axis
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
-from .searched_points import WHOLE_CLOUD, SearchIn, SearchTunables, Shape, Surroundings, search_shapes
+from .searched_points import WHOLE_CLOUD, MeasuredPoints, SearchIn, SearchTunables, Shape, search_shapes
 from .surface_normals import NormalPoints
 
 _FIELDS = (
@@ -139,7 +139,7 @@ def detect_cylinders(
     (1, 0.5)
     """
 
-    def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:
+    def search(around: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[Found]:
         # Segments are searched apart; the surroundings of a cylinder, and other pieces of it, lie in several.
         positions = around.xyz - np.column_stack([around.shift, np.zeros((len(around.shift), 2))])
         evidence = Evidence(around.noise, around.tolerance, around.spacing, positions)

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
-from .searched_points import WHOLE_CLOUD, SearchIn, SearchTunables, Shape, Surroundings, search_shapes
+from .searched_points import WHOLE_CLOUD, MeasuredPoints, SearchIn, SearchTunables, Shape, search_shapes
 from .sphere_search import LEAST_POINTS, FoundSphere, SphereSearch
 from .surface_normals import NormalPoints
 
@@ -120,7 +120,7 @@ def detect_spheres(
     (1, 1.0)
     """
 
-    def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:
+    def search(around: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:
         return SphereSearch(
             around.xyz, around.normals, around.noise, around.tolerance, min_seen, min_points, method == METHODS[0]
         ).find(low, high, monitor)

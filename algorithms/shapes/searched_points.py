@@ -62,7 +62,7 @@ class SearchedPoints:
     """Points in an order of their own, which does not depend on that of the cloud."""
 
     rows: np.ndarray  #: (k,), int64: which point of the cloud each is
-    xyz: np.ndarray  #: (k, 3), float64: coordinates (m) from the least of the cloud, segments moved apart along x
+    xyz: np.ndarray  #: (k, 3), float64: coordinates (m) from ``origin``, segments moved apart along x
     shift: np.ndarray  #: (k,), float64: how far (m) each was moved along x
     origin: np.ndarray  #: (3,): offset that was subtracted from the coordinates of the cloud (m)
 
@@ -94,7 +94,8 @@ def searched_points(
         Side of the largest window (m).
     corner : ndarray of shape (2,), optional
         Where windows begin in plan (m): coordinates are then from a corner of a window. Segments are moved apart by
-        whole windows, so that a part of a cloud has the windows of the whole. Zero is in the middle of their height.
+        whole windows, so that a part of a cloud has the windows of the whole. Elevation 0 is at half the height of a
+        window.
 
     Raises
     ------
@@ -126,7 +127,7 @@ def searched_points(
     return SearchedPoints(rows, positions, shift, origin)
 
 
-def named(
+def numbered(
     points: SearchedPoints,
     label: np.ndarray,
     kind: Shape,
@@ -146,7 +147,8 @@ def named(
     kind : Shape
         Shape found at each point.
     segment_id, shape : ndarray of shape (n,), optional
-        Dimensions of the cloud before; kept but where the whole cloud was searched.
+        Dimensions of the cloud before. A search of the whole cloud discards both. One of the points without a shape
+        keeps those of points with a shape; one of each segment keeps all.
     n : int
         Points of the cloud.
     search_in : str
@@ -156,7 +158,7 @@ def named(
     -------
     segment_id, shape : ndarray of shape (n,), int32 and uint8
         New numbers follow the largest one that is kept.
-    first : int
+    offset : int
         Number that is added to those of the shapes.
     """
     ids, shapes = np.zeros(n, np.int32), np.zeros(n, np.uint8)
@@ -167,16 +169,16 @@ def named(
         has_shape = shape != Shape.NONE
         if segment_id is not None:
             ids[has_shape] = segment_id[has_shape]
-    first = int(ids.max(initial=0))
+    offset = int(ids.max(initial=0))
     found = label > 0
-    ids[points.rows[found]] = label[found] + first
+    ids[points.rows[found]] = label[found] + offset
     shapes[points.rows[found]] = kind
-    return ids, shapes, first
+    return ids, shapes, offset
 
 
 @dataclass(frozen=True)
-class Surroundings:
-    """Settings of a search besides the radii."""
+class MeasuredPoints:
+    """Searched points with their normals, and how exact they are."""
 
     #: xyz, normals, (k, 3): searched points (m), sorted by elevation, and their unit normals; zero if undefined
     xyz: np.ndarray
@@ -213,7 +215,7 @@ class SearchTunables:
 def search_shapes(
     cloud: tuple[np.ndarray, np.ndarray, Optional[np.ndarray], Optional[np.ndarray]],
     kind: Shape,
-    search: Callable[[Surroundings, float, float, Monitor], list[F]],
+    search: Callable[[MeasuredPoints, float, float, Monitor], list[F]],
     tunables: SearchTunables,
     sampling: Optional[CloudSampling],
     monitor: Monitor,
@@ -259,7 +261,7 @@ def search_shapes(
     if len(points.rows):
         # A tolerance set by the user implies a noise.
         noise = max(noise, tolerance / _TOLERANCE)
-        around = Surroundings(points.xyz, normals[points.rows], noise, tolerance, spacing, points.shift)
+        around = MeasuredPoints(points.xyz, normals[points.rows], noise, tolerance, spacing, points.shift)
         found = search(around, min_radius, max_radius, monitor.part(0.2, 1))
     for number, one in enumerate(found, start=1):
         label[one.points] = number
@@ -268,5 +270,5 @@ def search_shapes(
     inside = label > 0
     old, label[inside] = label[inside], by_first_point(label[inside]) + 1
     order = sorted(dict(zip(label[inside].tolist(), old.tolist())).items())
-    ids, shapes, first = named(points, label, kind, segment_id, shape, len(xyz), tunables.search_in)
-    return SearchResult(ids, shapes, [found[n - 1] for _, n in order], [n + first for n, _ in order], points)
+    ids, shapes, offset = numbered(points, label, kind, segment_id, shape, len(xyz), tunables.search_in)
+    return SearchResult(ids, shapes, [found[n - 1] for _, n in order], [n + offset for n, _ in order], points)

@@ -18,7 +18,7 @@ from .hough_planes import HoughPlanes
 from .joined_pieces import whole_plane
 from .plane_polygons import PLANE_FIELDS, plane_polygons
 from .search_settings import point_noise
-from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, named, searched_points
+from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, numbered, searched_points
 from .surface_normals import NormalPoints, normal_points, normals_of, refuse_line
 
 METHODS = ("points", "normals")
@@ -250,8 +250,8 @@ def segment_planes_hough(
     label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
     if not label.any():
         monitor.none_found("No plane was found; no point got a new SegmentID.")
-    ids, shapes, first = named(points, label, Shape.PLANE, segment_id, shape, len(xyz), search_in)
-    return ids, shapes, plane_polygons(xyz[points.rows], label, first, sampling.surface_density)
+    ids, shapes, offset = numbered(points, label, Shape.PLANE, segment_id, shape, len(xyz), search_in)
+    return ids, shapes, plane_polygons(xyz[points.rows], label, offset, sampling.surface_density)
 
 
 @dataclass(frozen=True)

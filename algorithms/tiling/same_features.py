@@ -19,13 +19,13 @@ _SAME = 0.5
 # that merely touch do not.
 _PIECES = 0.1
 
-# Length (m) or area (m²) of the overlap by which large pieces are known, too.
+# Pieces are also of one feature if their overlap has more than this length (m) or area (m²).
 _SHARED = 1.0
 
 # Largest distance between planes in space that are the same one, in root mean square distances of their points.
 _DEVIATIONS = 3.0
 
-# Added to that distance (m), for planes of points without noise.
+# Tolerance (m) of planes whose points have no noise; ``_DEVIATIONS`` times their noise is added.
 _LEAST = 0.005
 
 # Largest distance between axes or centers that are the same one, and largest difference of their radii (of the smaller
