@@ -46,8 +46,10 @@ MARGIN = 0.02
 # Eye-dome lighting: a pixel is darker by its depth (m) behind pixels at these distances (pixels).
 LIGHTING_PIXELS = (1, 2)
 
-# How much darker, and the depth (m) beyond which it is no darker: both chosen by eye.
+# How much darker, per meter of mean depth: chosen by eye.
 LIGHTING_STRENGTH = 0.6
+
+# Depth (m) beyond which a pixel is no darker: chosen by eye.
 LIGHTING_DEPTH = 1.5
 
 # Few different colors make small files: steps of lightness, hues of segments, colors of the ramp, and the step between
@@ -67,8 +69,11 @@ LINE = QColor("#10161d")
 class Scene:
     """How a picture is made: a simulation and the steps that follow, colors and lines, and from where it is seen.
 
-    Steps are names of stages, or pairs of a name and tunables; a pipeline takes their place. ``color`` is a dimension
-    or ``colors``, ``lines`` are names of layers. Angles are in degrees, the ``box`` is west, south, east, north (m).
+    Steps are names of stages, or pairs of a name and tunables; a pipeline takes their place. ``color`` is a dimension,
+    ``colors`` (red, green, blue) or empty, ``lines`` are names of layers with spaces between. Angles are in degrees,
+    the ``box`` is west, south, east, north (m). ``pixels`` is the side of the square that a point is drawn as,
+    ``height`` about the greatest height of the picture (pixels). Unless a scene ``keeps_classes``, its steps begin
+    without any.
     """
 
     simulation: tuple[str, dict[str, Any]]
@@ -327,7 +332,10 @@ def rings(features: Any, box: tuple[float, float, float, float]) -> Iterable[np.
 
 
 def with_heights(line: np.ndarray, xyz: np.ndarray) -> np.ndarray:
-    """Return a line with elevations; without its own it lies on the highest of the given points near its vertices."""
+    """Return a line with elevations; without its own it lies on the highest of the given points near its vertices.
+
+    That is the median of the four highest of the 12 that are nearest in plan.
+    """
     if line.shape[1] == 3:
         return line
     from scipy.spatial import cKDTree

@@ -103,8 +103,8 @@ def _positions(clouds: list[Cloud], xyz: Optional[np.ndarray], units: Units) -> 
     ends = np.cumsum([len(cloud) for cloud in clouds])[:-1]
     parts = [cloud.get("xyz") for cloud in clouds] if xyz is None else np.split(xyz, ends)
     factors, origin = units.factors, clouds[0].origin
-    is_there = not origin.any() and (factors == 1).all()
-    return [part if is_there else (part + origin) / factors for part in parts]
+    is_on_map = not origin.any() and (factors == 1).all()
+    return [part if is_on_map else (part + origin) / factors for part in parts]
 
 
 def _header(cloud: Cloud, records: PointRecords, position: np.ndarray, units: Units) -> Header:

@@ -82,12 +82,12 @@ class Layout:
         return np.asarray(self.records(points)[name])
 
     def put(self, points: np.ndarray, name: str, values: np.ndarray) -> None:
-        """Store a standard field in ``points`` (n,).
+        """Store a standard field in ``points`` (n,), scan angles in degrees and within the bounds of the format.
 
         Raises
         ------
         ValueError
-            If a value needs more bits than the format has.
+            If a value of a bit field needs more bits than the format has.
         """
         if name == "scan_angle":
             step, limit = (1, 90) if self.is_old else (_ANGLE_STEP, _LARGEST_ANGLE)

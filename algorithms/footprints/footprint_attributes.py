@@ -42,20 +42,20 @@ _EAVE = 25
 # Percentile of the roof's heights that is the ridge's: chimneys rise above it.
 _RIDGE = 98
 
-# Points of the roof to which a plane is fitted beside each point of the outline.
+# Points of the roof to which a plane is fitted beside each position on the outline.
 _PLANE = 12
 
-# Distance (spacings) of these from the outline, at least: beyond points on the wall.
+# Least distance (spacings) from the outline of the points of such a plane: beyond points on the wall.
 _INNER = 2.0
 
-# Least weight of roof points at a position whose height they give: that of one point two spacings away.
-_COVERED = 0.02
-
-# Root mean square (m) of their distances to the plane, at most: more is no roof plane.
+# Largest root mean square distance (m) of points from such a plane: more is no roof plane.
 _FLAT = 0.15
 
-# Slope (tangent) of the plane, at most: 68°.
+# Largest slope (tangent) of such a plane: 68°.
 _STEEPEST = 2.5
+
+# Least weight of roof points at a position whose height they give: that of one point 1.2 spacings away.
+_COVERED = 0.02
 
 
 @dataclass(frozen=True)
@@ -221,7 +221,7 @@ def _eave_heights(
     distance, beside = distance.reshape(len(border), -1), beside.reshape(len(border), -1)
     weight = (distance <= APART * spacing).astype(float)
     factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)
-    # A pull to the level, which only points in one line feel.
+    # A small weight on level planes: it decides only across points that lie on one line.
     matrix = np.einsum("ni,nij,nik->njk", weight, factors, factors) + np.diag([1e-6, *[spacing**2 / 10] * 2])
     right = np.einsum("ni,nij,ni->nj", weight, factors, height[beside])
     planes = np.linalg.solve(matrix, right[..., None])

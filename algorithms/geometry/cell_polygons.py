@@ -1,4 +1,4 @@
-"""The polygons that cells of a subdivision make, each with the borders that it shares with others."""
+"""The polygons that cells of a subdivision make, with common vertices along the borders that they share."""
 
 from __future__ import annotations
 

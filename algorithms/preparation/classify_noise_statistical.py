@@ -22,8 +22,8 @@ _CHUNK = 100_000
 # the distances: both are then off by some thousandths.
 _SAMPLE = 200_000
 
-# The sample are thin sheets across this wave vector (waves per meter), whose parts have no common measure with each
-# other or with the steps of coordinates in files.
+# The sample is taken from thin sheets across this wave vector (waves per meter). Its components have no common measure
+# with each other or with the steps of coordinates in files.
 _SAMPLE_WAVE = 1e3 * np.sqrt([2.0, 3.0, 5.0])
 
 

@@ -29,14 +29,18 @@ class SurfaceRules:
     middle: float = rule(0.4, "share", "of that side; the 60 points nearest to a point there are in its square, too")
     least_of_sample: float = rule(0.25, "share", "of the sample; with less, the cloud is taken whole")
     neighbors: int = rule(12, "points", "few reach no farther than one surface, and more measure its noise no better")
-    smooth_share: float = rule(0.2, "share", "of the neighborhoods, on open ground or roofs in nearly any cloud")
+    smooth_share: float = rule(
+        0.2, "share", "of the neighborhoods, smooth in nearly any cloud; of these, as many may be narrow in plan"
+    )
     smoothest_share: float = rule(0.05, "share", "the same in a closed forest")
     most_rougher: float = rule(2.4, "ratio", "of the noise by these two: surfaces differ by less, crowns by more")
     reach: float = rule(6.0, "deviations", "statistics: holds the error of a normal to a few degrees")
     least_reach: float = rule(0.5, "m", "physics: leaves and twigs look smooth over less, roofs are planes over more")
     least_neighbors: int = rule(8, "points", "statistics: five degrees of freedom for a plane")
     most_neighbors: int = rule(100, "points", "half a meter around at 125 points per m²")
-    uneven: float = rule(2.0, "ratio", "of the density around the median point to the cloud's, from which it counts")
+    uneven: float = rule(
+        2.0, "ratio", "of the density around the median point to the cloud's, above which the former counts"
+    )
     least_roughness: float = rule(0.025, "m", "physics: relief of roof tiles, gravel and gutters")
     roughness_of_spacing: float = rule(0.065, "point spacings", "chosen: surfaces bend between points")
     on_plane: float = rule(2.33, "deviations", "statistics: 98 % of normally distributed points lie as near to a plane")
@@ -85,8 +89,9 @@ class MeasuredSurfaces:
 
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
         """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
-        on_lines = self.narrow_below.__gt__
-        return _neighborhood(self.n_points, self.surface_density, on_lines, density, deviation)
+        return _neighborhood(
+            self.n_points, self.surface_density, lambda count: count < self.narrow_below, density, deviation
+        )
 
 
 class SurfaceSample:
@@ -159,15 +164,16 @@ class SurfaceSample:
         Parameters
         ----------
         density : float
-            Points per square meter.
+            Points per square meter of the cloud. That of the surfaces counts where it is over twice as large.
         deviation : float
             Standard deviation of points across the surface, m.
 
         Returns
         -------
         Nearest or Wide
-            As many nearest points as reach half a meter and 6 deviations, from 8 to 100 and at most all. Not fewer than
-            are wide in plan, where less than four fifths of the smooth neighborhoods of that number are.
+            As many nearest points as reach half a meter or 6 deviations, whichever is more, from 8 to 100 and at most
+            all. Where less than four fifths of the smooth neighborhoods of that number are wide in plan, those that are
+            not get more points.
         """
         return _neighborhood(len(self), self.density(), self._on_lines, density, deviation)
 

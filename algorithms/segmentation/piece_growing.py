@@ -125,7 +125,7 @@ class Regions:
         self.plane[members] = plane
 
     def _grow_smooth(self, seed: list[int], number: int, report: Callable[[], None]) -> None:
-        """Add pieces that lie on the plane of the piece beside them, which leans to its neighbors in the region."""
+        """Add pieces that lie on the local plane of the piece beside them."""
         for piece in seed:
             self.region[piece] = number
         for piece in seed:
@@ -137,14 +137,14 @@ class Regions:
             if step % _STRETCH == 0:
                 report()
             piece, beside = waiting.popleft()
-            if self.region[piece] >= 0 or not self._is_beside(piece, beside):
+            if self.region[piece] >= 0 or not self._continues(piece, beside):
                 continue
             self.region[piece] = number
             self.plane[piece] = self._local_plane(piece, number)
             waiting.extend((other, piece) for other in self._free([piece]))
 
     def _local_plane(self, piece: int, number: int) -> np.ndarray:
-        """Return the plane (4,) along a piece and, across it, to the pieces of its region beside it on the average."""
+        """Return the plane (4,) that holds a piece and the mean direction to the pieces of its region beside it."""
         start, others = self.first_pair[piece], self.neighbors[piece]
         rows = [row for row, other in enumerate(others, start) if self.region[other] == number]
         ways = self.adjacency.offset[rows]
@@ -161,7 +161,7 @@ class Regions:
         """Return whether both ends of a piece lie on a plane (4,)."""
         return bool((np.abs(self.ends[piece] @ plane[:3] - plane[3]) <= self.growth.tolerance).all())
 
-    def _is_beside(self, piece: int, beside: int) -> bool:
+    def _continues(self, piece: int, beside: int) -> bool:
         """Return whether the stretch of a piece beside another one lies on the plane there."""
         first, last = self.ends[piece]
         low, high = self.ends[beside] @ self.pieces.direction[beside]

@@ -19,7 +19,7 @@ _WIRE_REACH = 0.1
 # Share of the wires in a beam that send something back: they cover a small part of it.
 _WIRE_CHANCE = 0.7
 
-# Leaves on the way of a beam through one ellipsoid: more of them would come too late to be heard.
+# Leaves on the way of a beam through one ellipsoid: the echoes of more would come too late to be recorded.
 _LEAVES = 8
 
 # Ranges are found to this precision (m).
@@ -86,7 +86,7 @@ def join(parts: Sequence[Echoes]) -> Echoes:
 
 
 class World:
-    """A scene as arrays, ready for beams."""
+    """A scene as arrays, ready for beams. Columns of ``crowns`` and ``wires`` are those of :class:`.scene.Scene`."""
 
     def __init__(self, scene: Scene) -> None:
         self.relief: Relief = scene.relief
@@ -128,6 +128,7 @@ class World:
         """
         middle = np.linalg.norm(beams.aim - beams.origin[:, :2], axis=1)
         middle = np.hypot(middle, beams.origin[:, 2] - self.relief.plane(*beams.aim.T))
+        # Beams lean by at most 30° and the ground is within ``spread`` of its plane, so both ends are beyond the zero.
         margin = 3.0 * (self.relief.spread + 1.0)
         found, active = np.zeros(len(beams)), np.arange(len(beams))
         near, far = middle - margin, middle + margin

@@ -20,7 +20,10 @@ _BLOCK = 50_000
 # Height (m) over the ground from which rays start: over all trees.
 _HEIGHT = 80.0
 
-# Wires are thinner than a pixel.
+# Width (m) of the strip around the scene into which rays are aimed, too: oblique ones meet walls before the ground.
+_MARGIN = 10.0
+
+# Kinds of objects that views show: wires are thinner than a pixel.
 _SEEN = ("solids", "crowns")
 
 
@@ -68,12 +71,11 @@ def photograph(
 
 
 def _blocks(size: float, density: float) -> Iterator[tuple[np.ndarray, np.ndarray, int]]:
-    """Yield the corners (m) of squares and how many rays are aimed into each, beyond the border as far as walls see."""
-    margin = 10.0
-    n = max(1, int(np.ceil((size + 2 * margin) * np.sqrt(density / _BLOCK))))
-    side = (size + 2 * margin) / n
+    """Yield the corners (m) of squares and how many rays are aimed into each."""
+    n = max(1, int(np.ceil((size + 2 * _MARGIN) * np.sqrt(density / _BLOCK))))
+    side = (size + 2 * _MARGIN) / n
     for row, column in itertools.product(range(n), range(n)):
-        low = np.array([column, row]) * side - margin
+        low = np.array([column, row]) * side - _MARGIN
         yield low, low + side, round(density * side**2)
 
 

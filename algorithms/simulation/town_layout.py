@@ -17,7 +17,7 @@ from .solids import Rect, Solid, inclined
 from .town_houses import build_hall, build_house
 
 # Distance (m) between the axes of neighboring streets, with two rows of plots between these.
-_STREETS = 40.0
+_STREET_SPACING = 40.0
 
 # Width of a street (m).
 _STREET_WIDTH = 8.0
@@ -37,7 +37,7 @@ _HALL = (40.0, 27.0)
 # Largest difference of the ground between the corners of a hall (m).
 _HALL_STEP = 5.0
 
-# Plots, and so buildings at most, on a hectare of streets and blocks.
+# Buildings per hectare for which every plot is built on: about as many plots as a hectare of streets and blocks has.
 MAX_BUILDINGS = 34
 
 
@@ -84,8 +84,8 @@ def build_town(plan: TownPlan, monitor: Optional[Monitor] = None) -> Scene:
 
 def _street_lines(scene: Scene) -> np.ndarray:
     """Return where the streets lie along the town (m)."""
-    reach = np.ceil(scene.size / _STREETS)
-    return (np.arange(-reach, reach) + 0.5) * _STREETS
+    reach = np.ceil(scene.size / _STREET_SPACING)
+    return (np.arange(-reach, reach) + 0.5) * _STREET_SPACING
 
 
 def _plots(scene: Scene, forest: float) -> list[Rect]:
@@ -119,6 +119,7 @@ def _hall_position(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
 def _build_bridges(scene: Scene, river: float) -> None:
     """Carry every street over the river."""
     relief = scene.relief
+    # Elevations are over the floor of the valley, which is at 0.
     for street in _street_lines(scene):
         x, y = relief.frame.at(river, street)
         deck = Rect(float(x), float(y), 2 * VALLEY - 8.0, 6.0, relief.angle)
@@ -169,7 +170,9 @@ def park_car(scene: Scene, body: Rect) -> None:
 
 def _string_wires(scene: Scene) -> None:
     """Put poles along the street through the town's middle, and three wires on them."""
-    relief, height, span, sag = scene.relief, 8.5, 34.0, 0.8
+    relief = scene.relief
+    # Height of the poles, distance between them, and sag of the wires (m).
+    height, span, sag = 8.5, 34.0, 0.8
     along = float(_street_lines(scene)[len(_street_lines(scene)) // 2]) + _STREET_WIDTH / 2 - 0.4
     across = np.arange(-scene.size, scene.size, span)
     x, y = relief.frame.at(across, along)

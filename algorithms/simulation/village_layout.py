@@ -16,7 +16,7 @@ from .town_layout import park_car
 from .village_houses import build_homes
 
 # Distance (m) between the axes of neighboring streets, with two rows of plots between these.
-_STREETS = 60.0
+_STREET_SPACING = 60.0
 
 # Width of a street (m).
 _STREET_WIDTH = 8.0
@@ -74,9 +74,9 @@ def build_village(plan: VillagePlan) -> Village:
 def _plots(scene: Scene) -> list[Rect]:
     """Return the plots that lie in the village with some room around."""
     relief, found = scene.relief, []
-    reach, n_half = int(scene.size // _STREETS) + 1, int(scene.size // _PLOT[0])
+    reach, n_half = int(scene.size // _STREET_SPACING) + 1, int(scene.size // _PLOT[0])
     for street, side, i in itertools.product(range(-reach, reach), (1, -1), range(-n_half, n_half)):
-        along = (street + 0.5) * _STREETS + side * (_STREET_WIDTH + _PLOT[1]) / 2
+        along = (street + 0.5) * _STREET_SPACING + side * (_STREET_WIDTH + _PLOT[1]) / 2
         x, y = relief.frame.at((i + 0.5) * _PLOT[0], along)
         plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
         if plot.corners().min() > 1.0 and plot.corners().max() < scene.size - 1.0:

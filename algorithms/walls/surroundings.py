@@ -16,7 +16,7 @@ from ..sampling.cloud_sampling import CloudSampling
 # Least side (m) of the cells in which surroundings are looked up.
 _CELL = 0.25
 
-# The same in point spacings: chance leaves less than one cell in two hundred of a surface without a point.
+# Least side of these cells in point spacings: chance leaves less than one cell of a surface in two hundred empty.
 _CELL_SPACINGS = 2.5
 
 # Widest bite (m) at the edge of a roof that is filled where nothing is seen in it: where matching finds nothing on a
@@ -30,7 +30,7 @@ _SEEN_BESIDE = 0.8
 # Least share of the cells of a gap with points below the eaves that makes it a courtyard.
 _SEEN = 0.3
 
-# Least distance (m) of these points below the eaves.
+# Least distance (m) below the eaves of points that show a courtyard.
 _BELOW = 1.0
 
 # The eaves of a roof: this percentile of its heights.
@@ -91,7 +91,7 @@ class Surroundings:
         return np.where(found, lowest[position], np.nan), np.where(found, roof[position], 0)
 
     def gaps(self, roof: np.ndarray, spacing: float) -> np.ndarray:
-        """Return positions (k, 2) (m) as far apart as its points that fill the gaps and bites of a roof (n, 3)."""
+        """Return positions (k, 2), m, that fill the gaps and bites of a roof (n, 3) of a point spacing (m)."""
         if self.grid.size > _BITE / 2:
             return np.zeros((0, 2))
         refuse_sparse(roof, self.grid.size)
