@@ -53,6 +53,8 @@ def written_to_points(
 ) -> tuple[Any, ...]:
     """Return what a stage that classifies buildings returns.
 
+    That is class, entropy, mean entropy and confidence of its cluster, and reason of each point, and the report.
+
     Parameters
     ----------
     classification : ndarray of shape (n,), uint8

@@ -35,7 +35,10 @@ class VehicleRules:
 
 IMAGE_ROOFS, VEHICLES = ImageRoofRules(), VehicleRules()
 
-# Directions that the smallest rectangle around an object is looked for in.
+# Percentile of the heights of an object that counts as its height.
+_TOP = 90
+
+# Directions (radians) that the smallest rectangle around an object is looked for in.
 _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 
 
@@ -58,8 +61,8 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
     part, whole = (ndimage.uniform_filter(cells, side, mode="constant") for cells in (on_surface, raised))
     share = np.divide(part, whole, out=np.zeros_like(part), where=raised > 0)[row, column]
     # Other programs number surfaces as they like.
-    segments, of = np.unique(segment_id[on_top], return_inverse=True)
-    mean = np.bincount(of, share) / np.bincount(of)
+    segments, which = np.unique(segment_id[on_top], return_inverse=True)
+    mean = np.bincount(which, share) / np.bincount(which)
     return np.isin(segment_id, segments[mean < FREE.most])
 
 
@@ -81,7 +84,7 @@ class RoofExtent:
             closed = closed | (ndimage.binary_closing(self.is_roof, self._disk(gap / 2)) & raised)
             closed |= self._small_holes(closed, gap) & raised
         wide = ndimage.binary_opening(closed, self._disk(IMAGE_ROOFS.least_width / 2))
-        # Opening rounds the corners off, too: they come back.
+        # Opening rounds the corners off, too: within two cells they come back.
         wide = ndimage.binary_dilation(wide, EIGHT, 2, mask=closed) if wide.any() else wide
         return self._to_edges(wide)
 
@@ -129,7 +132,7 @@ class RoofExtent:
         cell = self.surface.size
         width, length = smallest_rectangle(inside, cell)
         has_length = VEHICLES.least_length - cell <= length <= VEHICLES.most_length + cell
-        is_low = float(np.percentile(height, 90)) <= VEHICLES.height
+        is_low = float(np.percentile(height, _TOP)) <= VEHICLES.height
         return bool(width <= VEHICLES.width + cell and has_length and is_low)
 
     def _small_holes(self, closed: np.ndarray, gap: float) -> np.ndarray:

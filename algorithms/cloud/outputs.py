@@ -29,7 +29,7 @@ LAS, LAZ, COPC, VPC = ".las", ".laz", ".copc.laz", ".vpc"
 _PREFIX, _SUFFIX = ".lb-", ".part"
 LOCK = "lock"
 _OLD = "old"
-# A working folder younger than this (s) may belong to a run that has not locked it yet: far longer than that takes.
+# A working folder younger than this (s) may belong to a run that has not locked it yet, which takes far less.
 _UNLOCKED = 2.0
 
 
@@ -243,7 +243,7 @@ class _Entry:
 
 
 def _keep(path: Path, aside: Path) -> None:
-    """Keep a file under a second name until it is replaced: without a moment without the file, if possible."""
+    """Keep a file under a second name until it is replaced; its own name stays taken all the time if possible."""
     try:
         os.link(path, aside)
     except OSError:
@@ -258,9 +258,9 @@ def _remove(path: Path, inode: int) -> None:
 
 def _sweep(folder: Path) -> None:
     """Remove the working folders that runs left in a folder when they were killed."""
-    for left in folder.glob(f"{_PREFIX}*{_SUFFIX}"):
-        if _is_abandoned(left):
-            shutil.rmtree(left, ignore_errors=True)
+    for working in folder.glob(f"{_PREFIX}*{_SUFFIX}"):
+        if _is_abandoned(working):
+            shutil.rmtree(working, ignore_errors=True)
 
 
 def _is_abandoned(folder: Path) -> bool:

@@ -12,7 +12,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import DENSITY
 from ..stage import stage
 
-# Classes of which no others are found where a cloud came with some.
+# Where a cloud came with points of one of these classes, no others are called so.
 _WHOLE = (PointClass.GROUND, PointClass.BUILDING)
 
 

@@ -31,7 +31,7 @@ _SIDE, _MARGIN = 420, 50
 # Sides of a cell of a matrix, and room for the names of its rows and columns, pixels.
 _CELL_WIDTH, _CELL_HEIGHT, _NAMES = 84, 44, 190
 
-# More dots make a page that no browser likes.
+# Most dots of a scatter plot: more slow browsers down.
 _MOST_DOTS = 3000
 
 

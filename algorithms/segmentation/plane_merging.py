@@ -16,15 +16,15 @@ _EVEN = 1 / np.sqrt(3)
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
 _MAX_ROUNDS = 1000
 
-# Planes around a voxel go on into it where together they hold this share of its points. Leaves in which a plane would
-# end lie on it by chance, a fifth of them on one of automatic tolerance.
+# Planes around a voxel go on into it where together they hold this share of its points. Of leaves, a plane of automatic
+# tolerance holds a fifth by chance.
 _HELD = 2 / 3
 
-# Points of such a voxel that each of these planes holds at least.
+# Least number of points of a voxel that a plane holds which goes on into it.
 _LEAST_POINTS = 4
 
-# A plane keeps this share of its points when each goes to the plane nearest to it, or it lies across others.
-_LEAST_LEFT = 0.5
+# Least share of its points that a plane keeps when each goes to the plane nearest to it: one across others keeps less.
+_LEAST_KEPT = 0.5
 
 # Points that a thread works on between two reports.
 _CHUNK = 200_000
@@ -70,9 +70,9 @@ def joined_planes(
     planes = pieces.merged(group, int(group.max(initial=-1)) + 1)
     nearest = nearest_plane(boxes, voxel, group, planes, tolerance, monitor.part(0.6, 0.8))
     # A plane across a ridge loses most of its points to the roofs on both sides.
-    left = np.bincount(nearest[nearest >= 0], minlength=len(planes)) / planes.count
-    area = np.bincount(group, pieces.area, len(planes)) * np.minimum(left, 1)
-    large = (area >= min_area) & (left >= _LEAST_LEFT)
+    kept = np.bincount(nearest[nearest >= 0], minlength=len(planes)) / planes.count
+    area = np.bincount(group, pieces.area, len(planes)) * np.minimum(kept, 1)
+    large = (area >= min_area) & (kept >= _LEAST_KEPT)
     is_large = large[group]
     group = (np.cumsum(large) - 1)[group[is_large]]
     planes = planes.chosen(large)
@@ -104,8 +104,8 @@ def join_pieces(pieces: Planes, voxel: np.ndarray, boxes: Boxes, tolerance: floa
     -----
     Of two neighbors the one with fewer points belongs to the other's plane if its points lie no farther off it, as
     root mean square, than points would that are spread evenly within the tolerance. In each round every plane picks
-    the larger neighbor that it fits best, and those whose pick has none itself are joined to it; then planes are
-    fitted again. Planes grow so from their largest pieces on.
+    the larger neighbor that it fits best, and is joined to it unless that one picks another plane itself. Then planes
+    are fitted again. So they grow from their largest pieces on.
     """
     a, b = _neighbors(voxel, boxes)
     group, planes = np.arange(len(pieces)), pieces
@@ -184,10 +184,10 @@ def grown_planes(
     pieces = new = np.unique(voxel * len(planes) + group)
     nearest, distance = np.full(len(box), -1), np.full(len(box), tolerance)
     for step in range(_MAX_ROUNDS):
-        now = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
+        part = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
         at, plane = np.divmod(new, max(len(planes), 1))
         seen = _planes_around(boxes, at, plane, len(planes), around_each)
-        _take_nearer(boxes, box, *seen, planes, nearest, distance, now)
+        _take_nearer(boxes, box, *seen, planes, nearest, distance, part)
         on_plane = nearest >= 0
         held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
         inside = on_plane & held[box]

@@ -24,8 +24,8 @@ _DISTANCE_SPACINGS = 9.0
 # Difference in height that is noise (standard deviations).
 _NOISE_STEP = 4.0
 
-# Points of one piece are closer to one another than this in clouds of 3.3 points per square meter and more (m). A piece
-# that a window cuts off is joined with its part in the next one.
+# Automatic distances are less than this (m) in clouds of 3.3 points per square meter and more. A piece that a window
+# cuts off is joined with its part in the next one.
 _REACH = 5.0
 
 
@@ -34,7 +34,7 @@ _REACH = 5.0
     group="Segmentation",
     tags="scan line,profile,slices,split and merge,region growing,segmentation,Sithole,Vosselman",
     writes=("segment_id",),
-    reach=_REACH,
+    reach=lambda tunables: max(tunables["distance"] or 0.0, tunables["max_obstacle"], _REACH),
 )
 def segment_scan_lines(
     xyz,

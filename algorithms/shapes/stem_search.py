@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.components import connect
 from ..geometry.grid import distinct, find_cells, grid_over
-from ..geometry.groups import split_groups
+from ..geometry.groups import least_of, split_groups
 from ..stage import Monitor
 from .cylinder_fits import Cylinder, fit_cylinder
 
@@ -33,8 +33,11 @@ _RADII = (0.015, 1.0)
 # Largest median distance of the points from the cylinder, as a share of its radius.
 _ROUGH = 0.2
 
-# Largest median distance of the points from thin cylinders (m).
+# Largest median distance (m) of the points from a cylinder so thin that the share of its radius is less.
 _ROUGHNESS = 0.01
+
+# Distance from the cylinder, in the median of these distances, beyond which points are of leaves and twigs.
+_FAR = 2.5
 
 # Least cosine of the lean of a stem: 37°.
 _LEAN = 0.8
@@ -50,14 +53,12 @@ def ground_level(xyz: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """
     grid = grid_over(xyz, _GROUND_CELL)
     cells, which = distinct(grid.number(xyz))
-    lowest = np.full(len(cells), np.inf)
-    np.minimum.at(lowest, which, xyz[:, 2])
+    lowest = least_of(xyz[:, 2], which, len(cells))
     around = lowest.copy()
     for step in grid.around:
         beside, known = find_cells(cells, cells + step)
         around[known] = np.minimum(around[known], lowest[beside[known]])
-    at, known = find_cells(cells, grid.number(positions))
-    return np.where(known, around[at], xyz[:, 2].min())
+    return around[find_cells(cells, grid.number(positions))[0]]
 
 
 def find_stems(xyz: np.ndarray, level: np.ndarray, monitor: Monitor) -> list[tuple[Cylinder, float]]:
@@ -94,10 +95,9 @@ def _stem(xyz: np.ndarray) -> Optional[Cylinder]:
     middle = xyz.mean(axis=0)
     radius = float(np.median(np.linalg.norm(xyz[:, :2] - middle[:2], axis=1)))
     stem = Cylinder(middle, np.array([0.0, 0.0, 1.0]), max(radius, 1e-3))
-    # Points far off the cylinder, of leaves and twigs, are left out of the next fit.
     for _ in range(3):
         off = np.abs(stem.local(xyz)[1] - stem.radius)
-        near = off <= max(2.5 * float(np.median(off)), 1e-4)
+        near = off <= max(_FAR * float(np.median(off)), 1e-4)
         if near.sum() < _LEAST_POINTS:
             return None
         stem = fit_cylinder(xyz[near], stem)

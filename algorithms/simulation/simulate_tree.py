@@ -10,10 +10,8 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..params import Seed
 from ..shapes.cylinder_fits import across_axis
+from ..shapes.stem_search import BREAST
 from ..stage import Field, Layer, LayerFeatures, Param, stage
-
-# Height (m) at which the diameter of the stem is given.
-_BREAST = 1.3
 
 # Radius of a branch where it leaves its parent (share of the radius of the parent there).
 _THINNER = 0.55
@@ -33,11 +31,17 @@ _PIECES = 12
 # Standard deviation of the turn from one piece to the next (°), about either axis.
 _TURN = 3.0
 
-# Branches of a branch.
-_OF_BRANCH = 3
+# Branches leave the stem above this share of its length, over this share of it.
+_OF_STEM = (0.3, 0.6)
+
+# Shares of the length of a branch at which its branches leave it.
+_OF_BRANCH = (0.3, 0.5, 0.7)
 
 # Length of the shortest branch that has branches (m).
 _LONG = 2.0
+
+# Standard deviation (m) of the leaves around the line of their branch, along each axis.
+_LEAF_SPREAD = 0.15
 
 # Half the side of the square of ground (m).
 _GROUND = 3.0
@@ -150,22 +154,22 @@ def simulate_tree(
 def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -> list[_Limb]:
     """Return the stem, its branches, and theirs."""
     # The radius that is asked for is that at breast height.
-    taper = 1 - (1 - _TIP) * _BREAST / height
+    taper = 1 - (1 - _TIP) * BREAST / height
     stem = _limb(np.zeros(3), np.array([0.0, 0.0, 1.0]), height, dbh / 2 / taper, 0, rng)
     limbs = [stem]
     turn = rng.uniform(0, 2 * np.pi)
     for number in range(branches):
+        share = _OF_STEM[0] + _OF_STEM[1] * (number + rng.uniform(0.2, 0.8)) / branches
         # By the golden angle no two branches are above each other.
-        share = 0.3 + 0.6 * (number + rng.uniform(0.2, 0.8)) / branches
-        limbs.append(_off(stem, share, turn + number * np.pi * (3 - np.sqrt(5)), rng))
+        limbs.append(_branch(stem, share, turn + number * np.pi * (3 - np.sqrt(5)), rng))
         if limbs[-1].length >= _LONG:
             limb = limbs[-1]
-            sides = rng.uniform(0, 2 * np.pi) + np.arange(_OF_BRANCH) * np.pi
-            limbs += [_off(limb, at, side, rng) for at, side in zip((0.3, 0.5, 0.7), sides)]
+            sides = rng.uniform(0, 2 * np.pi) + np.arange(len(_OF_BRANCH)) * np.pi
+            limbs += [_branch(limb, at, side, rng) for at, side in zip(_OF_BRANCH, sides)]
     return limbs
 
 
-def _off(parent: _Limb, share: float, turn: float, rng: np.random.Generator) -> _Limb:
+def _branch(parent: _Limb, share: float, turn: float, rng: np.random.Generator) -> _Limb:
     """Return a branch that leaves its parent at a share of its length."""
     at = share * (len(parent.line) - 1)
     first = int(at)
@@ -227,4 +231,4 @@ def _foliage(limbs: list[_Limb], count: int, rng: np.random.Generator) -> np.nda
     which = rng.integers(0, len(bearing), count)
     at = rng.integers(_PIECES // 2, _PIECES + 1, count)
     lines = np.array([limb.line for limb in bearing])
-    return lines[which, at] + rng.normal(0, 0.15, (count, 3))
+    return lines[which, at] + rng.normal(0, _LEAF_SPREAD, (count, 3))

@@ -257,7 +257,7 @@ class TextFile:
         ValueError
             If the extension is unknown.
         """
-        endings = {ending: called for called, endings in self.formats.items() for ending in endings}
+        endings = {ending: format_name for format_name, endings in self.formats.items() for ending in endings}
         for ending in sorted(endings, key=len, reverse=True):
             if file_name.lower().endswith(ending):
                 return endings[ending]
@@ -271,9 +271,9 @@ class FileContent:
     items: Collection[Any]
     write: Callable[[Collection[Any], str, MapFrame], Iterator[str]]
 
-    def pieces(self, called: str, frame: MapFrame) -> Iterator[str]:
+    def pieces(self, format_name: str, frame: MapFrame) -> Iterator[str]:
         """Return the text, in parts, in a format and for a map."""
-        return self.write(self.items, called, frame)
+        return self.write(self.items, format_name, frame)
 
 
 @dataclass(frozen=True)

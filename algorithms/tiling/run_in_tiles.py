@@ -98,7 +98,7 @@ def run_in_tiles(
     with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder) as work:
         outcome = _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
     if not outcome.failures:
-        # Windows removes no lock that is open.
+        # What the run could not remove: Windows removes no lock that is open.
         remove_work(work)
     return outcome
 
@@ -162,7 +162,7 @@ class _Run:
         """Measure how the survey is sampled and choose the side of its blocks; cut files that are too large."""
         settings = self.settings
         halo = settings.pipeline.reach(settings.tunables)
-        samplings = samplings_of(settings.pipeline, self.survey, settings.tunables, self.monitor.part(0.0, CUT))
+        samplings = samplings_of(settings.pipeline, self.survey, settings.tunables, self.monitor.part(0.0, SAMPLED))
         side = settings.options.block_side or side_of_blocks(samplings[""].density, halo)
         self.monitor.resolved(sampling=samplings[""])
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
@@ -172,9 +172,9 @@ class _Run:
     def _join(self, blocks: WorkedOn, outcome: TilesOutcome) -> dict[str, np.ndarray]:
         """Give what goes on in the next block one number, and join layers; return the features kept of each."""
         of_features = feature_numbers(self.settings.pipeline, blocks.found)
-        edges = [path for _, path in blocks.done]
+        paths = [path for _, path in blocks.done]
         blocks.numbers[:] = join_numbers(
-            blocks.done_blocks, blocks.found, lambda at: BlockResult.edges(edges[at]), of_features
+            blocks.done_blocks, blocks.found, lambda at: BlockResult.edges(paths[at]), of_features
         )
         outcome.layers, kept = self._layers(blocks, self.monitor.part(WORKED, JOINED))
         return kept
@@ -206,7 +206,7 @@ class _Run:
             shutil.rmtree(pieces, ignore_errors=True)
             pieces.mkdir()
             for done, (source, stem) in enumerate(zip(large, unique_stems(large))):
-                part = self.monitor.part(CUT, SAMPLED).part(done / len(large), (done + 1) / len(large))
+                part = self.monitor.part(SAMPLED, CUT).part(done / len(large), (done + 1) / len(large))
                 alone = self._opened([source.path])
                 cut_into_tiles(alone, side, pieces, stem, False, part)
             (pieces / key).touch()
@@ -241,7 +241,7 @@ class _Run:
             )
         todo = [number for number in range(len(blocks)) if number not in known]
         log_block = self._block_log(len(todo), self.survey.expected * len(todo) / max(1, len(blocks)))
-        wanted, part = [tasks[number] for number in todo], self.monitor.part(SAMPLED, WORKED)
+        wanted, part = [tasks[number] for number in todo], self.monitor.part(CUT, WORKED)
         results, failed = run_all(executor, work_on_block, wanted, self.settings.stop, part, log_block)
         known.update({todo[at]: path for at, path in results.items()})
         done = [(blocks[number], known[number]) for number in sorted(known)]

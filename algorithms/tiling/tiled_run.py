@@ -19,9 +19,9 @@ from .mosaics import RasterMosaic
 from .survey import Survey
 from .workers import Workers
 
-# Progress when large files are cut, the survey is sampled, blocks are worked on, and layers are joined; the rest is
+# Progress when the survey is sampled, large files are cut, blocks are worked on, and layers are joined; the rest is
 # writing.
-CUT, SAMPLED, WORKED, JOINED = 0.05, 0.1, 0.88, 0.9
+SAMPLED, CUT, WORKED, JOINED = 0.05, 0.1, 0.88, 0.9
 
 # What finds the layers that a composite is given, and what takes the rasters and text files that it makes.
 FindLayers = Callable[[Survey], dict[str, Optional[LayerFeatures]]]
