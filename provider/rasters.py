@@ -23,7 +23,7 @@ EXTENSIONS = ("tif", "tiff")
 # Value of empty cells: GDAL and most GIS programs take it for none.
 NO_DATA = -9999.0
 
-# Of GDAL's driver COG; BIGTIFF leaves TIFF where a file might pass 4 GB.
+# Options of GDAL's driver COG. With IF_SAFER files that might pass 4 GB become BigTIFF.
 _OPTIONS = (
     "COMPRESS=DEFLATE",
     "PREDICTOR=FLOATING_POINT",
@@ -61,6 +61,7 @@ def write_mosaic(raster: Raster, mosaic: RasterMosaic, place: Place, path: Path,
         _describe(image, raster, (mosaic.west, mosaic.north, mosaic.cell_size), place)
         band = image.GetRasterBand(1)
         for row, column, values in mosaic:
+            # Ends the run here if the user has cancelled it.
             monitor.progress(0.0)
             height, width = values.shape
             band.WriteRaster(column, row, width, height, _filled(values), buf_type=gdal.GDT_Float32)
@@ -118,7 +119,7 @@ class _Progress:
 
 @contextmanager
 def _errors(path: Path, progress: _Progress) -> Iterator[None]:
-    """Have GDAL raise here, whatever it does elsewhere in QGIS, and the program's own errors come of that."""
+    """Have GDAL raise errors here, whatever it does elsewhere in QGIS, and raise the program's own in their place."""
     before = gdal.GetUseExceptions()
     gdal.UseExceptions()
     try:

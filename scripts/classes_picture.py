@@ -43,6 +43,7 @@ def main(arguments: list[str]) -> None:
     is_noise = np.isin(cloud.get("classification"), NOISE)
     cloud = cloud.take(np.flatnonzero((off <= float((arguments[1:] or ["180"])[0]) / 2) & ~is_noise))
     pictures.WIDTH = WIDTH
+    # Of the scene only the view counts: its simulation is not run.
     scene = pictures.Scene(pictures.TOWN, azimuth=AZIMUTH, tilt=TILT, height=HEIGHT)
     xyz = cloud.get("xyz")
     pixels = pictures.View(xyz, scene).points(xyz, pictures.colors(cloud, "classification"), 3)

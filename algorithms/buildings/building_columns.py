@@ -76,7 +76,7 @@ class Columns:
         """Return the building (n,), int32, that each point belongs to; 0 if unassigned.
 
         Over a building these are the points up to ``clearance`` (m) above the roof, and where points above it are few,
-        those up to ``structure_height`` (m).
+        those up to ``structure_height`` (m). Beside it they are those of walls: below the roof, and of no plant.
         """
         above = points.elevation - self.top[points.cell]
         inside = points.raised & (self.building[points.cell] > 0)
@@ -92,7 +92,7 @@ class Columns:
     def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], is_above: np.ndarray) -> np.ndarray:
         """Return the cells (rows, columns) around which the points above the roof cover a small part of it."""
         occupied = np.zeros(self.building.shape)
-        occupied[tuple(of[is_above] for of in cell)] = 1
+        occupied[tuple(axis[is_above] for axis in cell)] = 1
         around = ndimage.uniform_filter(occupied, COLUMNS.around, mode="constant")
         roof = ndimage.uniform_filter((self.building > 0).astype(float), COLUMNS.around, mode="constant")
         return around < COLUMNS.sparse_share * roof

@@ -78,7 +78,7 @@ def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor)
     volume : float
         Entropy of volumes.
     monitor : Monitor
-        Receives the progress.
+        Receives warnings where the means do not separate.
 
     Returns
     -------

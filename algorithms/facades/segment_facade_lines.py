@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..geometry.groups import run_starts
+from ..geometry.groups import least_of, run_starts
 from ..geometry.polylines import simplify
 from ..neighborhoods.covariance import full_matrices
 from ..segmentation.least_squares_planes import planes_of
@@ -278,7 +278,7 @@ def _described(
     middle, of_line = (start + end) / 2, line[first[kept]]
     slope = _slopes(xyz[order], piece, kept)
     side, distance = _from_scanner(xyz[order], line, middle, of_line)
-    height = middle[:, 2] - _extreme(np.minimum, middle[:, 2], of_line)[of_line]
+    height = middle[:, 2] - least_of(middle[:, 2], of_line, int(line[-1]) + 1)[of_line]
     length = np.linalg.norm(end - start, axis=1)
     columns = {
         "id": np.arange(1, len(kept) + 1),
@@ -293,13 +293,6 @@ def _described(
     }
     columns["kind"] = [KINDS[kind] for kind in _kinds(columns, 2 * of_line + side, limits)]
     return segment_id, LayerFeatures(list(np.stack([start, end], axis=1)), columns)
-
-
-def _extreme(choose: np.ufunc, values: np.ndarray, group: np.ndarray) -> np.ndarray:
-    """Return the least or greatest of the values (m,) of each group."""
-    result = np.full(int(group.max(initial=-1)) + 1, np.inf if choose is np.minimum else -np.inf)
-    choose.at(result, group, values)
-    return result
 
 
 def _slopes(xyz: np.ndarray, piece: np.ndarray, kept: np.ndarray) -> np.ndarray:
@@ -323,11 +316,15 @@ def _from_scanner(
 
 
 def _kinds(columns: dict, side: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """Return what segments (m,) are of; ``limits`` are greatest height of ground and distance of facades (m)."""
+    """Return what segments (m,) are of.
+
+    ``side`` (m,) is the number of the side of a line that each is on. ``limits`` are greatest height of ground and
+    distance of facades (m).
+    """
     slope, height, distance, length = (columns[name] for name in ("slope", "height", "distance", "length"))
     kind = np.full(len(slope), _OTHER)
     kind[(slope <= _LEVEL) & (height <= limits[0])] = _GROUND
     steep = np.flatnonzero((slope >= _UPRIGHT) & (length >= _LEAST_FACADE))
-    farthest = _extreme(np.maximum, distance[steep], side[steep])
+    farthest = -least_of(-distance[steep], side[steep], int(side.max(initial=-1)) + 1)
     kind[steep[distance[steep] >= farthest[side[steep]] - limits[1]]] = _FACADE
     return kind

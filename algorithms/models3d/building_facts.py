@@ -96,7 +96,7 @@ WALL_FIELDS = (
 
 @dataclass(frozen=True)
 class NamedModel:
-    """A model with the name of its footprint, the rings of this (m), and what its map knows of it, if it has a key."""
+    """A model with the name of its footprint, the rings of this (m), and its attributes if an identifier was chosen."""
 
     name: str
     rings: list
@@ -160,7 +160,7 @@ def face_area(solid: Solid, face: int) -> float:
 
 def faces_of(solids: Sequence[Solid], kind: str) -> list[tuple[Solid, int]]:
     """Return the faces of one kind: roof, wall or ground."""
-    return [(solid, face) for solid in solids for face, this in enumerate(solid.kinds) if this == kind]
+    return [(solid, face) for solid in solids for face, face_kind in enumerate(solid.kinds) if face_kind == kind]
 
 
 def face_rings(solid: Solid, face: int) -> list[np.ndarray]:
@@ -288,11 +288,11 @@ def _near(azimuth: np.ndarray, way: float) -> np.ndarray:
 def _ways(azimuth: np.ndarray, area: np.ndarray) -> list[float]:
     """Return the directions (°) in which a roof slopes, the one of the largest area first."""
     ways: list[float] = []
-    left = area.copy()
-    while left.sum() > 0:
-        best = azimuth[np.argmax(left)]
-        close = _near(azimuth, best) & (left > 0)
-        if left[close].sum() >= _MINOR * area.sum():
+    remaining = area.copy()
+    while remaining.sum() > 0:
+        best = azimuth[np.argmax(remaining)]
+        close = _near(azimuth, best) & (remaining > 0)
+        if remaining[close].sum() >= _MINOR * area.sum():
             ways.append(float(best))
-        left[close] = 0
+        remaining[close] = 0
     return sorted(ways, key=lambda way: -area[_near(azimuth, way)].sum())

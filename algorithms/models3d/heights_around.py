@@ -6,9 +6,11 @@ import numpy as np
 
 from ..packages import spatial
 
-# Corners of roofs lie no more than this (m) above all points within that distance (m) in plan: ridges and eaves are
-# sampled that closely, and noise is less.
-_ABOVE, RADIUS = 0.5, 1.5
+# Distance (m) in plan within which points limit the height of a corner: ridges and eaves are sampled that closely.
+RADIUS = 1.5
+
+# Height (m) above the highest of these points up to which a corner may lie: noise is less.
+_ABOVE = 0.5
 
 
 class HeightsAround:

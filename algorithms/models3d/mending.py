@@ -16,10 +16,17 @@ from .solid_faults import faults_of
 from .solid_levels import Levels, turns_around
 from .solids import DECIMALS, ROOF, Solid
 
-# Most rounds that clear positions where too many walls meet, that give small parts and high cells another plane, and
-# that give parts with faults another plane. Parts with faults are lowered in the first half of the second, so that
-# corners that are high after it still change.
-_CLEARINGS, _ROUNDS, _MENDINGS = 60, 10, 40
+# Most rounds that clear positions where too many walls meet.
+_CLEARINGS = 60
+
+# Most rounds that give small parts and high cells another plane.
+_ROUNDS = 10
+
+# Most rounds that give parts with faults another plane.
+_MENDINGS = 40
+
+# First of these rounds, in which parts with faults are lowered: high cells still change in as many after them.
+_LOWERINGS = _ROUNDS // 2
 
 # How far (m) a part with a fault is lowered first: more than corners may be apart, and less than heights of points are
 # off. Where roofs cross, corners move along, and no longer meet an edge by chance.
@@ -27,6 +34,13 @@ _LOWERED = 0.02
 
 # Parts of a footprint with less than this share of its area are not modelled.
 _SLIVER = 0.01
+
+# What a cell that is left out of the model costs, as a multiple of its area: more than planes that explain nothing.
+_LEFT_OUT = 3.0
+
+# What any change of a cell costs besides, as a share of its area: of changes that cost as much, that of the smallest
+# cell is taken.
+_CHANGE = 0.01
 
 # Parts of a roof with less area in plan (m²), or a smaller mean width (m), join a neighbor: they are smaller than
 # dormers, and no wider than the distance of points.
@@ -84,7 +98,7 @@ def mended(
         found = [(piece, *one) for piece in pieces for one in faults_of(piece.solid).items()]
         if not found:
             return [piece.solid for piece in pieces], ""
-        if not mending.relabel([(piece, face) for piece, face, _ in found], count < _ROUNDS // 2):
+        if not mending.relabel([(piece, face) for piece, face, _ in found], count < _LOWERINGS):
             return [], found[0][2]
     return [], "no solid could be made"
 
@@ -164,23 +178,27 @@ def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarra
             changed[position] = label
             if label == own or turns_around([height[k] for k in changed]) > 2:
                 continue
-            loss = 3 * area if label < 0 else float(partition.cost[cell, label] - partition.cost[cell, own])
+            loss = _LEFT_OUT * area if label < 0 else float(partition.cost[cell, label] - partition.cost[cell, own])
             is_high = label >= 0 and bool((planes[label, :2] @ corners.T + planes[label, 2] > limit).any())
-            if best is None or (is_high, loss + 0.01 * area, cell, label) < best:
-                best = is_high, loss + 0.01 * area, cell, label
+            change = is_high, loss + _CHANGE * area, cell, label
+            if best is None or change < best:
+                best = change
     if best is not None:
         partition.label[best[2]] = best[3]
     return best is not None
 
 
 class _Mending:
-    """Gives parts of a partition other planes."""
+    """Gives parts of a partition other planes.
+
+    ``own`` are planes made for one part, level or fitted to it; ``lowered`` are planes a little below another one.
+    """
 
     def __init__(
         self, partition: Partition, xyz: np.ndarray, limits: Optional[HeightsAround], percentile: float
     ) -> None:
         self.partition, self.xyz, self.limits, self.percentile = partition, xyz, limits, percentile
-        self.level: set[int] = set()
+        self.own: set[int] = set()
         self.lowered: set[int] = set()
         self._measure()
 
@@ -323,7 +341,7 @@ class _Mending:
                     self.lowered.add(self._add_plane(part, self.partition.coefficients[own] - [0.0, 0.0, _LOWERED]))
                     is_changed = True
                 else:
-                    is_changed |= self._take(part, self._neighbors(part), own not in self.level)
+                    is_changed |= self._take(part, self._neighbors(part), own not in self.own)
         return is_changed
 
     def _neighbors(self, part: np.ndarray) -> list[int]:
@@ -348,7 +366,7 @@ class _Mending:
         corners = np.unique(np.concatenate([self.loops[cell] for cell in part]))
         options = [(plane, partition.coefficients[plane]) for plane in planes]
         new = len(partition.coefficients)
-        if may_be_level and (turned is not None or own not in self.level):
+        if may_be_level and (turned is not None or own not in self.own):
             options.append((new, self._level_plane(rows, corners, own)))
         if turned is not None:
             options.append((new, turned))
@@ -364,7 +382,7 @@ class _Mending:
 
         best, coefficients = min(options, key=loss)
         if best == new:
-            self.level.add(self._add_plane(part, coefficients))
+            self.own.add(self._add_plane(part, coefficients))
         else:
             partition.label[part] = best
         return best != own

@@ -139,14 +139,14 @@ def detect_cylinders(
     (1, 0.5)
     """
 
-    def search(around: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[Found]:
+    def search(measured: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[Found]:
         # Segments are searched apart; the surroundings of a cylinder, and other pieces of it, lie in several.
-        positions = around.xyz - np.column_stack([around.shift, np.zeros((len(around.shift), 2))])
-        evidence = Evidence(around.noise, around.tolerance, around.spacing, positions)
-        search = CylinderSearch(around.xyz, around.normals, around.shift, evidence, min_seen, min_points)
-        apart = [one.moved(-around.shift[one.points[0]]) for one in search.find(low, high, monitor)]
+        positions = measured.xyz - np.column_stack([measured.shift, np.zeros((len(measured.shift), 2))])
+        evidence = Evidence(measured.noise, measured.tolerance, measured.spacing, positions)
+        search = CylinderSearch(measured.xyz, measured.normals, measured.shift, evidence, min_seen, min_points)
+        apart = [one.moved(-measured.shift[one.points[0]]) for one in search.find(low, high, monitor)]
         apart = without_nested(apart)
-        return joined(apart, positions, around.noise, around.spacing, max_gap)
+        return joined(apart, positions, measured.noise, measured.spacing, max_gap)
 
     tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors, search_in)
     found = search_shapes((xyz, classification, segment_id, shape), Shape.CYLINDER, search, tunables, sampling, monitor)

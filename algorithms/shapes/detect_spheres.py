@@ -11,7 +11,7 @@ from .searched_points import WHOLE_CLOUD, MeasuredPoints, SearchIn, SearchTunabl
 from .sphere_search import LEAST_POINTS, FoundSphere, SphereSearch
 from .surface_normals import NormalPoints
 
-METHODS = ("center first", "four dimensions")
+CENTER_FIRST, _FOUR_DIMENSIONS = METHODS = ("center first", "four dimensions")
 
 _FIELDS = (
     Field("id", int, "number of the sphere, as SegmentID of its points", numbers="segment_id"),
@@ -44,7 +44,7 @@ def detect_spheres(
             "dimensions, they vote for both together, which takes more memory.",
             choices=METHODS,
         ),
-    ] = "center first",
+    ] = CENTER_FIRST,
     min_radius: MinRadius = None,
     max_radius: MaxRadius = None,
     tolerance: ShapeTolerance = None,
@@ -120,9 +120,15 @@ def detect_spheres(
     (1, 1.0)
     """
 
-    def search(around: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:
+    def search(measured: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:
         return SphereSearch(
-            around.xyz, around.normals, around.noise, around.tolerance, min_seen, min_points, method == METHODS[0]
+            measured.xyz,
+            measured.normals,
+            measured.noise,
+            measured.tolerance,
+            min_seen,
+            min_points,
+            method == CENTER_FIRST,
         ).find(low, high, monitor)
 
     tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors, search_in)

@@ -13,7 +13,7 @@ from .drone_site import build_site
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
 from .scene import footprint_layer
-from .town_layout import TownPlan
+from .town_layout import MAX_BUILDINGS, TownPlan
 
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
@@ -57,7 +57,7 @@ def simulate_drone_site(
         float, Param("Height of terraces", "Rise of steps in the slope.", unit="m", low=0, high=3)
     ] = 1.5,
     buildings: Annotated[
-        float, Param("Buildings", "Houses on a hectare of streets and plots.", unit="per ha", low=0, high=34)
+        float, Param("Buildings", "Houses on a hectare of streets and plots.", unit="per ha", low=0, high=MAX_BUILDINGS)
     ] = 16.0,
     trees: Annotated[float, Param("Trees", "Trees in gardens.", unit="per ha", low=0, high=200)] = 30.0,
     halls: Annotated[

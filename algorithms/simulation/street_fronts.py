@@ -47,10 +47,22 @@ _AXIS = 2.4
 _MARGIN = 0.5
 
 # Depth of recesses and bays (m).
-_STEP = 1.2
+_RECESS = 1.2
 
 # Depth of balconies (m).
 _BALCONY = 1.1
+
+# Half the width of balconies (m).
+_HALF_BALCONY = 1.4
+
+# Thickness of the floors of balconies (m).
+_SLAB = 0.15
+
+# Thickness of panes, doors and parapets (m).
+_THIN = 0.05
+
+# Least height of the wall over a window (m).
+_LINTEL = 0.3
 
 # Height of the parapets of balconies (m).
 _PARAPET = 1.0
@@ -174,20 +186,19 @@ class Front:
         line, kind = self.line, self.kind
         top = float(scene.relief.plane(*line.start)) + self.height + self.raised
         for part, is_front in _parts(line, kind):
-            has_openings = is_front and part.length > 1.8
-            _Wall(scene, truth, part).build(top, kind, self.raised, has_openings)
+            _Wall(scene, truth, part).build(top, kind, self.raised, is_front)
         if kind == "balconies":
             _Wall(scene, truth, line).hang_balconies(top, self.height)
 
     def build_house(self, scene: Scene, truth: Truth, pitch: float) -> None:
-        """Put a house behind a straight front: its other walls and a gable roof (°).
+        """Put a house behind a straight front: its other walls and a gable roof of a ``pitch`` (°).
 
         The roof is flush with the walls; its ridge runs along the street, and it goes on over a recess.
         """
         line, kind, walls = self.line, self.kind, _Wall(scene, truth, self.line)
         ground = float(scene.relief.plane(*line.start))
         top, across, number = ground + (self.height + self.raised), (0.0, line.length), scene.new_id()
-        inner = _STEP + _WALL if kind == "recess" else _WALL
+        inner = _RECESS + _WALL if kind == "recess" else _WALL
         sides = [((end, end + _WALL), (_WALL, inner)) for end in (0.0, line.length - _WALL)]
         for along, inward in [(across, (inner, _DEPTH)), *sides]:
             walls.put(along, inward, ground - 2 * _BELOW, top, number)
@@ -197,10 +208,10 @@ class Front:
         third, front = line.length / 3, [(0.0, 0.0)]
         if kind == "bay":
             # Between its walls: a beam never meets two faces at once.
-            lid = (third + _WALL, 2 * third - _WALL), (_WALL - _STEP, 0.0)
+            lid = (third + _WALL, 2 * third - _WALL), (_WALL - _RECESS, 0.0)
             walls.put(*lid, top - _LID, top, number)
         if kind in ("bay", "recess"):
-            off = _STEP if kind == "recess" else -_STEP
+            off = _RECESS if kind == "recess" else -_RECESS
             front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]
         corners = [*front, (line.length, 0.0), (line.length, _DEPTH), (0.0, _DEPTH), (0.0, 0.0)]
         truth.houses.append(np.array([(*line.at(*corner), ground) for corner in corners]))
@@ -210,7 +221,7 @@ class Front:
 
 def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
     """Return the walls of a front in order, and whether each runs along the street."""
-    third, step = line.length / 3, _STEP
+    third, step = line.length / 3, _RECESS
     if kind in ("recess", "bay"):
         inward = step if kind == "recess" else -step
         corners = [(0, 0), (third, 0), (third, inward), (2 * third, inward), (2 * third, 0), (3 * third, 0)]
@@ -272,7 +283,7 @@ class _Wall:
             self.put(along, (0.0, _WALL), below, low, own)
             self._build_opening(along, (low, high), "window", facade)
             below = high
-        while level + _SILL + _WINDOW[1] + 0.3 < top:
+        while level + _SILL + _WINDOW[1] + _LINTEL < top:
             is_door = has_door and level == floor
             low, high = (level + _SILL, level + _SILL + _WINDOW[1])
             if is_door:
@@ -303,7 +314,7 @@ class _Wall:
         truth.opening_of |= {pane: number, frame: number}
         if kind == "window":
             truth.glass.add(pane)
-        self.put(along, (_PANE, _PANE + 0.05), low, high, pane)
+        self.put(along, (_PANE, _PANE + _THIN), low, high, pane)
         inward, width = (_FRAME, _PANE), _FRAME_WIDTH
         for side in ((start, start + width), (end - width, end)):
             self.put(side, inward, low, high, frame)
@@ -318,10 +329,11 @@ class _Wall:
     def hang_balconies(self, top: float, height: float) -> None:
         """Put a balcony before the middle axis of each upper storey."""
         middle, floor = self.line.length / 2, top - height
+        # The uppermost storey may be up to half a meter lower than the others.
         for level in np.arange(floor + _STOREY, top - _STOREY + 0.5, _STOREY):
-            number, along = self.scene.new_id(), (middle - 1.4, middle + 1.4)
-            self.put(along, (-_BALCONY, 0.0), level - 0.15, level, number)
-            self.put(along, (-_BALCONY, -_BALCONY + 0.05), level, level + _PARAPET, number)
+            number, along = self.scene.new_id(), (middle - _HALF_BALCONY, middle + _HALF_BALCONY)
+            self.put(along, (-_BALCONY, 0.0), level - _SLAB, level, number)
+            self.put(along, (-_BALCONY, -_BALCONY + _THIN), level, level + _PARAPET, number)
 
 
 def _axes(length: float) -> list[_Span]:

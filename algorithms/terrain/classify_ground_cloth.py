@@ -116,15 +116,15 @@ def classify_ground_cloth(
     Notes
     -----
     Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In
-    each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no
-    particle moves by 5 mm. All returns are used: in woods where pulses pass through the leaves, 'Classify ground points
-    (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other, particles
-    without a point, and from where the cloth falls. These and the defaults are as in the program that its authors
-    published, with three differences. Of two points equally near to a particle the lower is taken, where the program
-    takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud are
-    let down as all others are, where the program leaves some of them out. Particles more than ``_FARTHEST_BY_LINKS``
-    grid cells from any point, with none in their row and column, take the height of the nearest point, where the
-    program searches on over the links.
+    each step neighbors draw each other to a common height, the more often the more rigid the cloth is. The simulation
+    ends when no particle moves by 5 mm. All returns are used: in woods where pulses pass through the leaves, 'Classify
+    ground points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other,
+    particles without a point, and from where the cloth falls. These and the defaults are as in the program that its
+    authors published, with three differences. Of two points equally near to a particle the lower is taken, where the
+    program takes the first in the file, so that the order of points has no influence. Particles at the corners of the
+    cloud are let down as all others are, where the program leaves some of them out. Particles more than
+    ``_FARTHEST_BY_LINKS`` grid cells from any point, with none in their row and column, take the height of the nearest
+    point, where the program searches on over the links.
 
     References
     ----------

@@ -100,7 +100,7 @@ def find_free_standing(
     surface : ndarray of shape (rows, columns), float64
         Lowest elevation of each cell, m; NaN beyond the end of the cloud.
     cell_size : float
-        m.
+        Side of a cell, m.
     usual : float
         Shorter side (m) up to which low steps will do.
     largest : float
@@ -122,8 +122,8 @@ def find_free_standing(
     Notes
     -----
     Segments wider than usual buildings are examined more closely: parts of a hall are judged together, and undecided
-    rough cells on its roof belong to it. Of smaller segments windows see the whole, unless the end of the cloud cuts
-    them off: the more of one is cut off, the higher its walls must be.
+    rough cells on its roof belong to it. The windows of the ground filter see smaller segments whole, unless the end of
+    the cloud cuts them off: the more of one is cut off, the higher its walls must be.
 
     Segments at the walls of free-standing ones are judged by the rest of their edge. Their steps have to be as high as
     the lowest roof on the mean: wings are, and terraces below a house or below one another are not.
@@ -139,8 +139,8 @@ def find_free_standing(
     segments = _measured(surface, number)
     is_free = _are_free_standing(segments, least, usual_cells, largest_cells, low_uphill)
     monitor.progress(0.5)
-    # Neither half of a hall that a row of skylights cuts in two is free-standing while the other is not, nor is a hall
-    # beside a wing that is hardly lower. Windows don't see the whole of a smaller one that the cloud's end cuts off.
+    # Half a hall that skylights cut in two is not free-standing by itself, nor is a hall beside a wing that is hardly
+    # lower. Of a smaller one that the end of the cloud cuts off, the windows of the ground filter don't see the whole.
     hall = _reunited(segments, is_free, least)
     is_hall = (_box_sides(hall).min(axis=0) > usual_cells) | (_ends(surface, hall, hall.max() + 1) > 0)
     in_hall = is_hall[hall] & (hall > 0)
@@ -198,11 +198,11 @@ def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.n
     # The outline of its box is no longer for a jagged edge, nor for other segments inside.
     outline = np.minimum(lengths.whole + segments.ends, 2 * segments.sides.sum(axis=0))
     # The more the end of the cloud cuts off, the higher the walls: four times as high where half of it is left.
-    left = np.maximum(outline - segments.ends, 1)
-    high = segments.edges.lengths(is_free, np.maximum(least_step, least * (outline / left) ** 2))
-    # Machines are part of the edge, but not of the outline, of which the end of the cloud takes its share.
+    remaining = np.maximum(outline - segments.ends, 1)
+    high = segments.edges.lengths(is_free, np.maximum(least_step, least * (outline / remaining) ** 2))
+    # Enough must be open of the whole edge, machines included, and of the outline, the end of the cloud included.
     is_seen = lengths.open >= FREE.open_edge * lengths.whole
-    is_seen &= np.minimum(lengths.open, left) >= FREE.open_edge * outline
+    is_seen &= np.minimum(lengths.open, remaining) >= FREE.open_edge * outline
     is_high = (lengths.down > 0) & (high.down >= FREE.most * lengths.down)
     return is_seen & is_high & (lengths.down >= FREE.free_edge * lengths.open)
 
@@ -215,7 +215,8 @@ def smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
     segment, _ = ndimage.label(~beside)
     small = np.bincount(segment.ravel()) < FREE.least_cells
     segment[small[segment]] = 0
-    # The cells at a step go to the segment beside them from which they differ least.
+    # The cells at a step go to the segment beside them from which they differ least; in a second
+    # round, cells that were only beside such cells.
     for _ in range(2):
         best = np.full(surface.shape, least)
         grown = segment.copy()
