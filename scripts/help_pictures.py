@@ -250,6 +250,7 @@ class View:
         up = np.cos(tilt) * away + np.sin(tilt) * np.array([0.0, 0.0, 1.0])
         self._axes = np.stack([right, -up, np.sin(tilt) * away - np.cos(tilt) * np.array([0.0, 0.0, 1.0])])
         seen = xyz @ self._axes[:2].T
+        # Stray points may lie outside.
         self._low, high = np.percentile(seen, 0.02, axis=0), np.percentile(seen, 99.98, axis=0)
         self._scale = WIDTH * (1 - 2 * MARGIN) / (high[0] - self._low[0])
         self._scale = min(self._scale, scene.height * (1 - 2 * MARGIN) / (high[1] - self._low[1]))

@@ -189,6 +189,7 @@ def _opening(
     min_size: float,
 ) -> Optional[Opening]:
     """Return the opening that points behind a wall show, None where they show none."""
+    # Too few or too close together, even if its sides move outward to the edges of the wall.
     if len(behind) < 4 or (np.ptp(behind[:, :2], axis=0) < min_size / 2).any():
         return None
     spacing = facade.spacing

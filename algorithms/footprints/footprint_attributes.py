@@ -127,10 +127,11 @@ def footprint_attributes(
     """
     if not outlines:
         return []
-    owners = _Owners(outlines, measures.plan(members), spacing)
+    plan_of_all = measures.plan(members)
+    owners = _Owners(outlines, plan_of_all, spacing)
     plan, over_ground = measures.plan(points), measures.over_ground(points)
     own = split_groups(owners.at(plan), len(outlines))
-    all_own = split_groups(owners.at(measures.plan(members)), len(outlines))
+    all_own = split_groups(owners.at(plan_of_all), len(outlines))
     attributes = []
     for face, (outlined, roof, rows) in enumerate(zip(outlines, own, all_own)):
         area = sum(map(signed_area, outlined.rings))

@@ -122,6 +122,7 @@ class Surroundings:
         # Wires are lines; a strip of half their width beside a line on a surface has half as many points as the line.
         beside = is_level & (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside)
         sheet = max((beside & is_left).sum(), (beside & ~is_left).sum())
+        # Points nearer than twice the tolerance may be of the wire itself.
         below = inside & (aside <= 2 * RULES.aside) & (above < -2 * self.off) & (above > -RULES.below)
         length = span.end - span.start
         occupied = len(np.unique(np.floor(along[below]))) + self._beside_buildings(span)

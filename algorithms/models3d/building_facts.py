@@ -273,6 +273,7 @@ def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
         return "shed"
     opposite = any(abs((ways[0] - way) % 360 - 180) < _SAME_WAY for way in ways[1:])
     if len(ways) == 2 and opposite:
+        # A mansard roof has two slopes each way.
         steep = max(np.ptp(slope[sloping][_near(azimuth[sloping], way)]) for way in ways)
         return "mansard" if steep > _MANSARD and sloping.sum() >= 4 else "gable"
     # A hipped roof has one face each way, unless all ways have large ones: not those of dormers.

@@ -15,8 +15,26 @@ _CLUMP_SHARE = 0.4
 # Trees of a clump.
 _CLUMP_SIZE = 4
 
+# Standard deviation of the trees of a clump around its middle, along each axis (m).
+_CLUMP_SPREAD = 2.5
+
 # Distance between the trees of the forest (m).
 _FOREST_SPACING = 4.5
+
+# Largest displacement of a tree of the forest along each axis, in these distances.
+_DISPLACED = 0.35
+
+# Shares of the positions in the forest that have a tree, and that have a bush: some have both.
+_WITH_TREE, _WITH_BUSH = 0.9, 0.3
+
+# Share of the trees that are conifers.
+_CONIFERS = 0.3
+
+# Least distance of plants from buildings (m).
+_FROM_BUILDINGS = 1.5
+
+# Times that positions for all trees are drawn: a town that is all houses or all forest has no room for them.
+_DRAWS = 20
 
 # Least and greatest height of trees in gardens (m).
 _GARDEN_TREES = (5.0, 16.0)
@@ -44,7 +62,7 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     n_alone = n_trees - round(_CLUMP_SHARE * n_trees) // _CLUMP_SIZE * _CLUMP_SIZE
     open_ground = _open_positions(scene, n_alone, forest, rng)
     clumps = _open_positions(scene, (n_trees - n_alone) // _CLUMP_SIZE, forest, rng)
-    clumps = np.repeat(clumps, _CLUMP_SIZE, axis=0) + rng.normal(0.0, 2.5, (len(clumps) * _CLUMP_SIZE, 2))
+    clumps = np.repeat(clumps, _CLUMP_SIZE, axis=0) + rng.normal(0.0, _CLUMP_SPREAD, (len(clumps) * _CLUMP_SIZE, 2))
     clumps = clumps[_is_free(scene, clumps)]
     feet = _feet(scene, np.concatenate([open_ground, clumps]))
     for i, foot in enumerate(feet):
@@ -65,14 +83,14 @@ def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor:
     """Plant trees and bushes over a share of the scene, one about every few meters where there is room."""
     steps = np.arange(_FOREST_SPACING / 2, scene.size, _FOREST_SPACING)
     positions = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
-    positions = positions + rng.uniform(-0.35, 0.35, positions.shape) * _FOREST_SPACING
+    positions = positions + rng.uniform(-_DISPLACED, _DISPLACED, positions.shape) * _FOREST_SPACING
     positions = positions[in_forest(scene, positions, share) & _is_free(scene, positions)]
     feet = _feet(scene, positions)
     for i, foot in enumerate(feet):
         kind = rng.random()
-        if kind < 0.9:
+        if kind < _WITH_TREE:
             plant_tree(scene, foot, rng.uniform(*_FOREST_TREES), rng)
-        if kind > 0.7:
+        if kind > 1 - _WITH_BUSH:
             _plant_bush(scene, foot, rng)
         monitor.progress(i / len(feet))
 
@@ -85,8 +103,7 @@ def _feet(scene: Scene, positions: np.ndarray) -> list[tuple[float, float, float
 def _open_positions(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
     """Return up to ``count`` random positions (m) where a tree can grow outside the forest."""
     positions = np.zeros((0, 2))
-    # A town that is all houses or all forest has no room: it then stays at what these tries found.
-    for _ in range(20):
+    for _ in range(_DRAWS):
         tries = rng.uniform(0.0, scene.size, (count, 2))
         free = _is_free(scene, tries) & ~in_forest(scene, tries, forest)
         positions = np.concatenate([positions, tries[free]])[:count]
@@ -97,7 +114,7 @@ def _open_positions(scene: Scene, count: int, forest: float, rng: np.random.Gene
 
 def _is_free(scene: Scene, positions: np.ndarray) -> np.ndarray:
     inside = ((positions > 0) & (positions < scene.size)).all(axis=1)
-    return inside & ~scene.near_building(positions, 1.5) & ~scene.near_water(*positions.T)
+    return inside & ~scene.near_building(positions, _FROM_BUILDINGS) & ~scene.near_water(*positions.T)
 
 
 def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:
@@ -116,7 +133,7 @@ def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rn
     """
     x, y, ground = foot
     number = scene.new_id()
-    if rng.random() < 0.3:
+    if rng.random() < _CONIFERS:
         _conifer(scene, foot, height, number, rng)
     else:
         _broadleaf(scene, foot, height, number, rng)

@@ -25,6 +25,15 @@ _STREET_WIDTH = 8.0
 # Length along the street and depth of a plot (m).
 _PLOT = (14.0, 16.0)
 
+# Distance that plots and poles keep from the edges of the town (m).
+_EDGE = 1.0
+
+# Distance that plots keep from the forest (m).
+_FROM_FOREST = 3.0
+
+# Shares of the plots that have a car before them, and a hedge or a wall at one side.
+_WITH_CAR, _WITH_HEDGE, _WITH_WALL = 0.5, 0.3, 0.2
+
 # Plots of a block along the street, between two side streets.
 _PLOTS_PER_BLOCK = 6
 
@@ -99,8 +108,8 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
         plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
         on_river = relief.river is not None and abs(across - relief.river) < VALLEY + _PLOT[0] / 2
         corners = plot.corners()
-        inside = corners.min() > 1.0 and corners.max() < scene.size - 1.0
-        if inside and not on_river and not in_forest(scene, plot.corners(3.0), forest).any():
+        inside = corners.min() > _EDGE and corners.max() < scene.size - _EDGE
+        if inside and not on_river and not in_forest(scene, plot.corners(_FROM_FOREST), forest).any():
             found.append(plot)
     return found
 
@@ -139,11 +148,11 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor:
     is_free = ~scene.near_building(corners, 0.2).reshape(-1, 4).any(axis=1)
     for i, (plot, line, free) in enumerate(zip(plots, lines, is_free)):
         car, border, position = rng.random(3)
-        if car < 0.5:
+        if car < _WITH_CAR:
             park_car(scene, plot.part(8.0 * position - 4.0, -plot.width / 2 - 1.4, *CAR))
-        if free and border < 0.3:
+        if free and border < _WITH_HEDGE:
             plant_hedge(scene, line, 1.7)
-        elif free and border < 0.5:
+        elif free and border < _WITH_HEDGE + _WITH_WALL:
             wall = Rect(line.x, line.y, line.length, 0.3, line.angle)
             scene.solids.append(_follow_ground(scene, wall, 2.0, scene.new_id()))
         monitor.progress(i / len(plots))
@@ -177,7 +186,7 @@ def _string_wires(scene: Scene) -> None:
     across = np.arange(-scene.size, scene.size, span)
     x, y = relief.frame.at(across, along)
     # No pole is in the bed of the river.
-    inside = (np.minimum(x, y) > 1.0) & (np.maximum(x, y) < scene.size - 1.0) & ~scene.near_water(x, y)
+    inside = (np.minimum(x, y) > _EDGE) & (np.maximum(x, y) < scene.size - _EDGE) & ~scene.near_water(x, y)
     feet = np.column_stack([x, y, relief.ground(x, y)])[inside]
     for foot in feet:
         pole = Rect(float(foot[0]), float(foot[1]), 0.3, 0.3, relief.angle)
