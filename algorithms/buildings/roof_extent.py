@@ -35,9 +35,6 @@ class VehicleRules:
 
 IMAGE_ROOFS, VEHICLES = ImageRoofRules(), VehicleRules()
 
-# Percentile of the heights of an object that counts as its height.
-_TOP = 90
-
 # Directions (radians) that the smallest rectangle around an object is looked for in.
 _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 
@@ -132,7 +129,8 @@ class RoofExtent:
         cell = self.surface.size
         width, length = smallest_rectangle(inside, cell)
         has_length = VEHICLES.least_length - cell <= length <= VEHICLES.most_length + cell
-        is_low = float(np.percentile(height, _TOP)) <= VEHICLES.height
+        # A tenth of its points may be higher, such as those of wires and branches above.
+        is_low = float(np.percentile(height, 90)) <= VEHICLES.height
         return bool(width <= VEHICLES.width + cell and has_length and is_low)
 
     def _small_holes(self, closed: np.ndarray, gap: float) -> np.ndarray:

@@ -9,19 +9,16 @@ import numpy as np
 from ..geometry.grid import Grid
 from ..packages import spatial
 
-# Automatic height of the bins in point spacings: higher bins keep the few points of a roof on a thin cloud together.
-_BIN_SPACINGS = 2.0
-
-# Least automatic height of the bins (m): in a third of a storey a roof has many points.
-_LEAST_BIN = 1.0
-
-# Automatic height of the bins in words, for the help.
-AUTOMATIC_BIN = f"{_BIN_SPACINGS:g} times the point spacing, at least {_LEAST_BIN:g} m."
+# Automatic height of the bins, for the help.
+AUTOMATIC_BIN = "twice the point spacing, at least 1 m."
 
 
 def automatic_bin_height(spacing: float) -> float:
-    """Return the height of bins (m) on a cloud of a point ``spacing`` (m)."""
-    return max(_LEAST_BIN, _BIN_SPACINGS * spacing)
+    """Return the height of bins (m) on a cloud of a point ``spacing`` (m).
+
+    In a third of a storey a roof has many points. On a thin cloud it has few, which higher bins keep together.
+    """
+    return max(1.0, 2 * spacing)
 
 
 @dataclass(frozen=True)

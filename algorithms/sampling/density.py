@@ -31,12 +31,6 @@ class DensityRules:
 
 DENSITY = DensityRules()
 
-# Most rounds of the search for the density, more than it takes.
-_MOST_ROUNDS = 20
-
-# Change of the density, as a share of it, that ends the search: thresholds hardly depend on less.
-_CHANGE = 0.01
-
 
 def point_density(xyz: np.ndarray) -> float:
     """Return the points per square meter of the area that the points occupy in plan.
@@ -70,11 +64,12 @@ def point_density(xyz: np.ndarray) -> float:
             f"The cloud has no extent in plan (points: {len(xyz)}), so it has no density; choose a larger cloud."
         )
     density = len(xyz) / area
-    for _ in range(_MOST_ROUNDS):
+    # It ends when the density changes by less than a hundredth, in a few rounds.
+    for _ in range(20):
         size = max(float(np.sqrt(DENSITY.points_per_cell / density)), LEAST_RESOLUTION)
         occupied = len(distinct(grid_over(xyz, size).number(xyz))[0])
         found = len(xyz) / (occupied * size * size)
-        if abs(found - density) < _CHANGE * density:
+        if abs(found - density) < 0.01 * density:
             break
         density = float(np.sqrt(found * density))
     return found

@@ -100,11 +100,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Bin height (m)&lt;/b&gt;: Height of the bins. Automatic: 2 times the point spacing, at least 1 m. &lt;i&gt;(at least 0.01 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Bin height (m)&lt;/b&gt;: Height of the bins. Automatic: twice the point spacing, at least 1 m. &lt;i&gt;(at least 0.01 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Bin height (m)&lt;/b&gt;: Height of the bins; noise is parted from the scene by at least two empty ones. Automatic: 2 times the point spacing, at least 1 m. &lt;i&gt;(at least 0.01 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Bin height (m)&lt;/b&gt;: Height of the bins; noise is parted from the scene by at least two empty ones. Automatic: twice the point spacing, at least 1 m. &lt;i&gt;(at least 0.01 m and at most 1,000 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3724,10 +3724,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 2 times the point spacing, at least 1 m.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Automatic: 2 times the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3949,6 +3945,10 @@
     </message>
     <message>
         <source>Automatic: twice the grid cell size.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Automatic: twice the point spacing, at least 1 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
