@@ -9,7 +9,7 @@ import numpy as np
 from .cheapest_labels import cheapest_cut
 
 # Lines are moved by up to this distance (m) where three of them meet in one point to within rounding.
-_NUDGE = 1e-6
+NUDGE = 1e-6
 
 # Distance from a side of the rectangle, as a share of its coordinate (m) plus 1, at which ends of lines are on it.
 _ON_SIDE = 1e-6
@@ -66,7 +66,7 @@ class Arrangement:
         low, high, rng = np.asarray(low, float), np.asarray(high, float), np.random.default_rng(0)
         self._build(low, high)
         while not self._fits():
-            self.points = self.points + rng.uniform(-_NUDGE, _NUDGE, self.points.shape)
+            self.points = self.points + rng.uniform(-NUDGE, NUDGE, self.points.shape)
             self._build(low, high)
 
     def _build(self, low: np.ndarray, high: np.ndarray) -> None:

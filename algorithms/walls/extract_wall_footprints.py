@@ -9,9 +9,11 @@ from typing import Annotated, Any, Optional
 
 import numpy as np
 
+from ..geometry.disjoint_polygons import divide_overlap
 from ..geometry.grid import SparsePointsError
 from ..geometry.groups import members
 from ..geometry.line_segments import is_inside
+from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.rings import perimeter, signed_area
 from ..params import MinBuildingArea, Seed
 from ..sampling.cloud_sampling import CloudSampling
@@ -23,7 +25,7 @@ from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candid
 from .cheapest_outline import Limits
 from .roof_outline import RoofOutline, outline_roof
 from .surroundings import Surroundings
-from .wall_edges import SEEN, WallEdge, closed
+from .wall_edges import SEEN, WallEdge, closed, edge_between, points_near
 from .wall_lines import WallLine
 from .wall_outline import WallOutline, outline_walls, share_seen
 from .wall_report import MEASURES, WALL, point_counts, wall_report
@@ -202,6 +204,9 @@ def extract_wall_footprints(
     least half of each must be seen, and the smallest building or more lie behind both. The line halfway between the
     walls parts the roof. Passages under one roof are parted in the same way.
 
+    Houses are outlined one by one. What two outlines share stays in the footprint with more roof points there, so that
+    no two overlap.
+
     Parts deeper under a roof than it juts out over the other walls count as inside: loggias, porches. Sides
     without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
     them. The result depends on the seed, and not on the order of points. A building whose points are spread so thinly
@@ -234,25 +239,25 @@ def extract_wall_footprints(
         tolerance = min(max(_ON_WALL * sampling.roughness, _LEAST_TOLERANCE), _MOST_TOLERANCE)
         monitor.resolved(tolerance=tolerance)
     limits = Limits(tolerance, min_length, max_overhang)
+    outlined: list[_Outlined] = []
     for done, building in enumerate(buildings):
         part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
         try:
-            houses = [
-                (house, outline, *_parts_of(house, outline, limits, min_seen, min_area, part))
+            outlined += [
+                _outlined(house, outline, limits, min_seen, min_area, part)
                 for house, outline in _houses(building, limits, min_area, seed, part)
             ]
         except SparsePointsError as error:
             monitor.warn(f"Building {building.number} has no footprint. {error}")
-            continue
-        for house, outline, used, parts in houses:
-            for rings in parts:
-                footprints.append(_footprint(rings, house, used, height_above_ground))
-                edges += _edges(rings, len(footprints), house.origin)
-            if outline is not None:
-                rejected = ROOF_OUTLINE if used is None else "" if parts else TOO_SMALL
-                kept = replace(outline, rings=[ring for rings in parts for ring in rings])
-                corners += _corners(candidate_corners(kept, rejected), house)
         part.progress(1.0)
+    for one, parts in zip(outlined, _disjoint_parts(outlined, min_area)):
+        for rings in parts:
+            footprints.append(_footprint(rings, one.house, one.used, height_above_ground))
+            edges += _edges(rings, len(footprints), one.house.origin)
+        if one.outline is not None:
+            rejected = ROOF_OUTLINE if one.used is None else "" if parts else TOO_SMALL
+            kept = replace(one.outline, rings=[ring for rings in parts for ring in rings])
+            corners += _corners(candidate_corners(kept, rejected), one.house)
     monitor.progress(1.0)
     layers = zip((footprints, edges, corners), (_FIELDS, _EDGE_FIELDS, _CORNER_FIELDS))
     made = [LayerFeatures.numbered(features, fields) for features, fields in layers]
@@ -261,13 +266,61 @@ def extract_wall_footprints(
     return *made, wall_report(counts, made[0].columns["source"], made[2].columns["outcome"])
 
 
-def _parts_of(
+@dataclass(frozen=True)
+class _Outlined:
+    """A house with its outline."""
+
+    house: _Building
+    outline: Optional[WallOutline]  #: Outline of its walls, None where there are too few
+    used: Optional[WallOutline]  #: The same where enough of it was seen
+    parts: list[list[list[WallEdge]]]  #: Rings of each part, of walls or of the roof
+
+    def redrawn(self, rings: list[np.ndarray]) -> list[list[list[WallEdge]]]:
+        """Return the parts within other rings (k, 2), m, with what is seen of their edges."""
+        plan = [ring - self.house.origin for ring in rings]
+        return _parts([[self._edge(start, end) for start, end in zip(ring, ring[1:])] for ring in plan])
+
+    def _edge(self, start: np.ndarray, end: np.ndarray) -> WallEdge:
+        """Return an edge with the wall points along it, none for outlines of roofs."""
+        if self.used is None:
+            return _bare_edge(start, end)
+        walls, scale = self.house.walls, self.used.scale
+        direction = (end - start) / np.hypot(*(end - start))
+        line = WallLine(start, direction, np.arange(len(walls)), np.zeros(0), np.nan)
+        return edge_between(start, end, line, points_near(walls, line, scale), scale)
+
+
+def _outlined(
     house: _Building, outline: Optional[WallOutline], limits: Limits, min_seen: float, min_area: float, monitor: Monitor
-) -> tuple[Optional[WallOutline], list]:
-    """Return the outline of walls, None where too little of them was seen, and the rings of each part of a house."""
+) -> _Outlined:
+    """Return a house with the outline of its walls, or of its roof where too little of them was seen."""
     used = outline if outline is not None and house.seen_of(outline) >= min_seen else None
     parts = _parts(used.rings) if used is not None else _bare_parts(house)
-    return used, [rings for rings in parts if sum(signed_area(closed(ring)) for ring in rings) >= min_area]
+    return _Outlined(house, outline, used, _large_parts(parts, min_area))
+
+
+def _large_parts(parts: list[list[list[WallEdge]]], min_area: float) -> list[list[list[WallEdge]]]:
+    """Return the parts with an area (m²) at least."""
+    return [rings for rings in parts if sum(signed_area(closed(ring)) for ring in rings) >= min_area]
+
+
+def _disjoint_parts(outlined: list[_Outlined], min_area: float) -> list[list[list[list[WallEdge]]]]:
+    """Return the parts of each house without what other houses have more roof points in, as each was outlined alone.
+
+    What is left of a part has the area (m²) of the smallest building at least.
+    """
+    number = [at for at, one in enumerate(outlined) for _ in one.parts]
+    whole = [[closed(ring) + one.house.origin for ring in rings] for one in outlined for rings in one.parts]
+    left, polygons = list(whole), as_polygons(whole)
+    for one, other, area in zip(*overlaps(polygons, polygons, Monitor())):
+        if area > 0 and number[one] < number[other] and left[one] and left[other]:
+            roofs = (outlined[number[at]].house.roof_xyz[:, :2] for at in (one, other))
+            left[one], left[other] = divide_overlap(left[one], left[other], *roofs)
+    parts: list[list[list[list[WallEdge]]]] = [[] for _ in outlined]
+    drawn = [rings for one in outlined for rings in one.parts]
+    for at, before, after, rings in zip(number, whole, left, drawn):
+        parts[at] += [rings] if after is before else _large_parts(outlined[at].redrawn(after), min_area)
+    return parts
 
 
 def _houses(
@@ -382,8 +435,13 @@ def _buildings(
 
 def _bare_parts(house: _Building) -> list[list[list[WallEdge]]]:
     """Return the outlines of the parts of a roof as rings of edges of which nothing was seen."""
-    parts, nan = house.roof_outline.parts if house.roof_outline else [], float("nan")
-    return [[[WallEdge(a, b, 0.0, 0, nan, nan) for a, b in zip(ring, ring[1:])] for ring in rings] for rings in parts]
+    parts = house.roof_outline.parts if house.roof_outline else []
+    return [[[_bare_edge(a, b) for a, b in zip(ring, ring[1:])] for ring in rings] for rings in parts]
+
+
+def _bare_edge(start: np.ndarray, end: np.ndarray) -> WallEdge:
+    """Return an edge of which nothing was seen."""
+    return WallEdge(start, end, 0.0, 0, float("nan"), float("nan"))
 
 
 def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:

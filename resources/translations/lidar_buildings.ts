@@ -5372,6 +5372,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Houses are outlined one by one. What two outlines share stays in the footprint with more roof points there, so that no two overlap.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Houses are side by side along both sides: plain fronts, fronts with a recess, a bay, balconies, and curved ones, all with windows and doors. Parked cars, trees, poles and people hide parts of them. The vehicle drives through the street once, with two scanners whose planes look ahead and back.</source>
         <translation type="unfinished"></translation>
     </message>

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.geometry.line_segments import distances_to
+from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
+from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.walls.extract_wall_footprints import extract_wall_footprints
 from lidar_buildings.algorithms.walls.surroundings import Surroundings, without_nested
+from lidar_buildings.tests.polygon_validity import assert_valid
 
 DENSITY = 60.0
 
@@ -73,3 +76,15 @@ def test_parts_in_parts_are_left_out_but_not_those_in_courtyards():
     large, inner, court, house = square(0, 0, 10), square(5, 5, 2), square(-5, -5, 3)[::-1], square(-5, -5, 1)
     kept = without_nested([[house], [inner], [large, court]])
     assert [rings[0][0].tolist() for rings in kept] == [large[0].tolist(), house[0].tolist()]
+
+
+@pytest.mark.parametrize(("other", "area"), [((20, -2, 28, 10), 376), ((8, 4, 13, 9), 280)])
+def test_footprints_of_roofs_beside_and_in_each_other_do_not_overlap(rng, other, area):
+    """Each roof was outlined alone: half a spacing beyond its last points, and over gaps in which others begin."""
+    found = footprint(*site(rng, holes=[(19, 3, 21, 5)], other=other))
+    polygons = as_polygons(found.geometries)
+    one, second, shared = overlaps(polygons, polygons, Monitor())
+    assert shared[one != second].max() < 1e-4
+    assert sum(found.columns["area"]) == pytest.approx(area, rel=0.03)
+    for rings in found.geometries:
+        assert_valid(rings)
