@@ -23,7 +23,7 @@ class _Lazy(ModuleType):
         if name.startswith("__"):
             raise AttributeError(name)
         value = getattr(importlib.import_module(self.__name__), name)
-        # Python looks here first the next time, without a search for the module.
+        # As an attribute of this module it is found directly the next time.
         setattr(self, name, value)
         return value
 

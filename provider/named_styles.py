@@ -51,18 +51,18 @@ _KINDS = ("#88ccee", "#cc6677", "#ddcc77", "#117733", "#332288", "#aa4499", "#44
 # Colors of the lowest, middle and highest values of an attribute.
 _LOW, _MIDDLE, _HIGH = "#4a6fa5", "#f5e6a1", "#b5202c"
 
-# Classes of values of an attribute.
+# Number of classes of a numeric attribute, about: their bounds are round.
 _CLASSES = 6
 
 # Share of the cells of a raster that are left out at each end of its colors: single masts would make all others pale.
 _CUT = 0.02
 
-# Most cells by which these ends are found.
+# Most cells by which these ends are found: the number that QGIS samples by default.
 _SAMPLED_CELLS = 250_000
 
 
 def add_named_styles(layer: QgsMapLayer) -> None:
-    """Add styles to a layer in its style, which remains the current one."""
+    """Add styles to a layer; the style that it has remains the current one."""
     manager = layer.styleManager()
     first = manager.currentStyle()
     if isinstance(layer, QgsVectorLayer):
@@ -75,10 +75,10 @@ def add_named_styles(layer: QgsMapLayer) -> None:
                 layer.setRenderer(renderer)
     elif isinstance(layer, QgsPointCloudLayer):
         on_disk = {one.name() for one in layer.attributes().attributes()}
-        of_first = layer.renderer().attribute() if hasattr(layer.renderer(), "attribute") else ""
+        current_attribute = layer.renderer().attribute() if hasattr(layer.renderer(), "attribute") else ""
         for name, title in _BY_DIMENSION.items():
             disk = DIMENSIONS[name].disk[0]
-            if disk == of_first:
+            if disk == current_attribute:
                 manager.renameStyle(first, tr(title))
                 first = tr(title)
             elif disk in on_disk:
@@ -119,7 +119,7 @@ def _symbol(color: str) -> QgsFillSymbol:
 
 
 def fit_ramp(layer: QgsRasterLayer) -> None:
-    """Stretch the ramp of heights from 0 to the values of a raster."""
+    """Stretch the ramp of heights, from 0, to the highest values of a raster."""
     function = _ramp(layer)
     if function is None:
         return

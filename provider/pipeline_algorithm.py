@@ -95,7 +95,8 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
     """A shipped model with its pipeline's id and title.
 
     A model loaded as it is has its title as id, refuses LAS and LAZ where QGIS has no PDAL,
-    ignores its own defaults and names its outputs by their titles. This class mends these and nothing else.
+    ignores its own defaults and names its outputs by their titles. This class mends these. It also has parameters for
+    an extent and a CRS, outputs with the numbers of its steps, and results that are put in place together.
     """
 
     def __init__(self, pipeline: Pipeline) -> None:
@@ -107,20 +108,20 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             )
         self._mend_parameters()
         if on_command_line():
-            # There QGIS shows only this of the help of a model.
+            # On the command line QGIS shows only the description of a model.
             self.setHelpContent({"ALG_DESC": f"{pipeline.summary}\n{self.shortHelpString()}"})
 
     def _mend_parameters(self) -> None:
         """Let the input take any path, and name outputs by their names instead of their titles."""
         # A model's file holds no tooltips.
         shown = pipeline_parameters(self.pipeline)
-        # These are in the language of QGIS, those of the file in English.
+        # Titles in the language of QGIS; those in the model's file are English.
         self._titles = {name: definition.description() for name, definition in shown.items()}
         helps = {name: definition.help() for name, definition in shown.items()}
         helps.update({input_layer_name(layer): layer.help for layer in self.pipeline.input_layers.values()})
         mended = [self._mended(definition, helps) for definition in self.parameterDefinitions()]
         order = [output.name.upper() for output in sorted(self.pipeline.outputs, key=_rank)]
-        mended.sort(key=lambda made: order.index(made.name()) if made.isDestination() else -1)
+        mended.sort(key=lambda definition: order.index(definition.name()) if definition.isDestination() else -1)
         for definition in self.parameterDefinitions():
             self.removeParameter(definition.name())
         for definition in mended:
@@ -142,8 +143,8 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
         mended.setDescription(self._titles.get(definition.name(), definition.description()))
         if definition.isDestination():
             facts = definition.metadata()
-            made = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
-            output = self._output(made.childId(), made.childOutputName().lower())
+            child_output = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
+            output = self._output(child_output.childId(), child_output.childOutputName().lower())
             mended.setName(output.name.upper())
             if mended.name() != OUTPUT:
                 mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)

@@ -34,7 +34,7 @@ class CellPoints:
 
 
 class CellFeatures:
-    """The features of the ``chosen`` cells (k,), rows of all cells, found where they are asked for.
+    """The features of the ``chosen`` cells, computed for those rows that are asked for.
 
     Two neighborhoods give the shape: the cell, and the cell with those around it.
 
@@ -52,7 +52,7 @@ class CellFeatures:
 
     def __init__(self, points: CellPoints, cells: SpaceCells, chosen: np.ndarray, around: Any) -> None:
         self._chosen, self._around = chosen, around
-        # First, as it takes the most memory for the points.
+        # Before the other features, as it takes the most memory for the points.
         self._columns = _columns(points, cells, chosen)
         self._moments, self._height = cells.moments, cells.sums(points.height)
         self._returns: list[np.ndarray] = []

@@ -20,7 +20,7 @@ from .space_cells import SpaceCells
 
 @dataclass(frozen=True)
 class _Rules:
-    """How a scene is learned; fitted on seven real airborne clouds."""
+    """How a scene is learned; fitted on seven real airborne clouds, where a gain is of F, in percent."""
 
     half: float = rule(10.0, "m", "physics: side of the squares of the two halves, that of a small house")
     surface_share: float = rule(0.3, "", "fitted: what points of a roof surface take from its mean; 0 gains 0.13 less")

@@ -19,9 +19,10 @@ from .outputs import COPC, LAS, same_file
 VIEW_SOFTWARE = "LiDAR Buildings view"
 # Position and size (bytes) of the project id (GUID) in the header of LAS 1.4, which holds the digest of a view.
 _DIGEST_AT, _DIGEST_SIZE = 8, 16
-# Positions of the writing program, of where points and EVLRs begin, and the size of the header.
+# Positions (bytes) in that header of the name of the writing program and of the offsets to points and EVLRs, and the
+# size (bytes) of the header.
 _SOFTWARE_AT, _POINTS_AT, _EVLRS_AT, _HEADER_SIZE = 58, 96, 235, 375
-# Bytes that are digested at once.
+# Bytes that are read and digested at once, so that large files need little memory.
 _BLOCK = 1 << 20
 
 

@@ -23,6 +23,7 @@ _LEAST_COMMON = 0.3
 
 def with_common_borders(facades: Sequence[Facade], reach: float, monitor: Monitor) -> list[Facade]:
     """Return facades whose neighboring edges, if within ``reach`` (m), lie on the intersection line of their planes."""
+    # By facade and edge: distance (m) of the nearest line, a point on it and its direction.
     lines: list[dict[int, tuple]] = [{} for _ in facades]
     neighbors: list[set[int]] = [set() for _ in facades]
     for i, j in _near_pairs(facades, reach, monitor):

@@ -41,7 +41,7 @@ class _Rules:
     cell: float = 0.5
     # Least number of these cells: fewer may all be below cars.
     least_cells: int = 20
-    # Ground of both scans is common within this height (m) of the median difference.
+    # Half of the range of height differences (m) that count as common ground: the range that holds most of them.
     ground: float = 0.2
 
 
@@ -53,7 +53,7 @@ class Registration:
     """How a street scan is moved onto an airborne one."""
 
     shift: np.ndarray  #: (3,): vector (m) by which the street scan is moved
-    residual: float  #: Root mean square distance (m) of common walls and ends after that; NaN without any
+    residual: float  #: Root mean square distance (m) of common walls and ends after that, by weight; NaN without any
     overhang: float  #: How far outlines from the air lie before the walls (m), in the mean
     #: walls, ends, ground: Common walls, ends of walls, and cells of ground
     walls: int
@@ -91,9 +91,9 @@ def register(
     -----
     A wall and an outline that run the same way give the shift across them, but for the overhang of the eaves. That is
     one unknown for all: walls of both sides of a street separate it from the shift. Ends of walls and corners of
-    outlines give the shift along, but for the overhang of gables, another unknown; an end counts as the edge that the
-    outline has across it is long. A search on a grid finds which are common, least squares in narrowing rounds their
-    shift. The ground then gives the shift in height.
+    outlines give the shift along, but for the overhang of gables, another unknown. The weight of an end is the length
+    of the outline's edge across it, that of a wall the square root of its own length. A search on a grid finds which
+    are common, least squares in narrowing rounds their shift. The ground then gives the shift in height.
     """
     long = walls.length >= _RULES.shortest
     walls = PlanSegments(walls.start[long], walls.end[long], walls.owner[long])
@@ -219,14 +219,14 @@ def _common(walls: PlanSegments, beside: _Beside, plan: np.ndarray, near: float)
 def _solved(common: _Common) -> np.ndarray:
     """Return shift and overhangs (4,), m, by least squares with Huber's weights; unknowns without evidence stay near 0.
 
-    A wall that goes on beyond its corner counts less than it would by the square of that.
+    By these, a wall that goes on beyond its corner has less influence than by the square of its distance.
     """
     assumed = np.diag([1 / _RULES.unseen, 1 / _RULES.unseen, 1 / _RULES.overhang, 1 / _RULES.overhang])
     weights = common.weights
     for _ in range(_RULES.reweighted):
-        known = np.sqrt(weights) / _RULES.edge
-        left = np.concatenate([common.coefficients * known[:, None], assumed])
-        right = np.concatenate([common.values * known, np.zeros(4)])
+        precision = np.sqrt(weights) / _RULES.edge
+        left = np.concatenate([common.coefficients * precision[:, None], assumed])
+        right = np.concatenate([common.values * precision, np.zeros(4)])
         plan = np.linalg.lstsq(left, right, rcond=None)[0]
         off = np.abs(common.coefficients @ plan - common.values)
         weights = common.weights * _RULES.edge / np.maximum(off, _RULES.edge)
@@ -245,8 +245,8 @@ def _shift_in_height(street: np.ndarray, ground: np.ndarray, shift: np.ndarray) 
     if len(difference) < _RULES.least_cells:
         return 0.0, 0
     # The fullest window: under cars and walls the lowest point is no ground.
-    order = np.sort(difference)
-    until = np.searchsorted(order, order + 2 * _RULES.ground, side="right")
-    first = int(np.argmax(until - np.arange(len(order))))
-    window = order[first : until[first]]
+    ascending = np.sort(difference)
+    until = np.searchsorted(ascending, ascending + 2 * _RULES.ground, side="right")
+    first = int(np.argmax(until - np.arange(len(ascending))))
+    window = ascending[first : until[first]]
     return float(np.median(window)), len(window)

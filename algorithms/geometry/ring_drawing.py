@@ -14,7 +14,7 @@ import numpy as np
 # Shortest run, in samples: shorter edges are drawn as steps between two runs.
 _SHORTEST = 3
 
-# Samples that runs end at whose costs are found at once, a multiple of the shortest run: fewer calls of numpy for them.
+# Ends of runs whose costs are computed in one batch, a multiple of the shortest run: fewer calls of numpy.
 _AT_ONCE = 8 * _SHORTEST
 
 # Angle (°) between directions besides the main ones: any wall is within half of it, and the line is fitted.
@@ -32,7 +32,7 @@ _SHARP = 110.0
 # Difference (°) up to which two directions are the same or opposite: rounding leaves it.
 _SAME = 0.5
 
-# First length (samples) in which a corner is looked for to begin at.
+# Length (samples) of the stretch in which the first corner is searched; doubled until it holds one.
 _TRIAL = 64
 
 # Cosine of the angle between edges of one line, at least: 10°.
@@ -47,7 +47,7 @@ _FARTHEST = 6.0
 
 @dataclass(frozen=True)
 class Prices:
-    """What corners and directions cost; each is a multiple of ``corner``."""
+    """What corners and directions cost: all but ``corner`` are multiples of it."""
 
     corner: float  #: Price of a right-angled corner, m³: that of leaving out a bay of two spacings by four
     flat: float = 1.5  #: Corner that turns by less than 20°, which noise makes more easily than a sharper one
@@ -123,7 +123,11 @@ def _drawn(samples: np.ndarray, ways: _Ways) -> tuple[float, list[Edge]]:
 
 @dataclass(frozen=True)
 class _Ways:
-    """Oriented directions, the main ones first; others may turn by half of the angle between them."""
+    """Oriented directions of runs, the main ones first.
+
+    The line of a run along another direction is fitted to its samples, up to half of the angle between two directions
+    off.
+    """
 
     angle: np.ndarray  #: (k,): directions, °
     unit: np.ndarray  #: (k, 2): unit vectors along these
@@ -182,7 +186,7 @@ class _Chain:
         self.along = (self.vertices - origin) @ fixed.T
 
     def sure_corner(self) -> tuple[int, int]:
-        """Return a sample where a run begins, and its way: one between two long runs."""
+        """Return the sample at which a run begins, and its way; the run before it and itself are long."""
         n = len(self.middles)
         length = min(n, _TRIAL)
         while True:
@@ -197,7 +201,10 @@ class _Chain:
         return runs[best][0], runs[best][2]
 
     def closed_runs(self, after: int) -> tuple[float, list[tuple[int, int, int]]]:
-        """Return the cheapest runs once around, and their cost, from a corner on, the first by a given way."""
+        """Return the cost of the cheapest runs once around from the first sample on, and these.
+
+        ``after`` is the way of the first run.
+        """
         start = np.full(len(self.ways.price), np.inf)
         start[after] = 0.0
         return self._runs(start, self.ways.turn[:, after], len(self.middles))
@@ -221,12 +228,12 @@ class _Chain:
                 own, ends, n_starts = slice(at, at + _SHORTEST), batch[at : at + _SHORTEST], n_before + at
                 total = allowed[own, :, :n_starts] + begun[:, :n_starts]
                 best = total.argmin(axis=2)
-                of = np.arange(len(ends))[:, None]
-                cost[ends] = reached = total[of, every, best]
+                row = np.arange(len(ends))[:, None]
+                cost[ends] = reached = total[row, every, best]
                 came[ends] = firsts[best]
                 turns = reached[:, None, :] + turn_to
                 turned[ends] = way = turns.argmin(axis=2)
-                begun[:, n_starts : n_starts + len(ends)] = turns[of, every, way].T
+                begun[:, n_starts : n_starts + len(ends)] = turns[row, every, way].T
             # Runs have a least length: to the ends after this batch they lead from all but the last of its samples.
             if len(batch) > _SHORTEST:
                 stays = self._stays(len(firsts) - 1 - _SHORTEST, begun, [costs[-1 - _SHORTEST] for costs in least])
@@ -292,19 +299,24 @@ class _Chain:
 
     def line(self, first: int, last: int, way: int) -> tuple[np.ndarray, np.ndarray, bool]:
         """Return a position on the line of a run, its direction (2,), and whether that is a main one."""
+        # Corners are rounded: up to two pieces at each end are left out of the fit, never more than two thirds of all.
         left_out = min(2, (last - first - 1) // 3)
         inner = slice(first + left_out, last - left_out)
         samples, unit, is_main = self.middles[inner], self.ways.unit[way], bool(self.ways.is_main[way])
         mean = samples.mean(axis=0)
         if not is_main and len(samples) > _SHORTEST:
-            values, vectors = np.linalg.eigh(np.cov((samples - mean).T))
+            _, vectors = np.linalg.eigh(np.cov((samples - mean).T))
             fitted = vectors[:, -1] * np.sign(vectors[:, -1] @ unit)
             unit = fitted if fitted @ unit > np.cos(np.radians(_FAN / 2)) else unit
         return mean, unit, is_main
 
 
 def _joined(lines: list, breaks: list[np.ndarray], step: float) -> list[Edge]:
-    """Return the edges along lines, each of which begins near a break and ends near the next one."""
+    """Return the edges along lines, each of which begins near a break and ends near the next one.
+
+    Lines are positions (2,), directions (2,) and whether these are main ones. Corners lie up to ``_FARTHEST`` times
+    ``step`` (m) from their breaks.
+    """
     corners = [_corner(lines[i - 1], lines[i], breaks[i], step) for i in range(len(lines))]
     edges = []
     for (ends, start), line, (end, _) in zip(corners, lines, [*corners[1:], corners[0]]):
@@ -327,14 +339,14 @@ def _corner(before: tuple, after: tuple, at: np.ndarray, step: float) -> tuple[n
 
 
 def aligned(rings: list[list[Edge]], within: float) -> list[list[Edge]]:
-    """Return rings in which edges along nearly the same line as a longer one of another ring lie on the line of that.
+    """Return rings with edges moved onto the lines of longer edges of other rings that they nearly lie on.
 
     Parameters
     ----------
     rings : list of list of Edge
         Edges of each, in order.
     within : float
-        Greatest distance of both ends of an edge from that line, and of the gap between the two edges, m.
+        Greatest distance of both ends of an edge from that line, and greatest gap along it between the two edges, m.
     """
     edges = [edge for ring in rings for edge in ring]
     if not edges:
@@ -365,13 +377,13 @@ def aligned(rings: list[list[Edge]], within: float) -> list[list[Edge]]:
 
 
 def _on_lines(ring: list[Edge], lines: list[Edge], within: float) -> list[Edge]:
-    """Return a ring of which each edge lies on the line of another one, unless that is itself."""
+    """Return a ring with each edge moved onto the line of the given one; the ring itself if these are its own edges."""
     if all(edge is line for edge, line in zip(ring, lines)):
         return ring
-    made = []
+    on_lines = []
     for edge, line in zip(ring, lines):
         unit = (line.end - line.start) / np.hypot(*(line.end - line.start))
         unit = unit * np.sign(unit @ (edge.end - edge.start))
         middle = (edge.start + edge.end) / 2
-        made.append((line.start + unit * float((middle - line.start) @ unit), unit, line.is_main and edge.is_main))
-    return _joined(made, [edge.start for edge in ring], within)
+        on_lines.append((line.start + unit * float((middle - line.start) @ unit), unit, line.is_main and edge.is_main))
+    return _joined(on_lines, [edge.start for edge in ring], within)

@@ -16,7 +16,7 @@ from .solids import DECIMALS, Solid
 OBJ = "Wavefront OBJ"
 FORMATS = {OBJ: (".obj",)}
 
-# Programs that read OBJ have numbers of 24 bits: coordinates are kept below what these hold to a millimeter.
+# Step (map units) of the offset: numbers of 24 bits, which many readers of OBJ have, hold a millimeter up to 16 km.
 _ROUND = 1000.0
 
 

@@ -26,7 +26,7 @@ class UnderGroundRules:
     """Points under the ground, and which of them are a floor."""
 
     depth: float = rule(0.45, "m", "physics: ground, grass, ruts and floors differ by less from cell to cell")
-    few: int = rule(3, "points", "physics: at one height are a lamp or a wire, and under the ground more are a floor")
+    few: int = rule(3, "points", "physics: at one height, as of a lamp or a wire; under the ground, more are a floor")
 
 
 UNDER_GROUND = UnderGroundRules()
@@ -111,9 +111,9 @@ def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
 def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: np.ndarray) -> np.ndarray:
     """Return which elevations (m) below the surface close by are below the ground, too."""
     # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
-    unsure = np.where(is_smooth, around[:, 1], 2 * around[:, 0] - around[:, 2])
+    lowest_ground = np.where(is_smooth, around[:, 1], 2 * around[:, 0] - around[:, 2])
     is_on_ground = is_smooth & (close <= around[:, 1] + UNDER_GROUND.depth)
-    return (z < unsure - UNDER_GROUND.depth) | is_on_ground
+    return (z < lowest_ground - UNDER_GROUND.depth) | is_on_ground
 
 
 @dataclass(frozen=True)

@@ -22,16 +22,13 @@ _NO_AREA = 1e-6
 
 @dataclass(frozen=True)
 class BuildingMap:
-    """The usable polygons of a layer: their rings, the same as edges, their areas (m²) and what they are called.
+    """The usable polygons of a layer."""
 
-    ``rows`` (n,) are their positions in the layer.
-    """
-
-    rings: list
-    polygons: Polygons
-    area: np.ndarray
-    names: list[str]
-    rows: np.ndarray
+    rings: list  #: Rings (m, 2) of each, m, the exterior first
+    polygons: Polygons  #: The same as edges
+    area: np.ndarray  #: (n,): area of each, m²
+    names: list[str]  #: What they are called
+    rows: np.ndarray  #: (n,), int64: their positions in the layer
 
 
 def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> BuildingMap:
@@ -45,10 +42,11 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
     polygons = as_polygons(rings)
     area, every = polygons.area, np.arange(len(rings))
     # Where rings wind twice, or the wrong way, the overlap of a polygon with itself differs from its area.
-    crossing = int((np.abs(shared_areas(polygons, polygons, every, every, Monitor()) - area) > _CROSSING * area).sum())
-    if crossing:
+    own = shared_areas(polygons, polygons, every, every, Monitor())
+    n_crossing = int((np.abs(own - area) > _CROSSING * area).sum())
+    if n_crossing:
         monitor.warn(
-            f"{crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
+            f"{n_crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
             "run 'Fix geometries' on the layer first."
         )
     return BuildingMap(
@@ -77,8 +75,8 @@ def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str
     """
     if not old.rings or not new.rings:
         return
-    boxes = [np.concatenate([rings[0] for rings in one.rings]) for one in (old, new)]
-    (low, high), (other_low, other_high) = [(box.min(axis=0), box.max(axis=0)) for box in boxes]
+    vertices = [np.concatenate([rings[0] for rings in one.rings]) for one in (old, new)]
+    (low, high), (other_low, other_high) = [(xy.min(axis=0), xy.max(axis=0)) for xy in vertices]
     apart = float(np.hypot(*np.maximum(0.0, np.maximum(low - other_high, other_low - high))))
     if apart > _ELSEWHERE:
         raise ValueError(

@@ -27,7 +27,7 @@ _LEAST_TOLERANCE = 1.0
 # Pairs farther apart than this share of the farthest are by chance.
 _FAR_OFF = 2 / 3
 
-# Length (m) below which a line is left out.
+# Length (m) up to which a line has no direction: coordinates are rounded to a millimeter.
 NO_LENGTH = 1e-3
 
 
@@ -95,6 +95,13 @@ def nearest_corners(
         By how much the new layer is off the old one, m.
     reach : float
         Greatest distance, m.
+
+    Returns
+    -------
+    one, other : ndarrays of shape (k,), int64
+        Rows of the corners of each pair in ``old`` and in ``new``.
+    distance : ndarray of shape (k,)
+        Distance between them after the shift, m.
     """
     if not len(same[0]) or not len(old.xy) or not len(new.xy):
         return np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)

@@ -81,7 +81,7 @@ def detect_spheres(
     segment_id : ndarray of shape (n,), int32, optional
         Segments; needed to search in each of them.
     shape : ndarray of shape (n,), uint8, optional
-        Shapes found before: but in a search of the whole cloud, points that have one are left as they are.
+        Shapes found before; points that have one are left as they are, except in a search of the whole cloud.
 
     Returns
     -------

@@ -35,10 +35,10 @@ _MOST_SLOPE_BIN = 0.2
 # A gap of three spacings is no accident of random sampling on a surface.
 _GAP_SPACINGS = 3.0
 
-# Window (m) that automatic ones seldom exceed: that of clouds with 40 points per m² and noise of 5 cm.
+# Window (m) that an automatic one is taken for in the reach: that of clouds with 40 points per m² and noise of 2 cm.
 _WIDE_WINDOW = 1.0
 
-# Gap (m) that automatic ones seldom exceed: that of clouds with 40 points per m².
+# Gap (m) that an automatic one is taken for in the reach: that of clouds with 40 points per m².
 _WIDE_GAP = 0.5
 
 # Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
@@ -178,7 +178,7 @@ def segment_planes_hough(
     segment_id : ndarray of shape (n,), int32, optional
         Segments; needed to search in each of them.
     shape : ndarray of shape (n,), uint8, optional
-        Shapes found before: but in a search of the whole cloud, points that have one are left as they are.
+        Shapes found before; points that have one are left as they are, except in a search of the whole cloud.
 
     Returns
     -------
@@ -274,8 +274,8 @@ class _Search:
         normals = self._normals(xyz, points, boxes, monitor.part(0, 0.375))
         slope = float(np.tan(np.radians(self.slope_bin)))
         hough = HoughPlanes(boxes, self.window_size, self.tolerance, self.distance_bin, slope, normals, _MOST_ANGLE)
-        found = hough.find(monitor.part(0.375, 0.875))
-        plane[boxes.order] = joined_planes(boxes, found, self.tolerance, 0.0, monitor.part(0.875, 1))[1]
+        planes = hough.find(monitor.part(0.375, 0.875))
+        plane[boxes.order] = joined_planes(boxes, planes, self.tolerance, 0.0, monitor.part(0.875, 1))[1]
         return plane
 
     def _normals(self, xyz: np.ndarray, points: SearchedPoints, boxes: Boxes, monitor: Monitor) -> Optional[np.ndarray]:

@@ -49,7 +49,7 @@ _PIECES = 24
 
 
 def build_line_site(size: float, span: float, angle: float, trees: float, forest: float, seed: int) -> Scene:
-    """Return a site (m) with both lines, ``angle`` (°) from east; trees per ha, share of forest.
+    """Return a square site with a high-voltage line, a low-voltage line with houses, and trees.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def build_line_site(size: float, span: float, angle: float, trees: float, forest
     trees, forest : float
         Trees per hectare, and share that is forest.
     seed : int
-        The same seed makes the same.
+        The same seed makes the same site.
     """
     rng = np.random.default_rng([seed, 7])
     scene = Scene(Relief(size, gradient=0.04, angle=np.deg2rad(90.0)))
@@ -78,8 +78,9 @@ def _line(scene: Scene, direction: float, aside: float, distance: float) -> np.n
     return np.column_stack([x, y, scene.relief.ground(x, y)])
 
 
-def _inside(scene: Scene, feet: np.ndarray) -> np.ndarray:
-    return ((feet[:, :2] > 1.0) & (feet[:, :2] < scene.size - 1.0)).all(axis=1)
+def _inside(scene: Scene, xy: np.ndarray) -> np.ndarray:
+    """Return which positions (n, 2 or 3) lie in the site, a meter from its edge."""
+    return ((xy[:, :2] > 1.0) & (xy[:, :2] < scene.size - 1.0)).all(axis=1)
 
 
 def _high_voltage(scene: Scene, direction: float, span: float) -> None:

@@ -130,7 +130,7 @@ def seeds_by_opening(
     count = len(angles)
 
     def look(number: int, part: Monitor) -> tuple[_Surface, Optional[_View]]:
-        # Cells begin a third of their side farther east and south in each: no edges of them meet on a whole side.
+        # Points are moved a third of a cell farther east and south for each: no edges of cells meet on a whole side.
         begin = np.array([number, -number, 0.0]) / count % 1
         cells = _Cells(box, angles[number], cell_size, spacing, low_uphill)
         turned = turned_in_plan(xyz, angles[number]) + begin * cell_size

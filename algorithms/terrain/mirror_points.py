@@ -47,8 +47,8 @@ def mirrored_angle(
     rows = rows[points[rows, 2] > tin.elevation(points[rows], facet[rows])]
     image = image[rows]
     other_facet = tin.locate_near(image, highest[rows])
-    offset, found = offset_and_angle(tin, other_facet, image, to_nearest_node(tin, other_facet, image))
+    offset, image_angle = offset_and_angle(tin, other_facet, image, to_nearest_node(tin, other_facet, image))
     level = (tin.slope_cosine() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
     fits = (offset <= _MIRROR_SHARE * distance) & level[other_facet]
-    angle[rows[fits]] = found[fits]
+    angle[rows[fits]] = image_angle[fits]
     return angle

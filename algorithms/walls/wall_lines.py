@@ -82,14 +82,14 @@ class WallLine:
 
     @property
     def angle_deviation(self) -> float:
-        """Standard deviation of the direction (radians), if all that its points deviate by averages out over them."""
+        """Standard deviation of the direction (radians), if deviations of the points are independent of each other."""
         spread = float(np.sqrt(np.sum(self.along**2)))
         return self.deviation / spread if spread > 0 else np.inf
 
     def angle_excess(self, noise: float) -> float:
-        """Return the deviation of the direction (radians) that what exceeds noise makes.
+        """Return the standard deviation of the direction (radians) due to the deviation beyond ``noise`` (m).
 
-        It does not average out: points of a bush at one end of a wall turn it however many they are.
+        It does not average out: points of a bush at one end of a wall turn it, however many points the wall has.
         """
         spread = float(np.sqrt(np.mean(self.along**2))) if self.is_seen else 0.0
         return self.excess(noise) / spread if spread > 0 else np.inf
@@ -139,7 +139,7 @@ class Scale:
 
 
 def wall_scale(n_points: int, perimeter: float, tolerance: float) -> Scale:
-    """Return the scale of ``n_points`` on walls of a length (m) in all."""
+    """Return the scale of ``n_points`` on walls of a length ``perimeter`` (m) in all, with bins of 0.2 to 1 m."""
     return Scale(tolerance, float(np.clip(_POINTS_PER_BIN * perimeter / max(n_points, 1), 0.2, 1.0)))
 
 
