@@ -1,4 +1,4 @@
-"""The field for several point clouds in a dialog: files, folders and layers in one list, which comes back as it was."""
+"""The field for several point clouds in a dialog: files, folders and layers in one list."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ class FileList(QWidget):
         super().__init__()
         self.list = QListWidget()
         self.list.setSelectionMode(QListWidget.SelectionMode.ExtendedSelection)
+        # 12 pixels for the frame and the spacing of rows.
         self.list.setMaximumHeight(_ROWS * self.list.fontMetrics().height() + 12)
         self.layers = QToolButton()
         self.layers.setText(tr("Layers"))
@@ -57,16 +58,16 @@ class FileList(QWidget):
         grid.addWidget(self.layers, 3, 1)
 
     def names(self) -> list[str]:
-        """Return paths and ids of layers, in their order."""
+        """Return paths, and sources or ids of layers, in their order."""
         return [self.list.item(row).text() for row in range(self.list.count())]
 
     def set_names(self, names: list[str]) -> None:
-        """Show these."""
+        """Show these paths and layers instead of those in the list."""
         self.list.clear()
         self.add(names)
 
     def add(self, names: list[str]) -> None:
-        """Add those that are not in the list."""
+        """Add those paths and layers that are not in the list."""
         known = self.names()
         self.list.addItems([name for name in dict.fromkeys(names) if name not in known])
 
@@ -120,7 +121,7 @@ class FilesWrapper(WidgetWrapper):
             self.widget.set_names(names)
 
     def value(self) -> list[str]:
-        """Return the text of the field."""
+        """Return the paths and layers in the field."""
         if isinstance(self.widget, QLineEdit):
             return [name.strip() for name in self.widget.text().split(";") if name.strip()]
         return self.widget.names()

@@ -27,7 +27,7 @@ class Plugin:
         self.iface = iface
         self.provider: Optional[Provider] = None
         self._undo: list[Callable[[], None]] = []
-        self._added_path = ""
+        self._added_path: Optional[str] = None
 
     def initProcessing(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add the provider to Processing."""

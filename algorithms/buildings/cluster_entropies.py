@@ -85,7 +85,7 @@ def _sample(xyz: np.ndarray, share: np.ndarray) -> np.ndarray:
     """
     # Tenths of a millimeter: coordinates that were stored in steps may differ by rounding.
     chosen = mixed(np.rint(xyz * 1e4).astype(np.int64)) < share
-    # Without any, the mean of a small cluster would be undefined by chance.
+    # Points that coincide are all chosen or none of them: without any, no cluster would have a mean.
     return chosen if chosen.any() else np.ones(len(xyz), bool)
 
 

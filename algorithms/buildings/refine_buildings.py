@@ -36,7 +36,9 @@ class _Rules:
     cell_spacings: float = rule(
         4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
     )
-    edge: float = rule(2.0, "m", "fitted: from a building's edge points change; 3 m gain the same, 5 m 0.1 less")
+    edge: float = rule(
+        2.0, "m", "fitted: points up to this far from a building's edge change; 3 m gain the same, 5 m 0.1 less"
+    )
     becomes: float = rule(0.7, "probability", "fitted: over it a point becomes building; over 0.8 gains 0.1 less")
     ceases: float = rule(
         0.15, "probability", "fitted: under it a point ceases to be building; under 0.1 gains 0.1 less"
@@ -56,7 +58,8 @@ _RULES = _Rules()
         "reason": "where the cloud has them",
         "building_probability": "where the buildings of the scene could be learned",
     },
-    # Points within the distance of edges, and the cells around those around them, decide on a point.
+    # Farther (m) than points change from an edge, and than two rings of cells around a point, of 4 m at 1 point/m²: one
+    # for the features of a cell, and one for smoothing.
     reach=10.0,
     of_whole=(_LEARNED,),
 )
@@ -116,8 +119,8 @@ def refine_buildings(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        Points that look like buildings become 6, points of buildings that don't become 1; ground, water, bridge decks
-        and noise never change.
+        Points that look like buildings become 6, points of buildings that don't become 1; ground, water, bridge decks,
+        noise and points up to 0.5 m above the ground never change.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1 without gaps; points that become building get the nearest one.
     confidence : ndarray of shape (n,), float32, or None
@@ -132,7 +135,7 @@ def refine_buildings(
     -----
     This is self-training in one round, on all labels: half-wrong ones cancel out, and walls are learned although few
     points of walls are certain. Points are described in cubes of four point spacings, alone and with the 26 around:
-    shape (eigenvalues), elevation, height, returns, intensity, and the column in plan of one cube and of three. Halves
+    shape (eigenvalues), elevation, height, returns, intensity, and the column in plan, three cubes wide. Halves
     are squares of 10 m in turn, so that no point is judged by labels of its own surroundings alone. What is wrong
     everywhere in a scene is learned, too.
 
@@ -169,13 +172,15 @@ def refine_buildings(
     )
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
-    number, of, strength = (_of(values, used) for values in (return_number, number_of_returns, intensity))
+    return_number, number_of_returns, intensity = (
+        _of(values, used) for values in (return_number, number_of_returns, intensity)
+    )
     size = _RULES.cell_spacings / float(np.sqrt(density))
-    labeled = scene.labeled(size, number, of, strength, monitor.part(0.1, 0.7))
+    labeled = scene.labeled(size, return_number, number_of_returns, intensity, monitor.part(0.1, 0.7))
     learned = sampling.learned(_LEARNED, partial(labeled.sample, scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
-        monitor.inform("Buildings are not refined: the scene has fewer than two buildings to learn from.")
+        monitor.inform("Buildings are not refined: the scene has too few buildings or other objects to learn from.")
         return classification, cluster_id, confidence, reason, None
 
     # 2. The probability of each point, by what was learned on the other half.
@@ -260,8 +265,8 @@ class _Scene:
         refuse_sparse(self.xyz, size)
         cell = raster_cells(self.xyz, size, 1)
         building = np.zeros((cell[0].max() + 2, cell[1].max() + 2), np.int32)
-        # Of several buildings in a cell the last one counts, whatever the order of their points.
-        np.maximum.at(building, tuple(of[self.is_building] for of in cell), self.cluster_id[self.is_building])
+        # Of several buildings in a cell the one of the greatest number counts, whatever the order of their points.
+        np.maximum.at(building, tuple(index[self.is_building] for index in cell), self.cluster_id[self.is_building])
         outside, nearest = ndimage.distance_transform_edt(building == 0, return_indices=True)
         inside = ndimage.distance_transform_edt(building > 0)
         may_change = self.is_raised & (self.height > LASER.foot)
@@ -269,7 +274,7 @@ class _Scene:
         becomes = np.flatnonzero(may_change & ~self.is_building & (probability > _RULES.becomes))
         ceases = np.flatnonzero(may_change & self.is_building & (probability < _RULES.ceases))
         of_nearest = building[tuple(nearest)]
-        return becomes, ceases, of_nearest[tuple(of[becomes] for of in cell)]
+        return becomes, ceases, of_nearest[tuple(index[becomes] for index in cell)]
 
 
 def _returns(
@@ -287,7 +292,7 @@ def _of(values: Optional[np.ndarray], rows: np.ndarray) -> Optional[np.ndarray]:
 
 
 def _with(values: np.ndarray, first: Any, becomes: np.ndarray, second: Any, ceases: np.ndarray) -> np.ndarray:
-    """Return a copy of values (n,) with the ``first`` at rows that become building, the ``second`` at others."""
+    """Return a copy of values (n,) with ``first`` at rows that become building and ``second`` at those that cease."""
     changed = values.copy()
     changed[becomes], changed[ceases] = first, second
     return changed

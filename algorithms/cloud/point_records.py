@@ -99,7 +99,7 @@ def _needed_format(layout: Layout, standard: dict[str, np.ndarray]) -> int:
 def _extras(
     layout: Layout, added: dict[str, np.ndarray], units: Units
 ) -> tuple[tuple[ExtraField, ...], dict[int, tuple[np.ndarray, float]]]:
-    """Return the output's extra fields, old ones in their old positions, and by place what was set and its unit (m)."""
+    """Return the output's extra fields, old ones first, and by position the values set and meters (m²) per unit."""
     fields, values_at = list(layout.extras), {}
     for name, values in added.items():
         dimension = DIMENSIONS[name]
@@ -136,7 +136,7 @@ def merged_layout(layouts: list[Layout]) -> Layout:
     extras: dict[_Key, ExtraField] = {}
     for key, field in (found for layout in layouts for found in _keyed(layout.extras)):
         if not _has_numbers(field):
-            # Bytes of unknown meaning and vectors are kept where tiles have the same of them.
+            # Bytes of unknown meaning and vectors are one field only where name and type are the same.
             extras.setdefault(key, field)
             continue
         same = extras.setdefault(key, field.without_range())

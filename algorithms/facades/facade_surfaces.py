@@ -68,6 +68,7 @@ def surfaces_of(xyz: np.ndarray, segment_id: np.ndarray, drawing: Drawing, monit
         return []
     planes = {number: plane_of(xyz[points]) for number, points in groups.items()}
     steep = [n for n, (frame, _) in planes.items() if len(groups[n]) >= 4 and abs(frame.tilt) <= drawing.max_tilt]
+    # Or three standard deviations, within which nearly all points of the facade itself lie.
     thickness = np.array([max(_THICKNESS, 3 * planes[n][1]) for n in steep])
     rows = [groups[n] for n in steep]
     frames = facing_outside([planes[n][0] for n in steep], xyz, rows, thickness, monitor.part(0, 0.3))

@@ -9,10 +9,10 @@ import numpy as np
 from ..packages import csgraph, sparse
 from .groups import run_starts
 
-# The flow takes costs as whole numbers of 32 bits: steps per unit of cost, of cuts.
+# Steps per unit of cost in :func:`cheapest_cut` by default: the flow takes costs as whole numbers of 32 bits.
 _STEPS = 1000
 
-# Steps per unit of cost, of labels.
+# Steps per unit of cost in the cuts of :func:`cheapest_labels`.
 _STEPS_OF_LABELS = 10_000
 
 # Largest cost in steps. It is a seventh of the largest number of 32 bits, as the costs of edges are added in these.
@@ -28,7 +28,7 @@ Border = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 def cheapest_labels(
     cost: np.ndarray, edges: np.ndarray, border: Border, most: np.ndarray, start: np.ndarray
 ) -> np.ndarray:
-    """Return the labels (n,) of cells, from the labels ``start`` on changed one label at a time until none helps.
+    """Return labels (n,) of cells that cost least: each label in turn spreads from ``start`` on until none saves any.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def cheapest_cut(
     """
     n = len(if_inside)
     source, sink, cells = n, n + 1, np.arange(n)
-    # With all edges both ways, the flow has the structure of the graph, and its rest is found number by number.
+    # With all edges both ways, the matrix of the flow has the entries of the graph, so that their data can be compared.
     to_source, to_sink = np.full(n, source), np.full(n, sink)
     rows = np.concatenate([left, right, to_source, cells, cells, to_sink])
     columns = np.concatenate([right, left, cells, to_source, to_sink, cells])

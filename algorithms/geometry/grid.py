@@ -12,8 +12,10 @@ from .groups import components
 # A cell of a raster and the eight around it.
 EIGHT = np.ones((3, 3), bool)
 
-# A raster that has more cells than this, and more for each point, is a mistake in the coordinates.
+# Cells of a raster that are no burden however few points they hold: tens of megabytes for an array of them.
 _MOST_CELLS = 10_000_000
+
+# Cells for each point beyond which a larger raster is refused: nearly empty, it is due to wrong coordinates.
 _MOST_CELLS_PER_POINT = 20
 
 # Longest table, in multiples of the count of numbers in it, that takes less memory and time than sorting them.
@@ -183,13 +185,13 @@ def connected_cells(grid: Grid, cells: np.ndarray) -> tuple[int, np.ndarray]:
     """
     if not len(cells):
         return 0, np.zeros(0, np.int32)
-    here, there = [], []
+    one, other = [], []
     # Four of the eight directions: the others are the same pairs seen from the other side.
     for step in grid.around[4:]:
         beside, found = find_cells(cells, cells + step)
-        here.append(np.flatnonzero(found))
-        there.append(beside[found])
-    return components(np.concatenate(here), np.concatenate(there), len(cells))
+        one.append(np.flatnonzero(found))
+        other.append(beside[found])
+    return components(np.concatenate(one), np.concatenate(other), len(cells))
 
 
 def shared_cells(

@@ -16,12 +16,12 @@ class Rules:
     #: A point that lies under another one of a building by this (m), in its cell or in one beside, is on a wall or on a
     #: floor seen through glass
     below: float = 1.0
-    #: cell, cell_spacings: Size of the cells (m, and point spacings; the larger one counts)
+    #: cell, cell_spacings: Side of the cells (m, and point spacings; the larger one counts)
     cell: float = 0.5
     cell_spacings: float = 1.5
     #: Distances count at most this much (m): a tree that is classified as building says nothing of the model
     farthest: float = 5.0
-    #: A roof point farther from the model than this (m) is off it: the step of a storey's half, more than any noise
+    #: A roof point farther from the model than this (m) is off it: more than any noise, less than half a storey
     off: float = 0.5
 
     def cell_size(self, spacing: float) -> float:
@@ -60,7 +60,7 @@ def are_on_roof(above: np.ndarray, is_low: np.ndarray) -> np.ndarray:
 
 
 def distances(above: np.ndarray) -> np.ndarray:
-    """Return heights above a model (n,), m, none farther off than counts."""
+    """Return heights above a model (n,), m, cut off at ``RULES.farthest`` above and below it."""
     return np.clip(above, -RULES.farthest, RULES.farthest)
 
 

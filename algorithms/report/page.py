@@ -19,7 +19,7 @@ from ..geometry.grid import plan_box
 # Distinguishable with any color vision and in gray (Tol's high-contrast scheme); the last is the paper.
 _COLORS = ((221, 221, 221), (0, 68, 136), (221, 170, 51), (187, 85, 102), (255, 255, 255))
 
-# Outcomes of a point: their colors by position.
+# Outcomes of a point, as positions of their colors.
 REST, HIT, MISS, FALSE, _EMPTY = range(5)
 
 # Longest side of the map, pixels.
@@ -46,7 +46,7 @@ svg.view { border: 1px solid #ccc; margin-right: 1em }
 @media print { body { max-width: none; margin: 0; padding: 0; font-size: 10pt } h2, h3 { break-after: avoid } }
 """
 
-# Positions in a page for its input and its parameters, which the caller of a chain adds, as no stage has them.
+# Marks in a page where the caller of a chain puts the input and the parameters of the run, which no stage knows.
 _FIRST, _LAST = "<!-- run -->", "<!-- parameters -->"
 
 # A position in meters from the origin of a run, see :func:`position`.
@@ -116,9 +116,9 @@ def with_coordinates(page: str, to_map: Callable[[np.ndarray], np.ndarray]) -> s
 
 
 def with_run(page: str, first: str, last: str) -> str:
-    """Return a page with HTML about the run: of what it is after the result in a sentence, and parameters at the end.
+    """Return a page with HTML about the run: ``first`` after the lead, ``last`` at the end.
 
-    A page that has them already stays as it is.
+    A page that has both already stays as it is.
     """
     return page.replace(_FIRST, first, 1).replace(_LAST, last, 1)
 

@@ -30,12 +30,20 @@ class DeckRules:
     least_directions: int = rule(
         2, "", "fitted: in which a deck is raised; with one, as crowns may be, F of a real bridge is 75 instead of 91"
     )
-    most_below: float = rule(0.15, "share of points", "physics: beams pass through crowns, and not through decks")
-    edge: float = rule(0.25, "of width, of length", "beams 30° off the vertical reach under edges; and ends of a deck")
-    far: float = rule(
-        4.0, "reaches", "water gives few points: the next one beyond an edge, and the ground ahead of ends"
+    most_below: float = rule(
+        0.15,
+        "share of points",
+        "physics: beams pass through crowns, and not through decks; and least share of ground in terrain beside a deck",
     )
-    least_cell: float = rule(1.0, "m", "least side of cells, and how far from the edge a bank shows")
+    edge: float = rule(
+        0.25,
+        "share",
+        "of the width of a section, seen under by beams 30° off the vertical; and of the length of a deck, its ends",
+    )
+    far: float = rule(
+        4.0, "reaches", "water gives few points: to the next one beyond an edge, and to the ground ahead of an end"
+    )
+    least_cell: float = rule(1.0, "m", "least side of cells, and distance from an edge within which a bank shows")
     slope: float = rule(15.0, "°", "of sections and roads, fitted on canals: at 30° F is 34 to 59 instead of 80 to 95")
     noise_step: float = rule(4.0, "standard deviations", "statistics: largest difference in height that is noise")
 
@@ -162,7 +170,8 @@ class Decks:
         is_low = below >= self.min_height
         within = np.abs(along[rows] - along[end][which]) <= self.reach
         ends = np.bincount(which[is_low & within], minlength=len(end)) > 0
-        # Points lower than the end by less than that show a bank, unless there are few, as on the side of a deck.
+        # Points that are lower than the end, by less than the minimum height, show a bank. A few may be of the side of
+        # a deck: as many as lie on its width in plan, at nine per cell.
         beside = (below > ON_DECK.rough) & ~is_low & (np.abs(along[rows] - along[end][which]) <= DECK.least_cell)
         follows = np.flatnonzero(is_low | (np.abs(below) <= ON_DECK.rough))
         first = follows[run_starts(which[follows])]
@@ -244,7 +253,8 @@ class Decks:
 class _Around:
     """Terrain (n, 3) from west to east, the number of points connected with each (n,), and the search distance (m).
 
-    A tree of the points around a deck is made in a fraction of the time of one of the whole terrain.
+    The number is 0 where too few of these points are ground. A tree of the points around a deck is made in a fraction
+    of the time of one of the whole terrain.
     """
 
     xyz: np.ndarray

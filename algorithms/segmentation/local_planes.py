@@ -68,8 +68,8 @@ class LocalPlanes:
     xyz: np.ndarray  #: (n, 3), float64: the points, m
     offset: np.ndarray  #: (n, 3), float32: center of the plane from its point, m
     normal: np.ndarray  #: (n, 3), float32: unit normals, upward; 0 where there is no plane
-    #: (n,), float32: root mean square distance of its points, free of the degrees of freedom of the fit, m; inf without
-    #: a plane
+    #: (n,), float32: root mean square distance of its points, m, with the divisor count - 3 of a fit of three
+    #: parameters; inf without a plane
     deviation: np.ndarray
     #: (n, k), int32: points near each point, nearest first; the point itself where there are fewer
     neighbors: np.ndarray
@@ -186,7 +186,7 @@ def _every(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarra
 
 
 def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which points are no outliers of a plane by least squares, fitted again without those of the one before."""
+    """Return which points lie on a least-squares plane, fitted again and again without the outliers of the last fit."""
     chosen = near
     # Few are left out at first, when the plane still follows the outliers.
     for share in (0.8, 0.65, _LEAST_SHARE, _LEAST_SHARE):
@@ -203,12 +203,12 @@ def _voted(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarra
     size = offsets.shape
     distance = np.abs(offsets.reshape(-1, 3) @ _half_sphere().T).reshape(size[0], size[1], -1)
     # Points in the middle of a bin count more: of several planes with all points the best one is taken.
-    np.divide(distance, -2 * tolerance, out=distance)
-    distance += 1
-    np.maximum(distance, 0, out=distance)
-    distance *= near[..., None]
-    best = distance.sum(axis=1).argmax(axis=1)
-    chosen = near & (np.take_along_axis(distance, best[:, None, None], axis=2)[..., 0] > 0)
+    vote = np.divide(distance, -2 * tolerance, out=distance)
+    vote += 1
+    np.maximum(vote, 0, out=vote)
+    vote *= near[..., None]
+    best = vote.sum(axis=1).argmax(axis=1)
+    chosen = near & (np.take_along_axis(vote, best[:, None, None], axis=2)[..., 0] > 0)
     for _ in range(_REFITS):
         center, normal, _ = fit_planes(offsets, chosen)
         chosen = near & (_distances(offsets, center, normal) <= tolerance)

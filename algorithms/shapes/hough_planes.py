@@ -153,19 +153,19 @@ class HoughPlanes:
 
     def _by_points(self, xyz: np.ndarray) -> np.ndarray:
         """Return the plane (k,) of each point of a window: every point votes for all planes through it."""
-        plane, left = np.zeros(len(xyz), np.int16), np.arange(len(xyz))
+        plane, free = np.zeros(len(xyz), np.int16), np.arange(len(xyz))
         votes = self._votes(xyz)
         for number in range(1, _MOST_PLANES + 1):
             # Planes at the border between two bins share their points among these.
             best = int(np.argmax(votes[:, :-1] + votes[:, 1:]))
             direction, level = np.divmod(best, self.levels - 1)
             normal = self.directions.normal[direction]
-            on_plane = self._refined(xyz[left], normal, (level + 1) * self.distance_bin - self.reach)
-            if not self._is_plane(on_plane.sum(), len(left)):
+            on_plane = self._refined(xyz[free], normal, (level + 1) * self.distance_bin - self.reach)
+            if not self._is_plane(on_plane.sum(), len(free)):
                 return plane
-            plane[left[on_plane]] = number
-            votes -= self._votes(xyz[left[on_plane]])
-            left = left[~on_plane]
+            plane[free[on_plane]] = number
+            votes -= self._votes(xyz[free[on_plane]])
+            free = free[~on_plane]
         return plane
 
     def _votes(self, xyz: np.ndarray) -> np.ndarray:
@@ -182,14 +182,14 @@ class HoughPlanes:
     def _by_normals(self, xyz: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """Return the plane (k,) of each point of a window: its normal votes for a direction, then it for a distance."""
         plane = np.zeros(len(xyz), np.int16)
-        left = np.flatnonzero(normals.any(axis=1))
-        cells = self.directions.bin_of(normals[left]) if len(left) else left
+        free = np.flatnonzero(normals.any(axis=1))
+        bins = self.directions.bin_of(normals[free]) if len(free) else free
         for number in range(1, _MOST_PLANES + 1):
-            if len(left) < _LEAST_POINTS:
+            if len(free) < _LEAST_POINTS:
                 return plane
-            direction = self._direction(cells)
-            is_alike = np.abs(normals[left] @ direction) >= self.cosine
-            alike = left[is_alike]
+            direction = self._direction(bins)
+            is_alike = np.abs(normals[free] @ direction) >= self.cosine
+            alike = free[is_alike]
             if len(alike) < _LEAST_POINTS:
                 return plane
             signs = np.sign(normals[alike] @ direction)
@@ -200,26 +200,27 @@ class HoughPlanes:
             on_plane = self._refined(xyz[alike], normal, distance)
             if self._is_plane(on_plane.sum(), len(alike)):
                 plane[alike[on_plane]] = number
-                gone = plane[left] > 0
+                gone = plane[free] > 0
             else:
                 # Many directions without a plane, as in a crown: they are left out.
                 gone = is_alike
-            left, cells = left[~gone], cells[~gone]
+            free, bins = free[~gone], bins[~gone]
         return plane
 
-    def _direction(self, cells: np.ndarray) -> np.ndarray:
-        """Return the maximum (3,) on the Gaussian half sphere: the cell around which most normals lie."""
-        occupied, count = np.unique(cells, return_counts=True)
+    def _direction(self, bins: np.ndarray) -> np.ndarray:
+        """Return the maximum (3,) on the Gaussian half sphere: the bin around which most normals lie."""
+        occupied, count = np.unique(bins, return_counts=True)
         normal = self.directions.normal[occupied]
         return normal[np.argmax((np.abs(normal @ normal.T) >= self.cosine) @ count)]
 
-    def _is_plane(self, found: int, left: int) -> bool:
-        """Return whether ``found`` of the ``left`` points lie on a plane by more than chance."""
-        return found >= _LEAST_POINTS and bool(more_than_chance(found, left, self.by_chance, self.trials))
+    def _is_plane(self, found: int, count: int) -> bool:
+        """Return whether ``found`` of ``count`` points lie on a plane by more than chance."""
+        return found >= _LEAST_POINTS and bool(more_than_chance(found, count, self.by_chance, self.trials))
 
     def _refined(self, xyz: np.ndarray, normal: np.ndarray, distance: float) -> np.ndarray:
         """Return which points (k,) lie on the least-squares plane of the points around a maximum."""
-        # A bin is off by half of itself in its distance and, by its slopes, as much again at the end of the window.
+        # The middle of a bin is off a plane in it by up to half a bin in distance and, at the end of the window, by
+        # about as much for its slopes.
         on_plane = np.abs(xyz @ normal - distance) <= self.tolerance + self.distance_bin
         for _ in range(_REFINEMENTS):
             if on_plane.sum() < _LEAST_POINTS:

@@ -27,7 +27,7 @@ _NORMAL_ANGLE = 25.0
 # Largest median of these angles over a sphere (°).
 _MOST_MEDIAN_ANGLE = 10.0
 
-# Points of a seed, and of a window in which one is looked for.
+# Least points of a seed, and of a window in which one is looked for.
 LEAST_POINTS = 20
 
 # Least share of the variance of normals in each direction: they vary in two on a sphere, in one on a cylinder.
@@ -51,7 +51,7 @@ _AROUND = 1.5
 # Most points in the surroundings of a sphere per point on it: it lies in the air.
 _MOST_AROUND = 0.6
 
-# Most points of a fit or a test: more don't change it.
+# Most points of the fit of a seed, or of a test of roundness: more don't change it.
 _MOST_SAMPLED = 1500
 
 
@@ -72,7 +72,7 @@ class SphereSearch:
     Parameters
     ----------
     xyz, normals : ndarray of shape (n, 3)
-        Points (m) and their unit normals; zero if undefined.
+        Points (m), sorted by elevation, and their unit normals; zero if undefined.
     noise : float
         Standard deviation across smooth surfaces, m.
     tolerance : float

@@ -18,7 +18,7 @@ class Building:
     """One building: what it is, its outline, and the solids that it is made of."""
 
     object_id: int  #: The ``segment_id`` of its points
-    kind: str  #: "gable", "hip", "flat", "L", "row", "shed" or "hall"
+    kind: str  #: Shape of its roof or its plan, such as "gable" or "L", or its use, such as "hall"
     outline: np.ndarray  #: (m, 2): closed ring of the walls, counterclockwise (m)
     solids: tuple[Solid, ...]  #: Wings, dormers, chimneys; the roof is the highest of them
 

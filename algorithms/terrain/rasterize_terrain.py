@@ -20,7 +20,7 @@ _CELL_SPACINGS = 2.0
 # Least side of a cell (m) that is set automatically.
 _LEAST_CELL = 0.05
 
-# Largest side of a cell (m): neighboring clouds have the same cells up to the kilometers at which these begin.
+# Largest side of a cell (m): rasters begin at whole kilometers, so that larger cells would differ between clouds.
 _MOST_CELL = 1000.0
 
 # People choose cells of 1, 2 or 5 times a power of ten.
@@ -171,7 +171,7 @@ def _highest(elevation: np.ndarray, cell: np.ndarray, rows: int, columns: int) -
 
 
 def _fill_gaps(surface: np.ndarray, middle: np.ndarray, reach: float, monitor: Monitor) -> None:
-    """Interpolate, in place, the empty cells at most ``reach`` cells from one that is not, between those around."""
+    """Interpolate, in place, empty cells at most ``reach`` cells from a filled one, between the filled ones around."""
     empty = np.isnan(surface)
     gap = empty & (ndimage.distance_transform_edt(empty) <= reach) if empty.any() else empty
     monitor.progress(0.2)

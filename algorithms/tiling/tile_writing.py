@@ -22,7 +22,19 @@ SHOWN = "shown"
 
 
 class TileWriter:
-    """Writes every tile whose blocks are all done, and says which can't be written."""
+    """Writes every tile whose blocks are all done, and says which can't be written.
+
+    Parameters
+    ----------
+    settings : RunSettings
+        Folders and options of the run.
+    outcome : TilesOutcome
+        Receives the tiles and the failures.
+    by_index : list of Path
+        Files of the survey that are cut by their index: each of their blocks becomes a tile.
+    view : View, optional
+        See :attr:`.TileTask.view`.
+    """
 
     def __init__(
         self, settings: RunSettings, outcome: TilesOutcome, by_index: list[Path], view: Optional[View]
@@ -71,7 +83,7 @@ class TileWriter:
         return tasks
 
     def _pieces(self, number: int, stem: str, blocks: list[tuple[Block, Path, Path]]) -> list[TileTask]:
-        """Return the tiles that a file becomes which is cut by its index: one for each block, result and numbers."""
+        """Return the tiles of a file that is cut by its index: one for each block, with its result and numbers."""
         path = self.outcome.survey.sources[number].path
         return [
             self._tile(path, number, f"{stem}_{block.name}", (result,), (numbers,), block.box)

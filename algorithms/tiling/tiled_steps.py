@@ -17,11 +17,11 @@ _PREPARATION = "Preparation"
 def of_survey(pipeline: Pipeline) -> Pipeline:
     """Return a composite without the steps that merge clouds: the files of a survey are one cloud."""
     merging = [step for step in pipeline.steps if step.stage.merges]
-    of_them = {name for name, (step, _) in pipeline.parameters.items() if step in merging}
+    superfluous = {name for name, (step, _) in pipeline.parameters.items() if step in merging}
     return replace(
         pipeline,
         steps=tuple(step for step in pipeline.steps if step not in merging),
-        shown=tuple(name for name in pipeline.shown if name not in of_them),
+        shown=tuple(name for name in pipeline.shown if name not in superfluous),
     )
 
 
@@ -46,7 +46,7 @@ def tunables_of(pipeline: Pipeline, tunables: dict) -> dict:
 
 
 def preparing(pipeline: Pipeline) -> list[Step]:
-    """Return the steps that change which points there are, or which of them are noise, before any step that samples."""
+    """Return the steps of preparation before any other step that asks how the cloud was sampled."""
     steps = []
     for step in pipeline.steps:
         if step.stage.group == _PREPARATION:

@@ -8340,7 +8340,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>This is self-training in one round, on all labels: half-wrong ones cancel out, and walls are learned although few points of walls are certain. Points are described in cubes of four point spacings, alone and with the 26 around: shape (eigenvalues), elevation, height, returns, intensity, and the column in plan of one cube and of three. Halves are squares of 10 m in turn, so that no point is judged by labels of its own surroundings alone. What is wrong everywhere in a scene is learned, too.</source>
+        <source>This is self-training in one round, on all labels: half-wrong ones cancel out, and walls are learned although few points of walls are certain. Points are described in cubes of four point spacings, alone and with the 26 around: shape (eigenvalues), elevation, height, returns, intensity, and the column in plan, three cubes wide. Halves are squares of 10 m in turn, so that no point is judged by labels of its own surroundings alone. What is wrong everywhere in a scene is learned, too.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -140,7 +140,9 @@ def test_a_scene_with_one_building_is_left_as_it_is(village):
     np.testing.assert_array_equal(found, village.classification[one])
     np.testing.assert_array_equal(number, village.cluster_id[one])
     assert probability is None
-    assert monitor.infos == ["Buildings are not refined: the scene has fewer than two buildings to learn from."]
+    assert monitor.infos == [
+        "Buildings are not refined: the scene has too few buildings or other objects to learn from."
+    ]
 
 
 @pytest.mark.parametrize("chosen", [{"learn": False}, {"source": "matched images"}])
