@@ -349,9 +349,10 @@ def _refuse_failures(outcome: TilesOutcome, folder: Path) -> None:
         With all that failed.
     """
     if outcome.failures:
+        count = len(outcome.failures)
         raise ValueError(
-            f"{len(outcome.failures)} parts of the survey failed; all others are in {folder}. "
-            f"{' '.join(outcome.failures)} Run it again to try these once more."
+            f"{count} {'part' if count == 1 else 'parts'} of the survey failed; all others are in {folder}. "
+            f"{' '.join(outcome.failures)} Run it again to try {'it' if count == 1 else 'these'} once more."
         )
 
 

@@ -8,8 +8,8 @@ from ..packages import spatial
 from .facade_surfaces import Facade
 from .opening_search import OFF_WALL, Opening
 
-# Share of the points of an opening that others have, from which it is one of these seen through another wall; and share
-# of an opening before which a wall lies that hides it: most of both.
+# An opening is left out where others have this share of its points, as it is one of them seen through another wall.
+# It is left out, too, where a wall lies in front of more than this share of it. Half is the greater part of both.
 _SHARED = 0.5
 
 # Walls whose normals enclose less than this angle (cosine: 20°) face the same way.
