@@ -46,7 +46,6 @@ def absent() -> list[str]:
 spatial = _Lazy("scipy.spatial")
 special = _Lazy("scipy.special")
 ndimage = _Lazy("scipy.ndimage")
-interpolate = _Lazy("scipy.interpolate")
 sparse = _Lazy("scipy.sparse")
 csgraph = _Lazy("scipy.sparse.csgraph")
 cluster = _Lazy("sklearn.cluster")

@@ -15,7 +15,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..packages import interpolate, spatial
+from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks, n_threads
 from .delaunay import circles
@@ -143,9 +143,12 @@ class TiledTin:
             left, facet = left[facet >= 0], facet[facet >= 0]
             facets, of = np.unique(facet, return_inverse=True)
             intruders, is_wrong = self._intruders(*circles(mesh.points, mesh.simplices[facets]), rows)
-            right, left = left[~is_wrong[of]], left[is_wrong[of]]
-            surface = interpolate.LinearNDInterpolator(mesh, self.nodes[rows, 2])
-            found[right] = surface(positions[right, :2] - self._shift)
+            right, facet, left = left[~is_wrong[of]], facet[~is_wrong[of]], left[is_wrong[of]]
+            # Shares of the first two corners of a triangle in each position; the third has the rest.
+            offset = positions[right, :2] - self._shift - mesh.transform[facet, 2]
+            share = np.einsum("nij,nj->ni", mesh.transform[facet, :2], offset)
+            corners = self.nodes[rows, 2][mesh.simplices[facet]]
+            found[right] = corners[:, 2] + (share * (corners[:, :2] - corners[:, 2:])).sum(axis=1)
             rows = np.unique(np.concatenate([rows, intruders, self._nearest(positions[left])]))
 
     def _intruders(self, center: np.ndarray, radius: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
