@@ -102,6 +102,10 @@ def _identity(path: Path) -> tuple[int, ...]:
     return stat.st_dev, stat.st_ino
 
 
+class DiskFullError(ValueError):
+    """What a run had to write did not fit on the disk: nothing else that it writes will."""
+
+
 class _File(io.FileIO):
     """A file that stores why writing failed: LAZ libraries report that it failed, not why."""
 
@@ -377,7 +381,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     except Exception as error:
         cause = (file and file.failure) or error
         if isinstance(cause, OSError):
-            raise ValueError(_sentence(path, cause)) from error
+            raise _failure(path, cause) from error
         raise
 
 
@@ -393,13 +397,15 @@ def os_errors_as_messages(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise ValueError(_sentence(path, error)) from error
+        raise _failure(path, error) from error
 
 
-def _sentence(path: Path, error: OSError) -> str:
-    """Return why a file can't be written, and what to do."""
+def _failure(path: Path, error: OSError) -> ValueError:
+    """Return an error that says why a file can't be written, and what to do."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
-        return f"The disk is full: {path} was not written; free some space or choose another folder."
+        return DiskFullError(f"The disk is full: {path} was not written; free some space or choose another folder.")
     if isinstance(error, PermissionError) or error.errno == errno.EROFS:
-        return f"{path} can't be written: its folder is read-only or the file is in use; choose another one."
-    return f"{path} can't be written ({error.strerror or error}); choose another folder."
+        return ValueError(
+            f"{path} can't be written: its folder is read-only or the file is in use; choose another one."
+        )
+    return ValueError(f"{path} can't be written ({error.strerror or error}); choose another folder.")

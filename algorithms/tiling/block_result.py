@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..cloud.outputs import replacing
 from ..stage import LayerFeatures
+from .array_files import write_arrays
 
 # Arrays of a result that are kept by the names of dimensions.
 _KINDS = (
@@ -86,8 +86,7 @@ class BlockResult:
             arrays.update({f"layer.{name}.{key}": values for key, values in _flat(features).items()})
         arrays.update({f"items.{kind}": _text(items) for kind, items in self.items.items()})
         arrays.update({"messages": _text(self.messages), "absent": _text(self.absent)})
-        with replacing(path) as stream:
-            np.savez(stream, **arrays)
+        write_arrays(path, arrays)
 
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:

@@ -96,11 +96,7 @@ def run_in_tiles(
     given = [Path(path) for path in paths]
     survey = open_survey(given, options.crs_units, monitor, options.extent, options.crs)
     with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder) as work:
-        outcome = _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
-    if not outcome.failures:
-        # What the run could not remove: Windows removes no lock that is open.
-        remove_work(work)
-    return outcome
+        return _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
 
 
 def check_can_be_tiled(pipeline: Pipeline) -> None:

@@ -8,8 +8,9 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..cloud.outputs import COPC, replacing, stem_of
+from ..cloud.outputs import COPC, stem_of
 from ..cloud.points import open_header
+from .array_files import write_arrays
 from .blocks import Block
 from .survey import Source, boxes_meet
 from .tiled_run import JOINED, RunSettings, TilesOutcome, WorkedOn
@@ -56,8 +57,7 @@ class TileWriter:
         """Write what the numbers of each block become; return the files."""
         paths = [self.settings.work / f"numbers-{block.name}.npz" for block, _ in blocks.done]
         for path, of_block in zip(paths, blocks.numbers):
-            with replacing(path) as stream:
-                np.savez(stream, **of_block)
+            write_arrays(path, of_block)
         return paths
 
     def _tasks(self, blocks: WorkedOn, becomes: list[Path]) -> list[TileTask]:

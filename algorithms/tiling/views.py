@@ -10,9 +10,9 @@ import numpy as np
 
 from ..cloud.asprs import NOISE
 from ..cloud.cloud import Cloud
-from ..cloud.outputs import replacing
 from ..geometry.grid import fixed_grid_over
 from ..geometry.groups import topmost
+from .array_files import write_arrays
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class View:
             shown[topmost(xyz[:, 2], fixed_grid_over(xyz, self.cell).number(xyz))] = True
         for low, high in self.boxes:
             shown |= ((xyz[:, :2] >= low) & (xyz[:, :2] <= high)).all(axis=1)
-        with replacing(self.folder / f"view-{name}.npz") as stream:
-            np.savez(stream, xyz=xyz[shown], classification=classes[rows[shown]])
+        points = {"xyz": xyz[shown], "classification": classes[rows[shown]]}
+        write_arrays(self.folder / f"view-{name}.npz", points)
 
     def points(self, tiles: Iterable[Path]) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates (n, 3), m from the origin, and classes (n,) of what tiles have left."""

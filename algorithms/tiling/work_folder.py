@@ -10,14 +10,17 @@ from pathlib import Path
 from ..cloud.outputs import LOCK, locked_folder
 
 _NAME = ".lidar-buildings"
+_STOP = "stop"
 
 # What a run makes in it: nothing else is removed. The last are folders of runs that were killed while they wrote.
-_MADE = ("block-*.npz", "numbers-*.npz", "view-*.npz", "stop", "pieces", ".lb-*.part")
+_MADE = ("block-*.npz", "numbers-*.npz", "view-*.npz", _STOP, "pieces", ".lb-*.part")
 
 
 @contextmanager
 def work_folder(folder: Path) -> Iterator[Path]:
     """Give the folder in which a run keeps the results of blocks; refuse it while another run has it.
+
+    At the end it is removed if it holds no results.
 
     Raises
     ------
@@ -37,11 +40,17 @@ def work_folder(folder: Path) -> Iterator[Path]:
         raise ValueError(f"{links[0]} is a link, which no run makes; remove it or choose another folder.")
     if contents and LOCK not in contents:
         raise ValueError(f"{work} was made by no run; rename it or choose another folder.")
-    with locked_folder(work) as is_ours:
-        if not is_ours:
-            raise ValueError(f"Another run is writing to {folder}; wait for its end or choose another folder.")
-        (work / "stop").unlink(missing_ok=True)
-        yield work
+    is_ours = False
+    try:
+        with locked_folder(work) as is_ours:
+            if not is_ours:
+                raise ValueError(f"Another run is writing to {folder}; wait for its end or choose another folder.")
+            (work / _STOP).unlink(missing_ok=True)
+            yield work
+    finally:
+        # Windows removes no lock that is open.
+        if is_ours and work.is_dir() and {path.name for path in work.iterdir()} <= {LOCK, _STOP}:
+            remove_work(work)
 
 
 def remove_work(work: Path) -> None:

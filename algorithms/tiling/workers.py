@@ -8,12 +8,13 @@ import shutil
 import tempfile
 from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Callable, Optional
 
+from ..cloud.outputs import DiskFullError
 from ..stage import Cancelled, Monitor
 from ..threads import n_threads
 from .processes import FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
@@ -170,7 +171,7 @@ def run_all(
     Cancelled
         If the user cancels; no work is left running then.
     ValueError
-        If processes of this machine can't be started.
+        If processes of this machine can't be started, or the disk is full.
     """
     waiting = {executor.submit(work, task): number for number, task in enumerate(tasks)}
     results: dict[int, Any] = {}
@@ -184,6 +185,9 @@ def run_all(
                 error = future.exception()
                 if error is None:
                     results[number] = future.result()
+                elif isinstance(error, DiskFullError):
+                    # All other work would be done in vain.
+                    raise error
                 elif isinstance(error, (ValueError, OSError, MemoryError)):
                     failed[number] = str(error) or type(error).__name__
                 elif isinstance(error, CannotStart):
@@ -195,7 +199,9 @@ def run_all(
                 on_done(number)
             monitor.progress(1 - len(open_) / max(1, len(tasks)))
     except BaseException as error:
-        stop.touch()
+        # On a full disk work ends with its block.
+        with suppress(OSError):
+            stop.touch()
         for future in open_:
             future.cancel()
         if isinstance(error, Cancelled):

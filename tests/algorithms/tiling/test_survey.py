@@ -177,6 +177,28 @@ def test_a_full_disk_is_reported_of_the_folder_that_was_chosen(tmp_path, monkeyp
     assert not (tmp_path / "cut").exists(), "an empty folder was left"
 
 
+@pytest.mark.parametrize("fitting", [0, 2])
+def test_a_survey_stops_where_the_disk_is_full(tmp_path, fitting):
+    """It worked on all other blocks, whose results could not be written either, and said that of its last file."""
+    (tmp_path / "disk").mkdir()
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", str(tmp_path / "disk")], capture_output=True, check=False
+    )
+    if mounted.returncode:
+        pytest.skip("this user can't mount a disk")
+    path = tile(tmp_path / "a.las", (0, 0))
+    try:
+        (tmp_path / "disk" / "full").write_bytes(bytes(1024 * (196 - 40 * fitting)))
+        with pytest.raises(ValueError, match="^The disk is full; free some space and start the same run again, which"):
+            run([path], tmp_path / "disk" / "out", block_side=8.0)
+        work = tmp_path / "disk" / "out" / ".lidar-buildings"
+        kept = len(list(work.glob("block-*.npz")))
+        assert bool(kept) == bool(fitting) == (tmp_path / "disk" / "out").exists()
+        assert kept < 16
+    finally:
+        subprocess.run(["umount", str(tmp_path / "disk")], check=True)
+
+
 def test_folders_that_are_left_empty_are_removed_and_no_others(tmp_path):
     path = tile(tmp_path / "a.las", (0, 0))
     (tmp_path / "there").mkdir()
