@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from difflib import get_close_matches
 from typing import Any, Optional
 
 from qgis.core import QgsApplication, QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
@@ -158,7 +159,9 @@ def warn_unknown_parameters(
     """Warn of names on the command line or in a script that are no parameters: QGIS ignores them silently."""
     known = {definition.name() for definition in algorithm.parameterDefinitions()}
     for name in sorted(set(parameters) - known):
-        feedback.pushWarning(f"{name} is no parameter of '{algorithm.displayName()}', so it has no effect.")
+        similar = get_close_matches(name, sorted(known), 1)
+        meant = f"; is {similar[0]} meant?" if similar else "."
+        feedback.pushWarning(f"{name} is no parameter of '{algorithm.displayName()}', so it has no effect{meant}")
 
 
 def announce(title: str, feedback: QgsProcessingFeedback) -> None:

@@ -79,8 +79,7 @@ def read_cloud(
     if not len(points):
         raise ValueError(f"{path.name} has no points within the extent; choose another extent.")
     header = header if box is None else replace(header, count=len(points))
-    if units.warning:
-        monitor.warn(units.warning)
+    units.report(monitor)
     return Cloud(header, points, units, files if files == [path] else [*files, path])
 
 

@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
+from ..stage import Monitor
 from .header import WKT_BIT, Header, Vlr
 from .printable import shown
 
@@ -70,6 +71,16 @@ class Units:
     def factors(self) -> np.ndarray:
         """Meters per unit of x, y and z, (3,)."""
         return np.array([self.horizontal, self.horizontal, self.vertical])
+
+    def report(self, monitor: Monitor) -> None:
+        """Warn where the unit is not known, and say so where it is not the meter."""
+        if self.warning:
+            monitor.warn(self.warning)
+        if self.horizontal != 1.0 or self.vertical != 1.0:
+            monitor.inform(
+                f"A unit of the coordinates is {self.horizontal:.6g} m, of heights {self.vertical:.6g} m; parameters, "
+                "the log and attributes are in meters."
+            )
 
 
 @dataclass

@@ -248,8 +248,7 @@ def open_survey(
     if crs is not None and not wkt_of(named):
         named = header = header_with_crs(header, *crs)
     units = units_of(named, crs_units)
-    if units.warning:
-        monitor.warn(units.warning)
+    units.report(monitor)
     sources = tuple(Source(file, one, _box(one, units)) for file, one in zip(files, headers))
     if extent is not None:
         sources = _within_extent(sources, extent * units.horizontal)

@@ -261,13 +261,13 @@ def test_what_is_wrong_is_reported_in_one_sentence_before_and_in_the_run(
     assert list(out.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["toylift", "toychain"])
-def test_a_name_that_is_no_parameter_is_reported(provider, context, log, town_file, out, name):
+@pytest.mark.parametrize(("name", "meant"), [("toylift", "; is STEP meant?"), ("toychain", ".")])
+def test_a_name_that_is_no_parameter_is_reported(provider, context, log, town_file, out, name, meant):
     """A slip on the command line would be a run with the default."""
     given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), "STEPP": 3}
     run(name, given, context, log)
     title = provider.algorithm(name).displayName()
-    assert log.warnings == [f"STEPP is no parameter of '{title}', so it has no effect."]
+    assert log.warnings == [f"STEPP is no parameter of '{title}', so it has no effect{meant}"]
 
 
 def test_a_limit_that_is_not_set_is_not_called_automatic(provider, context, log, town_file, out):

@@ -209,9 +209,14 @@ def test_unknown_units_are_warned_of_and_known_ones_not(make_las):
     monitor = Monitor()
     read_cloud(make_las("a.las"), monitor)
     assert any("taken as meters" in sentence for sentence in monitor.warnings)
+    assert monitor.infos == []
     monitor = Monitor()
     read_cloud(make_las("b.las", vlrs=(wkt_vlr(IN_FEET),)), monitor)
     assert monitor.warnings == []
+    assert monitor.infos == [
+        "A unit of the coordinates is 0.304801 m, of heights 0.304801 m; parameters, the log and attributes are in "
+        "meters."
+    ]
 
 
 def test_wkt_that_is_supplied_later_is_written_to_formats_that_need_it(make_las, tmp_path):
