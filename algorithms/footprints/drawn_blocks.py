@@ -35,24 +35,12 @@ _ON_EDGE = 0.03
 
 @dataclass(frozen=True)
 class Outlined:
-    """The outline of a building or a part of it.
+    """The outline of a building or a part of it."""
 
-    Attributes
-    ----------
-    building : int
-        Its number.
-    rings : list of ndarray
-        Closed, the exterior first, m.
-    nodes : ndarray of shape (k, 2)
-        Nodes of the lattice within it, m.
-    is_straight : bool
-        Whether most of its edges run along main directions.
-    """
-
-    building: int
-    rings: list[np.ndarray]
-    nodes: np.ndarray
-    is_straight: bool
+    building: int  #: Its number
+    rings: list[np.ndarray]  #: Closed, the exterior first, m
+    nodes: np.ndarray  #: (k, 2): nodes of the lattice within it, m
+    is_straight: bool  #: Whether most of its edges run along main directions
 
 
 @dataclass(frozen=True)
@@ -133,8 +121,7 @@ def _by_house(
     for at, number in enumerate(building.tolist()):
         if number not in houses or len(houses[number].walls) == 0:
             continue
-        house = np.zeros(lattice.shape, np.int64)
-        _copy_overlap(house, lattice, shares[number].lattice, houses[number].house)
+        house = _moved(houses[number].house, shares[number].lattice, lattice)
         flat = spread_out(house).ravel()
         for cell in np.flatnonzero(label == at):
             found[cell] = len(of_label) - 1 + np.bincount(flat[nodes[cell]]).argmax()
@@ -166,7 +153,7 @@ def _shares_of(
     for at, number in enumerate(numbers, start=1):
         own = shares[number]
         rings = [ring for piece in pieces if piece.building == number for ring in piece.rings]
-        _copy_overlap(share[at], lattice, own.lattice, np.where(_is_near(own, rings), own.share, 0.0))
+        share[at] = _moved(np.where(_is_near(own, rings), own.share, 0.0), own.lattice, lattice)
     share[0] = 1 - share[1:].sum(axis=0)
     return lattice, share
 
@@ -183,15 +170,12 @@ def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:
     return np.isin(spread_out(part), mine)
 
 
-def _copy_overlap(target: np.ndarray, lattice: Lattice, inner: Lattice, values: np.ndarray) -> None:
-    """Put values of one lattice into another where they overlap."""
-    (column, row), (rows, columns) = np.subtract(inner.first, lattice.first).tolist(), lattice.shape
-    low_row, low_column = max(row, 0), max(column, 0)
-    high_row, high_column = min(row + inner.shape[0], rows), min(column + inner.shape[1], columns)
-    if high_row > low_row and high_column > low_column:
-        target[low_row:high_row, low_column:high_column] = values[
-            low_row - row : high_row - row, low_column - column : high_column - column
-        ]
+def _moved(values: np.ndarray, own: Lattice, lattice: Lattice) -> np.ndarray:
+    """Return values of one lattice at the nodes of another one of the same step, 0 beyond the first."""
+    column, row = np.subtract(lattice.first, own.first)
+    at = [np.arange(size) + start for size, start in zip(lattice.shape, (row, column))]
+    is_there = np.outer(*((one >= 0) & (one < size) for one, size in zip(at, own.shape)))
+    return np.where(is_there, values[np.ix_(*(one.clip(0, size - 1) for one, size in zip(at, own.shape)))], 0)
 
 
 def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:

@@ -228,22 +228,12 @@ def extract_footprints(
 
 @dataclass(frozen=True)
 class _Part:
-    """Buildings that can be outlined by themselves.
+    """Buildings that can be outlined by themselves."""
 
-    Attributes
-    ----------
-    members : ndarray of shape (m,), int64
-        All their points in the cloud.
-    roof, beside : ndarray of shape (p,), (q,), int64
-        Points of their roofs in the cloud, and non-building ones beside.
-    label : ndarray of shape (p,), int64
-        Cluster of each roof point.
-    """
-
-    members: np.ndarray
-    roof: np.ndarray
-    beside: np.ndarray
-    label: np.ndarray
+    members: np.ndarray  #: (m,), int64: all their points in the cloud
+    roof: np.ndarray  #: (p,), int64: points of their roofs in the cloud
+    beside: np.ndarray  #: (q,), int64: non-building ones beside
+    label: np.ndarray  #: (p,), int64: cluster of each roof point
 
 
 @dataclass(frozen=True)

@@ -60,28 +60,14 @@ _COVERED = 0.02
 
 @dataclass(frozen=True)
 class PointMeasures:
-    """What was measured of the points of a cloud; None where it was not.
+    """What was measured of the points of a cloud; None where it was not."""
 
-    Attributes
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Coordinates (m).
-    corner : ndarray of shape (2,), float64
-        Easting and northing (m) from which outlines are measured.
-    height : ndarray of shape (n,), optional
-        Height above ground (m).
-    entropy, confidence : ndarray of shape (n,), optional
-        Mean entropy of the cluster, and confidence (0 to 1) of being a building; NaN where they are not defined.
-    reason : ndarray of shape (n,), optional
-        Codes of :class:`~..cloud.reasons.Reason`.
-    """
-
-    xyz: np.ndarray
-    corner: np.ndarray
-    height: Optional[np.ndarray] = None
-    entropy: Optional[np.ndarray] = None
-    confidence: Optional[np.ndarray] = None
-    reason: Optional[np.ndarray] = None
+    xyz: np.ndarray  #: (n, 3), float64: coordinates, m
+    corner: np.ndarray  #: (2,), float64: easting and northing from which outlines are measured, m
+    height: Optional[np.ndarray] = None  #: (n,): height above ground, m
+    entropy: Optional[np.ndarray] = None  #: (n,): mean entropy of the cluster, NaN where it is not defined
+    confidence: Optional[np.ndarray] = None  #: (n,): confidence of being a building, 0 to 1; NaN where not defined
+    reason: Optional[np.ndarray] = None  #: (n,): codes of :class:`~..cloud.reasons.Reason`
 
     def plan(self, points: np.ndarray) -> np.ndarray:
         """Return easting and northing (p, 2) of points from the corner (m)."""

@@ -23,21 +23,11 @@ _TOGETHER = 4.0
 
 @dataclass(frozen=True)
 class Piece:
-    """A connected part of a building.
+    """A connected part of a building."""
 
-    Attributes
-    ----------
-    building : int
-        Its number.
-    rings : list of ndarray of shape (n, 2)
-        Samples at equal steps (m) along its rings, the exterior first, the first of each not repeated.
-    area : float
-        Area within these, m².
-    """
-
-    building: int
+    building: int  #: Its number
+    #: Samples (n, 2) at equal steps (m) along its rings, the exterior first, the first of each not repeated
     rings: list[np.ndarray]
-    area: float
 
 
 def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float) -> list[Piece]:
@@ -64,8 +54,7 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
         # A ring is rounded at corners; whether a small building is large enough is decided on its polygon.
         if size >= min_area / 2:
             own = [hole for hole in holes if is_inside(hole[0], ring)]
-            area = size + sum(map(signed_area, own))
-            pieces.append(Piece(building, [sampled(one, spacing) for one in [ring, *own]], area))
+            pieces.append(Piece(building, [sampled(one, spacing) for one in [ring, *own]]))
     return pieces
 
 

@@ -90,16 +90,7 @@ def thinned(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
     """Return the highest points (k,) of each cluster in each cell of half a square spacing, ascending.
 
     Walls, and strips that overlap, have many points in little area: one for each cell shows where roofs are as evenly
-    as a roof alone does.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        Coordinates (m); cells begin at multiples of their size.
-    cluster : ndarray of shape (n,), int64
-        Building of each.
-    spacing : float
-        Mean distance of neighboring points (m).
+    as a roof alone does. Cells begin at multiples of their size.
     """
     if not len(xyz):
         return np.zeros(0, np.int64)

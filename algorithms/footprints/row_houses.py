@@ -15,7 +15,7 @@ from ..geometry.groups import components
 from ..geometry.line_segments import edge_distances, segments_meet
 from ..packages import ndimage, spatial
 from ..rules import rule
-from .soft_shares import LEAST_SPACING, Lattice
+from .soft_shares import LEAST_SPACING, NODES, Lattice
 
 
 @dataclass(frozen=True)
@@ -70,18 +70,10 @@ _FIXED = 16.0
 
 @dataclass(frozen=True)
 class Houses:
-    """The houses of a building.
+    """The houses of a building."""
 
-    Attributes
-    ----------
-    walls : ndarray of shape (w, 2, 2)
-        Ends of the party walls between them, m.
-    house : ndarray of shape (rows, columns), int64
-        House at each node of the lattice, from 1; 0 outside of the building.
-    """
-
-    walls: np.ndarray
-    house: np.ndarray
+    walls: np.ndarray  #: (w, 2, 2): ends of the party walls between them, m
+    house: np.ndarray  #: (rows, columns), int64: house at each node of the lattice, from 1; 0 outside of the building
 
 
 def split_row(
@@ -141,84 +133,39 @@ def _lines(
     inside = lattice.in_plan(np.argwhere(is_inside)[:, ::-1])
     # The grid goes through a fixed position nearby, so that it does not move with the edge of the building.
     fixed = np.round(inside.mean(axis=0) / _FIXED) * _FIXED
-    positions = (inside - fixed) @ turn
-    low = (np.floor(positions.min(axis=0) / step) - 2) * step + fixed @ turn
-    high = positions.max(axis=0) + 2 * step + fixed @ turn
-    u, v = (np.arange(a, b, step) for a, b in zip(low, high))
-    inside = _inside(lattice, is_inside, (u, v), turn)
-    roof, seen = _averaged(plan @ turn, height, low, step, inside.shape)
+    grid = Lattice.around((inside - fixed) @ turn, NODES * step)
+    turned = (plan - fixed) @ turn
+    near = grid.holds(turned)
+    # A point counts at the four positions around it, the more the nearer, so that a wall does not depend on the grid.
+    seen, total = (grid.spread(turned[near], weight) for weight in (None, height[near]))
+    roof = total / np.maximum(seen, 1e-9)
+    inside = is_inside[lattice.nearest(grid.positions @ turn.T + fixed)].reshape(grid.shape)
     # Farther than the building on both sides, so that the line parts it where the outline has a notch, too.
-    beyond = ROWS.along + spacing
-    one, other = _along_first_axis(roof, seen, inside, step), _along_first_axis(roof.T, seen.T, inside.T, step)
-    across = v[one.column] + step * one.shift
-    along_u = np.stack([[u[one.first] - beyond, across], [u[one.last - 1] + beyond, across]])
-    across = u[other.column] + step * other.shift
-    along_v = np.stack([[across, v[other.first] - beyond], [across, v[other.last - 1] + beyond]])
-    ends = np.moveaxis(np.concatenate([along_u, along_v], axis=2), 2, 0) @ turn.T
-    both = ((one.strength, other.strength), (one.is_clear, other.is_clear))
-    return ends, np.concatenate(both[0]), np.concatenate(both[1])
-
-
-def _inside(
-    lattice: Lattice, is_inside: np.ndarray, axes: tuple[np.ndarray, np.ndarray], turn: np.ndarray
-) -> np.ndarray:
-    """Return which positions of a grid lie in the building.
-
-    ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).
-    """
-    return is_inside[lattice.nearest(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1) @ turn.T)]
-
-
-def _averaged(
-    plan: np.ndarray, height: np.ndarray, low: np.ndarray, step: float, shape: tuple[int, ...]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean height (m), 0 without any, and the number of points at each position of a grid from ``low`` on.
-
-    A point counts at the four positions around it, the more the nearer, so that a wall does not depend on the grid.
-    """
-    position = (plan - low) / step
-    first = np.floor(position).astype(np.int64)
-    part = position - first
-    count, total = np.zeros((2, shape[0] * shape[1]))
-    for corner in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        u, v = (first + corner).T
-        weight = np.abs(1 - np.array(corner) - part).prod(axis=1)
-        own = (u >= 0) & (v >= 0) & (u < shape[0]) & (v < shape[1])
-        number = u[own] * shape[1] + v[own]
-        count += np.bincount(number, weight[own], len(count))
-        total += np.bincount(number, (weight * height)[own], len(total))
-    return (total / np.maximum(count, 1e-9)).reshape(shape), count.reshape(shape)
+    beyond = (ROWS.along + spacing) / step
+    found = []
+    for axis, arrays in ((0, (roof.T, seen.T, inside.T)), (1, (roof, seen, inside))):
+        runs = _along_first_axis(*arrays, step)
+        ends = np.empty((len(runs.column), 2, 2))
+        ends[:, 0, axis], ends[:, 1, axis] = runs.first - beyond, runs.last - 1 + beyond
+        ends[..., 1 - axis] = (runs.column + runs.shift)[:, None]
+        found.append((grid.in_plan(ends) @ turn.T + fixed, runs.strength, runs.is_clear))
+    ends, strength, is_clear = map(np.concatenate, zip(*found))
+    return ends, strength, is_clear
 
 
 @dataclass(frozen=True)
 class _Runs:
-    """What may be party walls along the first axis of a grid.
+    """What may be party walls along the first axis of a grid, (r,) of each."""
 
-    Attributes
-    ----------
-    column, first, last : ndarray of shape (r,), int64
-        Column of each, its first row and the one after the last.
-    shift : ndarray of shape (r,)
-        Columns from there to where two lines fit the roof best.
-    strength : ndarray of shape (r,)
-        Strength of the evidence for it, m².
-    is_above : ndarray of shape (r,), bool
-        Whether most of that is a wall above both roofs.
-    misfit, beyond : ndarray of shape (r,)
-        Mean deviation of the roof from two lines that meet, and from two that begin beyond a wall, m.
-    is_clear : ndarray of shape (r,), bool
-        Whether most of it is seen.
-    """
-
-    column: np.ndarray
-    first: np.ndarray
-    last: np.ndarray
-    shift: np.ndarray
-    strength: np.ndarray
-    is_above: np.ndarray
-    misfit: np.ndarray
-    beyond: np.ndarray
-    is_clear: np.ndarray
+    column: np.ndarray  #: int64: its column
+    first: np.ndarray  #: int64: its first row
+    last: np.ndarray  #: int64: the row after its last one
+    shift: np.ndarray  #: Columns from there to where two lines fit the roof best
+    strength: np.ndarray  #: Strength of the evidence for it, m²
+    is_above: np.ndarray  #: bool: whether most of that is a wall above both roofs
+    misfit: np.ndarray  #: Mean deviation of the roof from two lines that meet, m
+    beyond: np.ndarray  #: The same from two lines that begin beyond a wall, m
+    is_clear: np.ndarray  #: bool: whether most of it is seen
 
     def take(self, index: np.ndarray) -> _Runs:
         """Return some of them."""

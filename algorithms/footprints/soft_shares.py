@@ -13,7 +13,7 @@ import numpy as np
 from ..packages import ndimage
 
 # Nodes of the lattice per point spacing: at two, linear interpolation between nodes adds nothing to the smoothing.
-_NODES = 2
+NODES = 2
 
 # Standard deviation (spacings) of the weights of points around a node. 1.0 joins buildings, so that fewer blocks of
 # Delft's map are found; with 0.8 short sides of simulated houses are drawn askew.
@@ -55,7 +55,7 @@ class Lattice:
     @classmethod
     def around(cls, plan: np.ndarray, spacing: float) -> Lattice:
         """Return the nodes around points (n, 2), m, with room for their surroundings."""
-        step, room = spacing / _NODES, int(np.ceil(REACH * _NODES))
+        step, room = spacing / NODES, int(np.ceil(REACH * NODES))
         low = np.floor(plan.min(axis=0) / step).astype(np.int64) - room
         high = np.ceil(plan.max(axis=0) / step).astype(np.int64) + room
         columns, rows = (high - low + 1).tolist()
@@ -116,20 +116,11 @@ class Lattice:
 
 @dataclass(frozen=True)
 class Shares:
-    """The share of one building at the nodes of a lattice around it.
-
-    Attributes
-    ----------
-    lattice : Lattice
-    share : ndarray of shape (rows, columns), float32
-        Share of the building, 0 to 1.
-    rest : ndarray of shape (rows, columns), float32
-        Greatest share of anything else: the ground, or another building.
-    """
+    """The share of one building at the nodes of a lattice around it."""
 
     lattice: Lattice
-    share: np.ndarray
-    rest: np.ndarray
+    share: np.ndarray  #: (rows, columns), float32: share of the building, 0 to 1
+    rest: np.ndarray  #: (rows, columns), float32: greatest share of anything else: the ground, or another building
 
     def at(self, positions: np.ndarray) -> np.ndarray:
         """Return the share (n,) at positions (n, 2), m; 0 beyond the lattice."""
@@ -202,12 +193,12 @@ def find_shares(
 
 def _density(lattice: Lattice, plan: np.ndarray, width: float, weight: Optional[np.ndarray] = None) -> np.ndarray:
     """Return the points per square spacing, float32, with weights of a standard deviation ``width`` (spacings)."""
-    return smoothed(lattice.spread(plan, weight).astype(np.float32), width) * _NODES**2
+    return smoothed(lattice.spread(plan, weight).astype(np.float32), width) * NODES**2
 
 
 def smoothed(field: np.ndarray, width: float) -> np.ndarray:
     """Return a field on a lattice with weights of a standard deviation ``width`` (spacings)."""
-    return ndimage.gaussian_filter(field, width * _NODES, mode="constant", truncate=_TRUNCATE)
+    return ndimage.gaussian_filter(field, width * NODES, mode="constant", truncate=_TRUNCATE)
 
 
 def spread_out(label: np.ndarray) -> np.ndarray:
