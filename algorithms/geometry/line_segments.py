@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .rings import signed_area
+
 # Pairs of segments or of points and segments that are compared at once.
 _PAIRS_AT_ONCE = 1_000_000
 
@@ -64,6 +66,20 @@ def are_inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
         crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * slope)
         inside[low : low + step] = crosses.sum(axis=1) % 2
     return inside
+
+
+def polygons_of(rings: list[np.ndarray]) -> list[list[int]]:
+    """Return the numbers of the rings of each polygon, the exterior first, then its holes, which run clockwise."""
+    areas = [signed_area(ring) for ring in rings]
+    polygons = {i: [i] for i, area in enumerate(areas) if area > 0}
+    outer = sorted(polygons, key=lambda i: areas[i])
+    for hole in (i for i, area in enumerate(areas) if area <= 0):
+        # A hole may touch the exterior in a vertex. Of exteriors within each other, the smallest around it counts.
+        middle = rings[hole][:-1].mean(axis=0)
+        around = next((i for i in outer if is_inside(middle, rings[i])), None)
+        if around is not None:
+            polygons[around].append(hole)
+    return list(polygons.values())
 
 
 def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:

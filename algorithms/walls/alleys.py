@@ -8,10 +8,9 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.rings import signed_area
-from .cheapest_outline import Limits
 from .wall_edges import SEEN, closed
 from .wall_lines import WallLine
-from .wall_outline import WallOutline
+from .wall_outline import Limits, WallOutline
 
 # Walls along an alley are parallel within this angle (cosine): that by which walls of one building are.
 _PARALLEL = np.cos(np.deg2rad(8.0))
@@ -20,32 +19,19 @@ _PARALLEL = np.cos(np.deg2rad(8.0))
 _NARROWEST = 0.3
 
 
-def find_alley(outline: WallOutline, limits: Limits, min_area: float) -> Optional[WallLine]:
-    """Return the middle of the widest alley across an outline, None without any.
+def find_alley(outline: WallOutline, limits: Limits) -> Optional[WallLine]:
+    """Return the middle of the widest alley across an outline, None without any: a line without points.
 
-    Parameters
-    ----------
-    outline : WallOutline
-        Outline of the houses that were taken for one building.
-    limits : Limits
-        Limits of walls; roofs that meet over an alley jut out over it from both sides.
-    min_area : float
-        Smallest house, m²: least area of the outline behind each of the two walls.
-
-    Returns
-    -------
-    WallLine
-        A line without points along which the outline falls into two houses.
+    Along it, what was taken for one building falls into two. Roofs that meet over an alley jut out from both sides.
     """
-    seen = [line for line in outline.lines if line.is_seen]
-    rings = [closed(ring) for ring in outline.rings]
+    seen = [line for line in outline.cells.lines if line.is_seen]
     widest, middle = _NARROWEST, None
     for one, other in combinations(seen, 2):
         alley = _between(one, other)
         if alley is None:
             continue
         width = abs(float(one.across(other.point[None])[0]))
-        if widest <= width <= 2 * limits.max_overhang and _is_alley(alley, (one, other), rings, outline, min_area):
+        if widest <= width <= 2 * limits.max_overhang and _is_alley(alley, (one, other), outline, limits.min_area):
             widest, middle = width, alley
     return middle
 
@@ -62,10 +48,9 @@ def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
     return WallLine((foot + other.point) / 2, direction / np.hypot(*direction), nothing.astype(int), nothing, np.nan)
 
 
-def _is_alley(
-    alley: WallLine, walls: tuple[WallLine, WallLine], rings: list[np.ndarray], outline: WallOutline, min_area: float
-) -> bool:
+def _is_alley(alley: WallLine, walls: tuple[WallLine, WallLine], outline: WallOutline, min_area: float) -> bool:
     """Return whether walls on both sides are seen wherever a line crosses the outline, with houses behind both."""
+    rings = [closed(ring) for ring in outline.rings]
     chords = _chords(alley, rings)
     if not len(chords):
         return False
@@ -73,7 +58,7 @@ def _is_alley(
         positions = alley.point + chords[..., None] * alley.direction
         along = np.sort((positions - wall.point) @ wall.direction, axis=1)
         length = np.diff(along, axis=1)[:, 0]
-        covered = [outline.scale.covered(wall.along, low, high) if high > low else 0.0 for low, high in along]
+        covered = [outline.cells.scale.covered(wall.along, low, high) if high > low else 0.0 for low, high in along]
         away = np.sign(alley.across(wall.point[None])[0]) * alley.normal
         behind = sum(signed_area(_clipped(ring, wall.point, away)) for ring in rings)
         if length @ covered < SEEN * length.sum() or behind < min_area:

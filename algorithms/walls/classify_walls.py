@@ -205,7 +205,7 @@ def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: 
     if not len(roof) or not len(xy):
         return owner
     start = all_xy[roof[0]]
-    hulls = _hulls(all_xy[roof] - start, cluster_id[roof])
+    roofs = members(cluster_id)
     cell = np.floor((all_xy[roof] - start) / _ROOF_CELL).astype(np.int64)
     _, first = np.unique(np.column_stack([cell, cluster_id[roof]]), axis=0, return_index=True)
     positions = (cell[first] + 0.5) * _ROOF_CELL
@@ -213,19 +213,16 @@ def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: 
     found = np.flatnonzero(nearest < len(first))
     owner[found] = cluster_id[roof[first]][nearest[found]]
     for number, part in members(owner).items():
-        sides = hulls.get(number, _NOWHERE)
+        sides = _hull(all_xy[roofs[number]] - start)
         owner[part[((xy[part] - start) @ sides[:, :2].T + sides[:, 2] > margin).any(axis=1)]] = 0
     return owner
 
 
-def _hulls(xy: np.ndarray, cluster_id: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the sides (k, 3) of each cluster's convex hull: outward unit normal and offset, n·p + d <= 0 inside."""
-    hulls = {}
-    for number, part in members(cluster_id).items():
-        # A roof that is a line has no hull.
-        if len(part) >= 3 and np.linalg.eigvalsh(np.cov(xy[part].T))[0] > 1e-6:
-            hulls[number] = spatial.ConvexHull(xy[part]).equations
-    return hulls
+def _hull(xy: np.ndarray) -> np.ndarray:
+    """Return the sides (k, 3) of a convex hull: outward unit normal and offset, n·p + d <= 0 inside."""
+    # A roof that is a line has no hull.
+    is_wide = len(xy) >= 3 and np.linalg.eigvalsh(np.cov(xy.T))[0] > 1e-6
+    return spatial.ConvexHull(xy).equations if is_wide else _NOWHERE
 
 
 def _upright(

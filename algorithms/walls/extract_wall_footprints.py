@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry.disjoint_polygons import divide_overlap
 from ..geometry.grid import SparsePointsError
 from ..geometry.groups import members
-from ..geometry.line_segments import is_inside
+from ..geometry.line_segments import polygons_of
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.rings import perimeter, signed_area
 from ..params import MinBuildingArea, Seed
@@ -21,13 +21,12 @@ from ..sampling.density import point_spacing
 from ..sampling.surface_noise import ROUGHNESS
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .alleys import find_alley
-from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candidate_corners
-from .cheapest_outline import Limits
+from .candidate_corners import CORNER_FIELDS, candidate_corners
 from .roof_outline import RoofOutline, outline_roof
 from .surroundings import Surroundings
 from .wall_edges import SEEN, WallEdge, closed, edge_between, points_near
 from .wall_lines import WallLine
-from .wall_outline import WallOutline, outline_walls, share_seen
+from .wall_outline import Limits, WallOutline, outline_walls, share_seen
 from .wall_report import MEASURES, WALL, point_counts, wall_report
 
 ROOF = "roof"
@@ -73,21 +72,6 @@ _EDGE_FIELDS = (
     Field("precision", float, "standard deviation across its direction, from its points", "m"),
 )
 
-_CORNER_FIELDS = (
-    Field("id", int, "number of the candidate, from 1"),
-    Field("cluster_id", int, "building that it belongs to"),
-    Field(
-        "outcome",
-        str,
-        "'corner': of the footprint. 'on an edge': the footprint runs straight on. 'off the outline': both walls have "
-        "edges elsewhere. 'wall not used': one of them has no edge. 'outline of the roof': too few walls were seen. "
-        "'too small': the footprint would be too small",
-    ),
-    Field("walls_seen", int, "how many of the two walls that meet in it have wall points, 0 to 2"),
-    Field("angle", float, "angle between the two walls, 0 to 90", "°"),
-    Field("gap", float, "distance to the nearest point on each of the walls, the larger of the two", "m"),
-)
-
 _Tolerance = Annotated[
     Optional[float],
     Param(
@@ -119,7 +103,7 @@ _MaxOverhang = Annotated[
     layers=(
         Layer("wall_footprints", "Wall footprints", "Polygon", _FIELDS),
         Layer("wall_edges", "Wall edges", "LineString", _EDGE_FIELDS),
-        Layer("candidate_corners", "Candidate corners", "Point", _CORNER_FIELDS),
+        Layer("candidate_corners", "Candidate corners", "Point", CORNER_FIELDS),
     ),
     measures=MEASURES,
 )
@@ -238,15 +222,12 @@ def extract_wall_footprints(
     if tolerance is None:
         tolerance = min(max(_ON_WALL * sampling.roughness, _LEAST_TOLERANCE), _MOST_TOLERANCE)
         monitor.resolved(tolerance=tolerance)
-    limits = Limits(tolerance, min_length, max_overhang)
+    limits = Limits(tolerance, min_length, max_overhang, min_area, min_seen, seed)
     outlined: list[_Outlined] = []
     for done, building in enumerate(buildings):
         part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
         try:
-            outlined += [
-                _outlined(house, outline, limits, min_seen, min_area, part)
-                for house, outline in _houses(building, limits, min_area, seed, part)
-            ]
+            outlined += [_outlined(*house, limits) for house in _houses(building, limits, part)]
         except SparsePointsError as error:
             monitor.warn(f"Building {building.number} has no footprint. {error}")
         part.progress(1.0)
@@ -255,11 +236,10 @@ def extract_wall_footprints(
             footprints.append(_footprint(rings, one.house, one.used, height_above_ground))
             edges += _edges(rings, len(footprints), one.house.origin)
         if one.outline is not None:
-            rejected = ROOF_OUTLINE if one.used is None else "" if parts else TOO_SMALL
-            kept = replace(one.outline, rings=[ring for rings in parts for ring in rings])
-            corners += _corners(candidate_corners(kept, rejected), one.house)
+            found = candidate_corners(one.outline, [ring for rings in parts for ring in rings], one.used is not None)
+            corners += [(at + one.house.origin, {"cluster_id": one.house.number, **facts}) for at, facts in found]
     monitor.progress(1.0)
-    layers = zip((footprints, edges, corners), (_FIELDS, _EDGE_FIELDS, _CORNER_FIELDS))
+    layers = zip((footprints, edges, corners), (_FIELDS, _EDGE_FIELDS, CORNER_FIELDS))
     made = [LayerFeatures.numbered(features, fields) for features, fields in layers]
     _tell_unseen(made[0], monitor)
     counts = point_counts(cluster_id, wall_of, classification, voxel_count)
@@ -284,19 +264,22 @@ class _Outlined:
         """Return an edge with the wall points along it, none for outlines of roofs."""
         if self.used is None:
             return _bare_edge(start, end)
-        walls, scale = self.house.walls, self.used.scale
+        walls, scale = self.house.walls, self.used.cells.scale
         direction = (end - start) / np.hypot(*(end - start))
         line = WallLine(start, direction, np.arange(len(walls)), np.zeros(0), np.nan)
         return edge_between(start, end, line, points_near(walls, line, scale), scale)
 
 
-def _outlined(
-    house: _Building, outline: Optional[WallOutline], limits: Limits, min_seen: float, min_area: float, monitor: Monitor
-) -> _Outlined:
+def _outlined(house: _Building, outline: Optional[WallOutline], limits: Limits) -> _Outlined:
     """Return a house with the outline of its walls, or of its roof where too little of them was seen."""
-    used = outline if outline is not None and house.seen_of(outline) >= min_seen else None
+    used = outline if outline is not None and house.seen_of(outline) >= limits.min_seen else None
     parts = _parts(used.rings) if used is not None else _bare_parts(house)
-    return _Outlined(house, outline, used, _large_parts(parts, min_area))
+    return _Outlined(house, outline, used, _large_parts(parts, limits.min_area))
+
+
+def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:
+    """Sort rings into parts: each exterior with the holes in it."""
+    return [[rings[i] for i in part] for part in polygons_of(list(map(closed, rings)))]
 
 
 def _large_parts(parts: list[list[list[WallEdge]]], min_area: float) -> list[list[list[WallEdge]]]:
@@ -323,17 +306,14 @@ def _disjoint_parts(outlined: list[_Outlined], min_area: float) -> list[list[lis
     return parts
 
 
-def _houses(
-    building: _Building, limits: Limits, min_area: float, seed: int, monitor: Monitor
-) -> list[tuple[_Building, Optional[WallOutline]]]:
+def _houses(building: _Building, limits: Limits, monitor: Monitor) -> list[tuple[_Building, Optional[WallOutline]]]:
     """Return the houses that a building is made of, with their outlines; mostly the one that it is."""
-    outline = building.walls_outline(limits, seed, monitor)
-    alley = None if outline is None else find_alley(outline, limits, min_area)
+    outline = building.walls_outline(limits, monitor)
+    alley = None if outline is None else find_alley(outline, limits)
     if alley is not None:
-        parts = building.parted(alley)
         # The progress has counted the outline of the whole.
         rest = monitor.part(1.0, 1.0)
-        houses = [house for part in parts for house in _houses(part, limits, min_area, seed, rest)]
+        houses = [house for part in building.parted(alley) for house in _houses(part, limits, rest)]
         if all(own is not None for _, own in houses):
             return houses
     return [(building, outline)]
@@ -411,12 +391,11 @@ class _Building:
         free = [edge for edge, hidden in zip(edges, is_party) if not hidden]
         return share_seen([free] if free else outline.rings)
 
-    def walls_outline(self, limits: Limits, seed: int, monitor: Monitor) -> Optional[WallOutline]:
+    def walls_outline(self, limits: Limits, monitor: Monitor) -> Optional[WallOutline]:
         """Return the outline of the walls near the origin, None where there are too few."""
         if not len(self.walls) or self.roof_outline is None:
             return None
-        rng = np.random.default_rng(seed)
-        return outline_walls(self.walls, self.whole_roof, self.roof_outline, limits, self.is_party, rng, monitor)
+        return outline_walls(self.walls, self.whole_roof, self.roof_outline, limits, self.is_party, monitor)
 
 
 def _buildings(
@@ -442,13 +421,6 @@ def _bare_parts(house: _Building) -> list[list[list[WallEdge]]]:
 def _bare_edge(start: np.ndarray, end: np.ndarray) -> WallEdge:
     """Return an edge of which nothing was seen."""
     return WallEdge(start, end, 0.0, 0, float("nan"), float("nan"))
-
-
-def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:
-    """Sort rings into parts: each exterior with the holes in it."""
-    outer = [ring for ring in rings if signed_area(closed(ring)) > 0]
-    holes = [ring for ring in rings if signed_area(closed(ring)) < 0]
-    return [[ring, *(hole for hole in holes if is_inside(hole[0].start, closed(ring)))] for ring in outer]
 
 
 def _footprint(
@@ -498,13 +470,6 @@ def _edges(rings: list[list[WallEdge]], footprint: int, origin: np.ndarray) -> I
             "precision": edge.precision,
         }
         yield np.array([edge.start, edge.end]) + origin, facts
-
-
-def _corners(corners: CandidateCorners, building: _Building) -> Iterator[_Feature]:
-    """Yield the candidate corners of a building."""
-    facts = zip(corners.outcome, corners.n_seen.tolist(), corners.angle.tolist(), corners.gap.tolist())
-    for position, values in zip(corners.position + building.origin, facts):
-        yield position, dict(zip(("cluster_id", "outcome", "walls_seen", "angle", "gap"), (building.number, *values)))
 
 
 def _inner_angle(before: WallEdge, edge: WallEdge) -> float:

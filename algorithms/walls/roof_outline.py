@@ -36,15 +36,7 @@ class RoofOutline:
 
 
 def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
-    """Return the outline of a roof, None where it has no area.
-
-    Parameters
-    ----------
-    roof : ndarray of shape (n, 2)
-        Its points in plan, m.
-    spacing : float
-        Mean distance between them, m.
-    """
+    """Return the outline of a roof with points (n, 2) at a mean distance ``spacing`` (m), None where it has no area."""
     spacing = max(spacing, LEAST_SPACING)
     area = _LEAST_AREA * spacing**2
     shares, pieces, directions = pieces_alone(roof, spacing, area)

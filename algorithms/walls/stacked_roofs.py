@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.grid import Grid, find_cells, grid_over
+from ..geometry.grid import find_cells, raster_cells
 from ..geometry.groups import topmost
 
 # A roof of which more than this share of the border meets one larger roof is a part of that one. A house between two
@@ -17,22 +17,9 @@ _OVER = 2
 
 
 def join_stacked(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarray:
-    """Give roofs that one larger roof surrounds to that one.
+    """Return the roof (n,) of each point (n, 3), m, from 0, -1 if unassigned; surrounded roofs are of the one around.
 
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        Points of roofs (m).
-    cluster : ndarray of shape (n,), int
-        Roof of each point from 0; -1 if unassigned.
-    size : float
-        Side (m) of the cells in which roofs are held against each other: the distance within which points are of one
-        roof.
-
-    Returns
-    -------
-    ndarray of shape (n,)
-        The same numbers, those of surrounded roofs replaced by that of the roof around them.
+    Cells have the ``size`` (m) of the distance within which points are of one roof.
     """
     joined = cluster.copy()
     while True:
@@ -50,9 +37,14 @@ def _surrounding(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarra
     into = np.arange(count)
     if count < 2:
         return into
-    grid, cells, label = _labelled(xyz[own], cluster[own], size)
+    # Room at the border, so that the numbers of cells beside it are of no other cells.
+    row, column = raster_cells(xyz[own], size, _OVER + 1)
+    columns = int(column.max()) + _OVER + 2
+    number = row * columns + column
+    top = topmost(xyz[own, 2], number, -cluster[own])
+    cells, label = number[top], cluster[own[top]]
     area = np.bincount(label, minlength=count)
-    here, there = _borders(grid, cells, label)
+    here, there = _borders(cells, columns, label)
     length = np.bincount(here, minlength=count)
     meets = there >= 0
     pairs, shared = np.unique(here[meets] * count + there[meets], return_counts=True)
@@ -63,22 +55,13 @@ def _surrounding(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarra
     return into
 
 
-def _labelled(xyz: np.ndarray, cluster: np.ndarray, size: float) -> tuple[Grid, np.ndarray, np.ndarray]:
-    """Return a grid, its cells (m,) with points, ascending, and the roof (m,) of the highest point in each."""
-    tight = grid_over(xyz, size)
-    # Room at the border, so that the numbers of cells beside it are of no other cells.
-    room = _OVER + 1
-    west, south = tight.origin
-    grid = Grid((west - room * size, south - room * size), size, tight.rows + 2 * room, tight.columns + 2 * room)
-    number = grid.number(xyz)
-    top = topmost(xyz[:, 2], number, -cluster)
-    return grid, number[top], cluster[top]
+def _borders(cells: np.ndarray, columns: int, label: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the roof (k,) of each side of a cell where a roof ends, and the one that begins there, -1 for none.
 
-
-def _borders(grid: Grid, cells: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the roof (k,) of each side of a cell where a roof ends, and the one that begins there, -1 for none."""
+    ``cells`` (m,) are numbers, ascending, of which those of one row differ from those of the next by ``columns``.
+    """
     here, there = [], []
-    for step in (1, -1, grid.columns, -grid.columns):
+    for step in (1, -1, columns, -columns):
         beside = np.full(len(cells), -1)
         for times in range(1, _OVER + 2):
             position, found = find_cells(cells, cells + times * step)

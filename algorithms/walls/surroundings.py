@@ -8,8 +8,8 @@ import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
 from ..geometry.groups import run_starts
-from ..geometry.line_segments import are_inside
-from ..geometry.rings import along_sides, signed_area
+from ..geometry.points_in_polygons import are_within
+from ..geometry.rings import along_sides, sides_of_rings, signed_area
 from ..packages import ndimage
 from ..sampling.cloud_sampling import CloudSampling
 
@@ -50,17 +50,7 @@ _STEP = 0.5
 
 
 class Surroundings:
-    """Roofs and lowest points of a cloud in small cells.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        All points (m).
-    cluster_id : ndarray of shape (n,)
-        Building of each roof point from 1; 0 if unassigned.
-    sampling : CloudSampling
-        How the cloud was sampled.
-    """
+    """Roofs and lowest points of a cloud (n, 3), m, in small cells; ``cluster_id`` (n,) numbers roofs from 1."""
 
     def __init__(self, xyz: np.ndarray, cluster_id: np.ndarray, sampling: CloudSampling) -> None:
         self._xyz, self._cluster_id, self._sampling = xyz, cluster_id, sampling
@@ -144,11 +134,6 @@ def without_nested(parts: list) -> list:
     """Return the parts of a roof, each a list of rings, without those that lie in larger ones beside their holes."""
     kept: list = []
     for rings in sorted(parts, key=lambda rings: -signed_area(rings[0])):
-        if not any(_lies_in(rings[0][0], other) for other in kept):
+        if not any(are_within(rings[0][:1], sides_of_rings(other))[0] for other in kept):
             kept.append(rings)
     return kept
-
-
-def _lies_in(position: np.ndarray, rings: list) -> bool:
-    """Return whether a position lies in a part of a roof and in none of its holes."""
-    return bool(np.sum([are_inside(position[None], ring)[0] for ring in rings]) == 1)

@@ -46,14 +46,12 @@ def points_near(walls: np.ndarray, line: WallLine, scale: Scale) -> np.ndarray:
 
 
 def edge_between(start: np.ndarray, end: np.ndarray, line: WallLine, near: np.ndarray, scale: Scale) -> WallEdge:
-    """Return an edge with quality, points and precision from the points between its corners.
+    """Return an edge between two corners (2,), m, on a line, with what the points near it say.
 
     Parameters
     ----------
-    start : ndarray of shape (2,)
-        One corner, m.
-    end : ndarray of shape (2,)
-        The next corner, m.
+    start, end : ndarray of shape (2,)
+        Its corners, m.
     line : WallLine
         Line of the wall.
     near : ndarray of shape (k, 2)

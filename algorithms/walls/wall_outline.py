@@ -11,10 +11,10 @@ import numpy as np
 from ..geometry.line_segments import nearest_edge_distances
 from ..geometry.rings import perimeter
 from ..stage import Monitor
-from .cheapest_outline import Limits, OutlineCase, OutlineCells, Simplification
+from .cheapest_outline import OutlineCells, simplified
 from .roof_cover import RoofCover
 from .roof_outline import RoofOutline
-from .wall_edges import WallEdge, points_near
+from .wall_edges import WallEdge
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
 # Fewest points that show where a wall is, where a side of the roof makes it likely.
@@ -34,16 +34,25 @@ _EAVE = 0.3
 
 
 @dataclass(frozen=True)
+class Limits:
+    """What walls and footprints may be like."""
+
+    tolerance: float  #: Distance of points from their line, m
+    min_length: float  #: Shortest wall, m
+    max_overhang: float  #: Widest overhang of a roof, m
+    min_area: float  #: Smallest footprint, m²
+    min_seen: float  #: Least share of the perimeter with wall points
+    seed: int  #: Start of the random numbers
+
+
+@dataclass(frozen=True)
 class WallOutline:
     """The outline of one building's walls."""
 
     rings: list[list[WallEdge]]  #: Edges in order, exteriors first
     overhang: float  #: Overhang of the roof, m
-    lines: list[WallLine]  #: All lines that the outline could have been made of
-    scale: Scale  #: Tolerance and bins of this building's walls
-    #: low, high, (2,): corners of the rectangle that holds the roof and the room around it, m
-    low: np.ndarray
-    high: np.ndarray
+    cells: OutlineCells  #: The cells that it could have been made of
+    inside: np.ndarray  #: (cells,), bool: those that it was made of
 
 
 def share_seen(rings: list[list[WallEdge]]) -> float:
@@ -59,7 +68,6 @@ def outline_walls(
     outline: RoofOutline,
     limits: Limits,
     is_party: Callable[[np.ndarray], np.ndarray],
-    rng: np.random.Generator,
     monitor: Monitor,
 ) -> Optional[WallOutline]:
     """Return the outline of a building's walls, None where no wall is seen.
@@ -71,18 +79,16 @@ def outline_walls(
     outline : RoofOutline
         The roof's outline.
     limits : Limits
-        What walls may be like.
+        What walls and footprints may be like.
     is_party : callable
         Returns beside which sides (k, 2, 2) of the roof another roof begins: no eave juts out there.
-    rng : Generator
-        Random numbers.
     monitor : Monitor
         Receives progress.
     """
     exterior, *courtyards = outline.parts[0]
     scale = wall_scale(len(walls), perimeter(exterior), limits.tolerance)
     cover = RoofCover(roof, courtyards)
-    seen = find_lines(walls, scale, limits.min_length, rng, monitor.part(0.0, 0.3))
+    seen = find_lines(walls, scale, limits.min_length, np.random.default_rng(limits.seed), monitor.part(0.0, 0.3))
     seen = square_up(merge_lines(seen, walls, scale), walls)
     # Where no wall is seen, the sides are not drawn.
     if not seen or not len(outline.sides):
@@ -94,11 +100,10 @@ def outline_walls(
     overhangs = np.where(is_party(sides), 0.0, overhang)
     seen = [_expectation(line, sides, overhangs) for line in seen]
     lines = [*seen, *_from_roof(seen, sides, overhangs, walls, scale)]
-    near = [points_near(walls, line, scale) for line in lines]
-    case = OutlineCase(cover, scale, limits, overhang)
-    cells = OutlineCells(lines, near, case, monitor.part(0.3, 0.4))
-    rings = cells.rings(Simplification(cells).run(monitor.part(0.4, 1.0)))
-    return WallOutline(rings, overhang, lines, scale, cover.low, cover.high) if rings else None
+    cells = OutlineCells(lines, walls, cover, scale, overhang, limits.max_overhang)
+    inside = simplified(cells, monitor.part(0.4, 1.0))
+    rings = cells.rings(inside)
+    return WallOutline(rings, overhang, cells, inside) if rings else None
 
 
 def _expectation(line: WallLine, sides: np.ndarray, overhangs: np.ndarray) -> WallLine:

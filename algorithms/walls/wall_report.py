@@ -64,17 +64,7 @@ def point_counts(
 
 
 def wall_report(counts: dict[str, float], sources: list[str], outcomes: list[str]) -> Report:
-    """Return the report of a run.
-
-    Parameters
-    ----------
-    counts : dict of str to float
-        Points, as :func:`point_counts` returns them.
-    sources : list of str
-        What each footprint is the outline of.
-    outcomes : list of str
-        What became of each candidate corner.
-    """
+    """Return the report of a run: ``counts`` of points, the source of each footprint and the outcome of each corner."""
     values = {
         **counts,
         "all_outlines": len(sources),
