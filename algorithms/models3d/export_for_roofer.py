@@ -10,7 +10,7 @@ from ..cloud.asprs import PointClass
 from ..geometry.rings import signed_area
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Param, feature_names, stage
 from .cityjson import unique_names
-from .model_inputs import NO_AREA, require_buildings, require_ground, tell_without_area
+from .model_inputs import NO_AREA, require_buildings, require_ground, rows_near, tell_without_area
 from .roof_partition import inside_rings
 
 
@@ -107,13 +107,11 @@ def export_for_roofer(
     sound = [i for i, rings in enumerate(plan) if len(rings[0]) > 3 and abs(signed_area(rings[0])) >= NO_AREA]
     tell_without_area(len(sound), len(plan), monitor)
     order = np.argsort(xyz[:, 0], kind="stable")
-    easting, is_near = xyz[order, 0], np.zeros(len(xyz), bool)
+    ordered, is_near = xyz[order], np.zeros(len(xyz), bool)
     wanted = np.isin(classification, (PointClass.GROUND, PointClass.BUILDING))
     points = []
     for number, i in enumerate(sound):
-        low, high = plan[i][0].min(axis=0) - margin, plan[i][0].max(axis=0) + margin
-        rows = order[np.searchsorted(easting, low[0]) : np.searchsorted(easting, high[0], side="right")]
-        rows = rows[(xyz[rows, 1] >= low[1]) & (xyz[rows, 1] <= high[1])]
+        rows = order[rows_near(ordered, plan[i], margin)]
         is_near[rows] = True
         building = rows[classification[rows] == PointClass.BUILDING]
         points.append(int(inside_rings(xyz[building, :2], plan[i]).sum()))

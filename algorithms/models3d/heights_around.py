@@ -22,12 +22,5 @@ class HeightsAround:
 
     def highest(self, xy: np.ndarray) -> np.ndarray:
         """Return the height (k,), m, that a roof may have at positions (k, 2), infinite far from points."""
-        found = self._tree.query_ball_point(xy, RADIUS, return_sorted=False)
-        count = np.array([len(rows) for rows in found])
-        rows = np.concatenate([np.asarray(some, int) for some in found if some] or [np.zeros(0, int)])
-        highest = np.full(len(xy), np.inf)
-        is_near = count > 0
-        if is_near.any():
-            start = np.cumsum(count[is_near]) - count[is_near]
-            highest[is_near] = np.maximum.reduceat(self._z[rows], start)
-        return highest + _ABOVE
+        found = self._tree.query_ball_point(xy, RADIUS)
+        return np.array([self._z[rows].max() if rows else np.inf for rows in found]) + _ABOVE

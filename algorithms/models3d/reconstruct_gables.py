@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Optional
 
 import numpy as np
@@ -134,14 +134,15 @@ def reconstruct_gables(
     houses = []
     if groups:
         start = xyz.min(axis=0)
+        local = xyz - start
         label = np.repeat(np.arange(len(groups)), [len(points) for points in groups])
-        planes = planes_of(xyz[np.concatenate(groups)] - start, label, len(groups))
-        pairs = _gables(xyz - start, groups, planes, min_area, max_gap, monitor.part(0, 0.7))
-        ground = _Ground(xyz - start, classification)
+        planes = planes_of(local[np.concatenate(groups)], label, len(groups))
+        pairs = _gables(local, groups, planes, min_area, max_gap, monitor.part(0, 0.7))
+        ground = _Ground(local, classification)
         for done, (a, b) in enumerate(pairs, start=1):
-            house = _house(xyz - start, groups, planes, a, b, ground)
+            house = _house(local, groups, planes, a, b, ground)
             if house is not None:
-                houses.append(house.moved(start))
+                houses.append(replace(house, vertices=house.vertices + start))
             monitor.progress(0.7 + 0.3 * done / len(pairs))
     monitor.progress(1.0)
     if not houses:
@@ -159,10 +160,6 @@ class House:
     vertices: np.ndarray
     rms: float
     n_points: int
-
-    def moved(self, shift: np.ndarray) -> House:
-        """Return the house moved by a vector (3,), m."""
-        return House(self.vertices + shift, self.rms, self.n_points)
 
 
 class _Ground:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Annotated, Any, Callable, Optional
+from typing import Annotated, Any, Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..geometry.polylines import simplify_ring
 from ..geometry.rings import sampled_rings, signed_area
 from ..packages import spatial
 from ..sampling.cloud_sampling import CloudSampling
@@ -28,7 +29,15 @@ from .building_facts import (
 )
 from .building_models import LEVELS, Settings, model_building
 from .heights_around import RADIUS
-from .model_inputs import NO_AREA, TOLERANCE_TEXT, plane_tolerance, require_buildings, require_ground, tell_without_area
+from .model_inputs import (
+    NO_AREA,
+    TOLERANCE_TEXT,
+    plane_tolerance,
+    require_buildings,
+    require_ground,
+    rows_near,
+    tell_without_area,
+)
 from .roof_partition import inside_rings
 from .roof_points import are_low
 from .solids import ROOF, WALL
@@ -43,8 +52,7 @@ _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 # Number of footprints without a model that a warning names.
 _NAMED = 5
 
-# Vertices of footprints nearer to each other than this (m) are one; those nearer to the line of their neighbors are
-# superfluous.
+# Vertices of footprints nearer than this (m) to each other, or to the line of those kept, are superfluous.
 _CLOSE = 0.01
 
 
@@ -243,32 +251,13 @@ def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> lis
     """Return the footprints that have an area; say how many don't."""
     outlines = []
     for row, (rings, name) in enumerate(zip(footprints.geometries, feature_names(footprints, id_field))):
-        plan = [_cleaned(np.asarray(ring, float)[:, :2]) for ring in rings]
+        plan = [simplify_ring(np.asarray(ring, float)[:, :2], _CLOSE) for ring in rings]
         sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
         if sound and sound[0] is plan[0] and abs(signed_area(plan[0])) >= NO_AREA:
             facts = {field: values[row] for field, values in footprints.columns.items()} if id_field else None
             outlines.append(_Outline(name, sound, None if facts is None else map_attributes(facts)))
     tell_without_area(len(outlines), len(footprints), monitor)
     return outlines
-
-
-def _cleaned(ring: np.ndarray) -> np.ndarray:
-    """Return a closed ring without the vertices that are too close to another one or to the line of their neighbors."""
-    kept = [ring[0]]
-    for position, following in zip(ring[1:-1], ring[2:]):
-        is_apart = np.hypot(*(position - kept[-1])) >= _CLOSE and np.hypot(*(position - ring[0])) >= _CLOSE
-        if is_apart and _off_line(position, kept[-1], following) >= _CLOSE:
-            kept.append(position)
-    if len(kept) > 2 and _off_line(kept[0], kept[-1], kept[1]) < _CLOSE:
-        kept.pop(0)
-    return np.array([*kept, kept[0]])
-
-
-def _off_line(position: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
-    """Return the distance (m) of a position to the line between two others."""
-    along, offset = end - start, position - start
-    length = float(np.hypot(*along))
-    return abs(along[0] * offset[1] - along[1] * offset[0]) / length if length > 0 else float(np.hypot(*offset))
 
 
 def _modelled(
@@ -283,16 +272,17 @@ def _modelled(
 
     The points are those of buildings in the order of their eastings.
     """
-    ground_of = _ground_heights(ground)
+    tree = spatial.cKDTree(ground[:, :2])
     models, empty, failed = [], 0, []
     for number, outline in enumerate(outlines):
-        over = _rows_over(building, outline.rings)
+        over = rows_near(building, outline.rings)
+        over = over[inside_rings(building[over, :2], outline.rings)]
         area = 2 * abs(signed_area(outline.rings[0])) - sum(abs(signed_area(ring)) for ring in outline.rings)
         if len(over) < _LEAST_POINTS or len(over) * settings.spacing**2 < _LEAST_COVERED * area:
             empty += 1
         else:
-            base, terrain = ground_of(outline.rings)
-            around = building[_rows_near(building, outline.rings, RADIUS)]
+            base, terrain = _ground_heights(ground, tree, outline.rings)
+            around = building[rows_near(building, outline.rings, RADIUS)]
             model = model_building(building[over], is_low[over], around, outline.rings, base, settings)
             model.terrain = terrain
             if model.level:
@@ -325,28 +315,10 @@ def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monit
         monitor.warn(f"{len(failed)} of {count} footprints have points but no model ({named}{more}).")
 
 
-def _rows_over(building: np.ndarray, rings: list) -> np.ndarray:
-    """Return which points, of those in the order of their eastings, lie over a footprint: rows, ascending."""
-    rows = _rows_near(building, rings)
-    return rows[inside_rings(building[rows, :2], rings)]
-
-
-def _rows_near(building: np.ndarray, rings: list, margin: float = 0.0) -> np.ndarray:
-    """Return which points, of those in the order of their eastings, lie in the box around a footprint, ``margin`` m."""
-    (west, south), (east, north) = rings[0].min(axis=0) - margin, rings[0].max(axis=0) + margin
-    rows = np.arange(*np.searchsorted(building[:, 0], (west, east)))
-    return rows[(building[rows, 1] >= south) & (building[rows, 1] <= north)]
-
-
-def _ground_heights(ground: np.ndarray) -> Callable[[list], tuple[float, float]]:
-    """Return what gives the heights (m) of the base and of the terrain of a footprint."""
-    tree = spatial.cKDTree(ground[:, :2])
-
-    def ground_of(rings: list) -> tuple[float, float]:
-        z = ground[tree.query(sampled_rings(rings[:1], _GROUND_STEP))[1], 2]
-        return float(np.percentile(z, _GROUND_PERCENTILE)), float(np.median(z))
-
-    return ground_of
+def _ground_heights(ground: np.ndarray, tree: Any, rings: list) -> tuple[float, float]:
+    """Return the heights (m) of the base and of the terrain of a footprint; ``tree`` is that of the ground in plan."""
+    z = ground[tree.query(sampled_rings(rings[:1], _GROUND_STEP))[1], 2]
+    return float(np.percentile(z, _GROUND_PERCENTILE)), float(np.median(z))
 
 
 def _building_layer(models: list[NamedModel]) -> LayerFeatures:

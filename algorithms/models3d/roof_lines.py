@@ -31,6 +31,9 @@ _SAME_TURN, _SAME_OFFSET = 0.04, 0.10
 # Points no farther than this from a step (m, spacings) locate it.
 _NEAR, _NEAR_SPACINGS = 0.6, 2.0
 
+# Walls at least this share of the longest one long give main directions.
+_LONG = 0.5
+
 # Main directions are preferred by this share of the contacts.
 _PREFERENCE = 1.15
 
@@ -83,24 +86,12 @@ def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: f
 
 
 def main_directions(rings: list) -> np.ndarray:
-    """Return unit vectors (k, 2) along and across the walls of a footprint, the longest direction first; at most 6."""
+    """Return unit vectors (k, 2) along and across the longer walls of a footprint."""
     edge = np.concatenate([np.diff(ring, axis=0) for ring in rings])
     length = np.hypot(*edge.T)
-    edge, length = edge[length > 0], length[length > 0]
-    angle = np.arctan2(edge[:, 1], edge[:, 0]) % (np.pi / 2)
-    found: list[float] = []
-    left = length.copy()
-    for _ in range(3):
-        if left.sum() < 0.1 * length.sum():
-            break
-        apart = np.abs((angle[:, None] - angle + np.pi / 4) % (np.pi / 2) - np.pi / 4)
-        best = np.argmax((apart < _SAME_TURN) @ left * (left > 0))
-        close = (apart[best] < _SAME_TURN) & (left > 0)
-        turn = (angle[close] - angle[best] + np.pi / 4) % (np.pi / 2) - np.pi / 4
-        found.append(float(angle[best] + np.average(turn, weights=left[close])))
-        left[apart[best] < 2 * _SAME_TURN] = 0
-    both = np.array([a + quarter for a in found for quarter in (0, np.pi / 2)])
-    return np.column_stack([np.cos(both), np.sin(both)])
+    is_long = length >= _LONG * length.max()
+    along = edge[is_long] / length[is_long, None]
+    return np.concatenate([along, np.column_stack([-along[:, 1], along[:, 0]])])
 
 
 def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -47,14 +47,9 @@ def are_low(xyz: np.ndarray, spacing: float) -> np.ndarray:
 
 
 def are_on_roof(above: np.ndarray, is_low: np.ndarray) -> np.ndarray:
-    """Return which points (n,) are on top of a roof.
+    """Return which points (n,) are on top of a roof, by their heights ``above`` (n,), m, the face over or under them.
 
-    Parameters
-    ----------
-    above : ndarray of shape (n,)
-        Their heights above the face over or under them (m).
-    is_low : ndarray of shape (n,), bool
-        Which points have a higher one beside them; those far under the model lie on walls.
+    Points that have a higher one beside them, ``is_low`` (n,), lie on walls if they are far under the model.
     """
     return ~is_low | (above > -RULES.below)
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.points_in_polygons import are_within
-from ..geometry.rings import signed_area
+from ..geometry.line_segments import polygons_of
 from .solid_levels import BASE, Levels, Position
-from .solids import GROUND, ROOF, WALL, Ring, Solid, edges_around, edges_of, groups_of
+from .solids import GROUND, ROOF, WALL, Ring, Solid, edges_around, groups_of
 
 # A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous.
 _SUPERFLUOUS = 0.0005
@@ -23,15 +22,7 @@ _STRAIGHT = 0.0005
 def build_solid(levels: Levels) -> tuple[Solid, list[list[int]]]:
     """Return the solid between a level ground and the planes of cells, and the cells beside each of its faces.
 
-    Parameters
-    ----------
-    levels : Levels
-        The heights; cells get vertices where roofs cross.
-
-    Raises
-    ------
-    ValueError
-        If more than two faces would meet in an edge; see :func:`Levels.crowded`.
+    Cells get vertices where roofs cross.
     """
     levels.part_crossing_roofs()
     return _Builder(levels).solid()
@@ -97,7 +88,7 @@ class _Builder:
         """Return which connected part of equal planes each cell is in."""
         pairs = [(cell, self.cells.cell_of[v, u]) for u, v, cell, plane, beyond in self.edges if beyond == plane]
         group = groups_of(pairs, len(self.cells))
-        return {cell: group[cell] for cell in range(len(group)) if self.label[cell] >= 0}
+        return {cell: number for cell, number in enumerate(group) if self.label[cell] >= 0}
 
     def _ground_edges(self) -> list[tuple[int, int]]:
         number = self.levels.number
@@ -182,21 +173,8 @@ class _Builder:
 
     def _polygons(self, rings: list[Ring], upward: bool) -> list[list[Ring]]:
         """Return the rings of one part: the exterior first, then its holes."""
-        plan = self.plan
-        areas = [signed_area(plan[[*ring, ring[0]]]) * (1 if upward else -1) for ring in rings]
-        outer = [i for i, area in enumerate(areas) if area > 0]
-        if len(outer) == 1:
-            return [[rings[outer[0]], *(ring for i, ring in enumerate(rings) if i != outer[0])]]
-        polygons = {i: [rings[i]] for i in sorted(outer, key=lambda i: areas[i])}
-        for i, ring in enumerate(rings):
-            if i in polygons:
-                continue
-            middle = plan[ring].mean(axis=0)[None]
-            for exterior, *_ in polygons.values():
-                if are_within(middle, edges_of(plan[exterior]))[0]:
-                    polygons[rings.index(exterior)].append(ring)
-                    break
-        return list(polygons.values())
+        closed = [self.plan[[*ring, ring[0]]][:: 1 if upward else -1] for ring in rings]
+        return [[rings[i] for i in part] for part in polygons_of(closed)]
 
 
 def _rings(edges: list[tuple[int, int]]) -> list[Ring]:

@@ -8,10 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.line_segments import edge_distances, nearest_edge_distances
 from ..geometry.points_in_polygons import are_within
+from ..geometry.polygons import axes_across
+from ..geometry.rings import sides_of_rings, signed_area
 from ..packages import spatial
 from .face_triangles import triangulate_face
-from .solids import Ring, Solid, edges_around, edges_of, groups_of
+from .solids import Ring, Solid, edges_around, groups_of
 
 
 @dataclass(frozen=True)
@@ -100,7 +103,7 @@ def _shell_faults(solid: Solid) -> Iterator[tuple[int, str]]:
         yield 0, "there are fewer than four faces"
         return
     owner = {edge: face for face, rings in enumerate(solid.faces) for edge in _edges(rings)}
-    piece = groups_of(((face, owner[b, a]) for (a, b), face in owner.items()), len(solid.faces))
+    piece = groups_of([(face, owner[b, a]) for (a, b), face in owner.items()], len(solid.faces))
     largest = int(np.argmax(np.bincount(piece)))
     yield from ((face, "it is in pieces") for face, number in enumerate(piece) if number != largest)
 
@@ -123,13 +126,10 @@ class _Face:
         self.edge = np.array(_edges(self.rings))
         vector = solid.normals[number]
         self.area = float(np.linalg.norm(vector))
-        self.normal = vector / max(self.area, 1e-12)
+        self.normal = vector / self.area if self.area > 0 else np.eye(3)[2]
         corners = solid.vertices[self.edge[:, 0]]
         self.center = corners.mean(axis=0)
-        across = np.eye(3)[np.argmin(np.abs(self.normal))]
-        axis = across - (across @ self.normal) * self.normal
-        axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
-        self.axes = np.column_stack([axis, _cross(self.normal, axis)])
+        self.axes = np.column_stack(axes_across(self.normal))
         self.start = self.in_plane(corners)
         self.end = self.in_plane(solid.vertices[self.edge[:, 1]])
         self.off = float(np.abs((corners - self.center) @ self.normal).max())
@@ -159,13 +159,9 @@ class _Face:
 
     def _least_width(self) -> float:
         """Return the least distance (m) of a corner to an edge that does not end in it."""
-        step = self.end - self.start
-        offset = self.start[:, None] - self.start[None]
-        length = np.maximum((step**2).sum(axis=1), 1e-18)
-        share = np.clip((offset[..., 0] * step[:, 0] + offset[..., 1] * step[:, 1]) / length, 0, 1)
-        square = ((offset - share[..., None] * step) ** 2).sum(axis=2)
+        distance = edge_distances(self.start, self.start, self.end)
         ends_there = (self.edge[:, :1] == self.edge[None, :, 0]) | (self.edge[:, :1] == self.edge[None, :, 1])
-        return float(np.sqrt(np.min(square, initial=np.inf, where=~ends_there)))
+        return float(np.min(distance, initial=np.inf, where=~ends_there))
 
     def _has_turned_triangle(self, width: float) -> bool:
         """Return whether a triangle of the face turns too far from it, where it is ``width`` (m) wide everywhere."""
@@ -174,7 +170,7 @@ class _Face:
         if 2 * self.off * longest <= width**2 * np.tan(np.deg2rad(RULES.turn)):
             return False
         corner = self.vertices[np.array(triangulate_face(self.vertices, self.rings))]
-        across = _cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        across = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
         length = np.sqrt((across**2).sum(axis=1))
         return bool((across @ self.normal < length * np.cos(np.deg2rad(RULES.turn))).any())
 
@@ -194,14 +190,14 @@ class _Face:
     def _ring_fault(self) -> str:
         """Return what is wrong with the exterior and the holes, "" where each hole lies inside by itself."""
         first = np.cumsum([0, *(len(ring) for ring in self.rings)])
-        plans = [self.start[a:b] for a, b in zip(first, first[1:])]
-        areas = [_area(plan) for plan in plans]
+        plans = [self.start[[*range(a, b), a]] for a, b in zip(first, first[1:])]
+        areas = list(map(signed_area, plans))
         if areas[0] <= 0 or max(areas[1:]) >= 0:
             return "a ring of a face runs the wrong way"
         for number, hole in enumerate(plans[1:], start=1):
             # Holes may touch other rings in one corner.
-            inside = [are_within(hole, edges_of(plan)).sum() for plan in plans]
-            if inside[0] < len(hole) - 1 or any(n > 1 for k, n in enumerate(inside) if k not in (0, number)):
+            inside = [are_within(hole[:-1], sides_of_rings([plan])).sum() for plan in plans]
+            if inside[0] < len(hole) - 2 or any(n > 1 for k, n in enumerate(inside) if k not in (0, number)):
                 return "a hole of a face is not inside it"
         return "holes divide a face" if self._is_divided() else ""
 
@@ -212,19 +208,15 @@ class _Face:
             for corner in ring:
                 rings_at[corner].append(number)
         links = [(ring, len(self.rings) + k) for k, at in enumerate(rings_at.values()) if len(at) > 1 for ring in at]
-        group = groups_of(links, len(self.rings) + len(rings_at))
+        count = len(self.rings) + len(rings_at)
         # Each tree of a forest has one link less than nodes.
-        return len(links) > len(group) - len(set(group))
+        return len(links) > count - 1 - max(groups_of(links, count))
 
     def holds(self, xyz: np.ndarray) -> np.ndarray:
         """Return which positions (n,) of the plane lie in the face, farther from its edges than corners may be."""
         plan = self.in_plane(xyz)
         inside = are_within(plan, np.stack([self.start, self.end], axis=1))
-        step = self.end - self.start
-        offset = plan[:, None] - self.start[None]
-        share = np.clip((offset * step).sum(axis=2) / (step**2).sum(axis=1), 0, 1)
-        distance = np.sqrt(((offset - share[..., None] * step) ** 2).sum(axis=2)).min(axis=1)
-        return inside & (distance > RULES.apart)
+        return inside & (nearest_edge_distances(plan, self.start, self.end) > RULES.apart)
 
 
 def _fan_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
@@ -278,7 +270,7 @@ def _meeting_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
     found = {}
     normal = np.array([[owner[a, b].normal, owner[b, a].normal] for a, b in pairs])
     along = solid.vertices[edge[:, 1]] - solid.vertices[edge[:, 0]]
-    inward = _cross(normal[:, 0], along), _cross(normal[:, 1], -along)
+    inward = np.cross(normal[:, 0], along), np.cross(normal[:, 1], -along)
     # Both faces lie to the same side of their edge where they are folded.
     cosine = np.einsum("ij,ij->i", *inward) / np.maximum((along**2).sum(axis=1), 1e-18)
     for row in np.flatnonzero(cosine > np.cos(np.deg2rad(RULES.folded))):
@@ -307,20 +299,3 @@ def _is_crossed(face: _Face, one: np.ndarray, two: np.ndarray) -> bool:
     rows = np.flatnonzero(through | lies)
     crossings = one[rows] + share[rows, None] * (two[rows] - one[rows])
     return bool(len(rows)) and bool(face.holds(crossings).any())
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the cross products (…, 3); much faster than numpy's for few rows."""
-    return np.stack(
-        [
-            a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1],
-            a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2],
-            a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0],
-        ],
-        axis=-1,
-    )
-
-
-def _area(plan: np.ndarray) -> float:
-    x, y = (plan - plan[0]).T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+
+from ..geometry.groups import components
 
 ROOF, WALL, GROUND = "roof", "wall", "ground"
 
@@ -51,29 +52,12 @@ class Solid:
         return float(np.einsum("ij,ij->", corner, self.normals)) / 3
 
 
-def groups_of(pairs: Iterable[tuple[int, int]], count: int) -> list[int]:
-    """Return the group (count,) of each item that pairs hold together: its first item.
-
-    A building has too few items for a sparse matrix to be worth its set-up.
-    """
-    first = list(range(count))
-
-    def of(item: int) -> int:
-        while first[item] != item:
-            first[item] = item = first[first[item]]
-        return item
-
-    for one, other in pairs:
-        low, high = sorted((of(one), of(other)))
-        first[high] = low
-    return [of(item) for item in range(count)]
-
-
 def edges_around(ring: Ring) -> list[tuple[int, int]]:
     """Return the edges of an open ring, as pairs of vertices."""
     return list(zip(ring, [*ring[1:], *ring[:1]]))
 
 
-def edges_of(ring: np.ndarray) -> np.ndarray:
-    """Return the edges (n, 2, 2) of an open ring (n, 2)."""
-    return np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
+def groups_of(pairs: list[tuple[int, int]], count: int) -> list[int]:
+    """Return the group of each of ``count`` items that pairs hold together, from 0."""
+    one, other = np.array(pairs, int).reshape(-1, 2).T
+    return components(one, other, count)[1].tolist()
