@@ -9,11 +9,10 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.groups import components
-from .heights_around import HeightsAround
 from .mending import mended
 from .roof_partition import FARTHEST, Partition, divide_footprint, empty_partition, inside_rings
 from .roof_planes import RoofPlanes, find_roof_planes, with_level_patches
-from .roof_points import are_on_roof, distances, root_mean_square, share_off
+from .roof_points import HeightsAround, are_on_roof, distances, root_mean_square, share_off
 from .solids import Solid
 
 # Levels of detail, from the simplest.

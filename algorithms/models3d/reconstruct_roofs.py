@@ -28,7 +28,6 @@ from .building_facts import (
     map_attributes,
 )
 from .building_models import LEVELS, Settings, model_building
-from .heights_around import RADIUS
 from .model_inputs import (
     NO_AREA,
     TOLERANCE_TEXT,
@@ -39,7 +38,7 @@ from .model_inputs import (
     tell_without_area,
 )
 from .roof_partition import inside_rings
-from .roof_points import are_low
+from .roof_points import RADIUS, are_low
 from .solids import ROOF, WALL
 
 # Fewer points than this over a footprint, or a smaller share of its area with points, show no roof.

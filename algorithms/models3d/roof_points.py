@@ -1,4 +1,4 @@
-"""The points on top of roofs, and how far models are from them."""
+"""The points on top of roofs, how far models are from them, and how high these allow roofs to be."""
 
 from __future__ import annotations
 
@@ -7,6 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.grid import find_cells, grid_over
+from ..packages import spatial
+
+# Distance (m) in plan within which points limit the height of a corner: ridges and eaves are sampled that closely.
+RADIUS = 1.5
+
+# Height (m) above the highest of these points up to which a corner may lie: noise is less.
+_ABOVE = 0.5
 
 
 @dataclass(frozen=True)
@@ -67,3 +74,16 @@ def root_mean_square(off: np.ndarray) -> float:
 def share_off(off: np.ndarray) -> float:
     """Return the share of distances (m) that are off the model, NaN without any."""
     return float(np.mean(np.abs(off) > RULES.off)) if len(off) else np.nan
+
+
+class HeightsAround:
+    """The heights up to which the points ``xyz`` (n, 3) of a building allow a roof."""
+
+    def __init__(self, xyz: np.ndarray) -> None:
+        self._z = xyz[:, 2]
+        self._tree = spatial.cKDTree(xyz[:, :2])
+
+    def highest(self, xy: np.ndarray) -> np.ndarray:
+        """Return the height (k,), m, that a roof may have at positions (k, 2), infinite far from points."""
+        found = self._tree.query_ball_point(xy, RADIUS)
+        return np.array([self._z[rows].max() if rows else np.inf for rows in found]) + _ABOVE

@@ -23,7 +23,7 @@ _EXACT = 0.0001
 # A vertex this close (m) to the line of its neighbors on the outline is no corner of it.
 _ON_OUTLINE = 0.005
 
-# Lines that turn by less than this (sine) have no intersection to go to.
+# Directions of lines whose spread is less than this share of the greatest one have no intersection to go to.
 _LEAST_TURN = 0.05
 
 # What is beyond the outline in place of a plane: the ground.
@@ -32,14 +32,8 @@ BASE = -1
 # Easting, northing and height (m).
 Position = tuple[float, float, float]
 
-# A line in plan: its unit normal (x, y) and its distance along that from a position (m).
-_Line = tuple[float, float, float]
-
 # As many changes between up and down around a vertex are one edge with four walls.
 _CROWD = 4
-
-# More planes than this have no point in common but by chance.
-_IN_A_POINT = 3
 
 
 class Levels:
@@ -100,47 +94,30 @@ class Levels:
         return a * plan[0] + b * plan[1] + c
 
     def _move_to_intersection(self, vertex: int, planes: list[int]) -> None:
-        """Move a vertex to where planes intersect, on the outline if it lies on that."""
-        plan = self.plan[vertex]
-        meeting = self._meeting(planes, plan)
-        if not meeting or meeting[-1][0] < _EXACT:
+        """Move a vertex to where the planes that nearly meet in it intersect, along the outline if it lies on that."""
+        (x, y), coefficients = self.plan[vertex], np.array([self.coefficients[plane] for plane in planes])
+        one, other = np.triu_indices(len(planes), 1)
+        difference = coefficients[one] - coefficients[other]
+        turn = np.hypot(difference[:, 0], difference[:, 1])
+        apart = difference @ [x, y, 1.0]
+        is_near = (turn > 0) & (np.abs(apart) <= _MEET * turn)
+        if not (np.abs(apart[is_near]) >= _EXACT * turn[is_near]).any():
             return
-        near = sorted({plane for _, _, pair in meeting for plane in pair})
-        if len(near) > _IN_A_POINT and vertex not in self._outline:
-            step = self._nearest_point(near, plan)
-            if math.hypot(*step) <= _MEET and self._move(vertex, step):
-                return
-        along = [self._across(plan, self.plan[other]) for other in self._outline.get(vertex, ())]
-        self._move(vertex, _common_step([*along, *(line for _, line, _ in meeting)]))
-
-    def _meeting(self, planes: list[int], plan: tuple[float, float]) -> list[tuple[float, _Line, tuple[int, int]]]:
-        """Return the lines in which planes intersect near a position, each with its distance (m); nearest first."""
-        found = []
-        for i, one in enumerate(planes):
-            a, b, c = self.coefficients[one]
-            for other in planes[i + 1 :]:
-                d, e, f = self.coefficients[other]
-                turn = math.hypot(a - d, b - e)
-                step = (a - d) * plan[0] + (b - e) * plan[1] + c - f
-                if turn > 0 and abs(step) <= _MEET * turn:
-                    found.append((abs(step) / turn, ((a - d) / turn, (b - e) / turn, -step / turn), (one, other)))
-        return sorted(found)
+        # Where it may go: anywhere, or along the outline.
+        ways = np.eye(2)
+        for neighbor in self._outline.get(vertex, ())[:1]:
+            ways = np.subtract(self.plan[neighbor], (x, y))[:, None] / math.dist(self.plan[neighbor], (x, y))
+        step = ways @ np.linalg.lstsq(difference[is_near, :2] @ ways, -apart[is_near], _LEAST_TURN)[0]
+        if np.hypot(*step) <= _MEET:
+            self._move(vertex, tuple(step.tolist()))
 
     def _nearest_point(self, planes: list[int], plan: tuple[float, float]) -> tuple[float, float]:
         """Return the step (m) from a position to where planes are nearest to having one height."""
         rows = np.array([self.coefficients[plane] for plane in planes])
         height = rows @ [*plan, 1.0]
-        step = np.linalg.lstsq(np.column_stack([rows[:, :2], -np.ones(len(rows))]), height.mean() - height, rcond=None)[
-            0
-        ]
-        return float(step[0]), float(step[1])
-
-    @staticmethod
-    def _across(plan: tuple[float, float], other: tuple[float, float]) -> _Line:
-        """Return the line from a position to another one."""
-        x, y = other[0] - plan[0], other[1] - plan[1]
-        length = math.hypot(x, y)
-        return -y / length, x / length, 0.0
+        factors = np.column_stack([rows[:, :2], -np.ones(len(rows))])
+        x, y, _ = np.linalg.lstsq(factors, height.mean() - height, rcond=None)[0].tolist()
+        return x, y
 
     def _move(self, vertex: int, step: tuple[float, float]) -> bool:
         """Move a vertex by a step (m) if the cells around it keep their orientation; return whether it was moved."""
@@ -187,9 +164,9 @@ class Levels:
         if len(beside) != 2 or neighbor not in beside:
             return False
         (beyond,) = beside - {neighbor}
-        nx, ny, _ = self._across(self.plan[neighbor], self.plan[beyond])
-        x, y = (a - b for a, b in zip(self.plan[vertex], self.plan[neighbor]))
-        return abs(nx * x + ny * y) < _ON_OUTLINE
+        (x0, y0), (x1, y1), (x, y) = (self.plan[v] for v in (neighbor, beyond, vertex))
+        across = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
+        return abs(across) < _ON_OUTLINE * math.hypot(x1 - x0, y1 - y0)
 
     def _join_at(self, kept: int, gone: int, plan: tuple[float, float]) -> bool:
         """Join two vertices at a position if no cell turns over or falls apart; return whether they were joined.
@@ -300,30 +277,3 @@ def turns_around(heights: list[float]) -> int:
     """Return how often a ring of heights changes between up and down."""
     steps = [b - a for a, b in zip(heights, [*heights[1:], heights[0]]) if abs(b - a) > 1e-9]
     return sum(a * b < 0 for a, b in zip(steps, [*steps[1:], *steps[:1]]))
-
-
-def _common_step(lines: list[_Line]) -> tuple[float, float]:
-    """Return the shortest step (m) onto lines (nx, ny, offset), in this order; those that it can't reach are left out.
-
-    Steps are no longer than planes meet in a vertex.
-    """
-    first, step, is_point = None, (0.0, 0.0), False
-    for line in lines:
-        nx, ny, offset = line
-        if abs(nx * step[0] + ny * step[1] - offset) <= _EXACT:
-            first = first or line
-            continue
-        if is_point:
-            continue
-        if first is None:
-            wanted = nx * offset, ny * offset
-        else:
-            mx, my, other = first
-            turn = mx * ny - my * nx
-            if abs(turn) < _LEAST_TURN:
-                continue
-            wanted = (other * ny - offset * my) / turn, (mx * offset - nx * other) / turn
-        if math.hypot(*wanted) <= _MEET:
-            step, is_point = wanted, first is not None
-            first = first or line
-    return step
