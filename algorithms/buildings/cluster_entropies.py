@@ -7,7 +7,7 @@ from typing import Optional, Union
 
 import numpy as np
 
-from ..geometry.mixing import mixed
+from ..geometry.scattered import scattered
 from ..neighborhoods.covariance import Nearest, neighborhood_eigenvalues, shannon_entropy_lps
 from ..neighborhoods.wide_in_plan import Wide
 from ..packages import spatial
@@ -84,7 +84,7 @@ def _sample(xyz: np.ndarray, share: np.ndarray) -> np.ndarray:
     The coordinates alone decide, so that a cluster has the same sample in every part of a survey that holds it.
     """
     # Tenths of a millimeter: coordinates that were stored in steps may differ by rounding.
-    chosen = mixed(np.rint(xyz * 1e4).astype(np.int64)) < share
+    chosen = scattered(np.rint(xyz * 1e4).astype(np.int64)) < share
     # Points that coincide are all chosen or none of them: without any, no cluster would have a mean.
     return chosen if chosen.any() else np.ones(len(xyz), bool)
 

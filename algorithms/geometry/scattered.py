@@ -17,7 +17,7 @@ def scattered(cells: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     cells : ndarray of shape (m, 2 or 3), int64
-        Columns and rows, or columns, rows and layers.
+        Columns and rows, or columns, rows and layers; coordinates of points in steps of their file.
     """
     number = cells.astype(np.uint64) @ _MULTIPLIERS[: cells.shape[1]]
     # The lowest bits of a product depend on the lowest of its factors alone.

@@ -9,7 +9,7 @@ from typing import Callable, Optional, Union
 import numpy as np
 
 from ..geometry.grid import plan_box
-from ..geometry.mixing import mixed
+from ..geometry.scattered import scattered
 from ..geometry.tin import PLANE_POINTS
 from ..neighborhoods.covariance import Nearest, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import LEAST_WIDTH, MOST_ACROSS_LINES, Wide
@@ -236,7 +236,7 @@ def _squares(xyz: np.ndarray, spacing: Optional[float]) -> tuple[np.ndarray, np.
     position = (xyz[:, :2] - low) / side
     square = np.floor(position)
     middle = (np.abs(position - square - 0.5) <= SURFACES.middle / 2).all(axis=1)
-    chosen = mixed(square.astype(np.int64)) < min(1.0, SURFACES.sample / (SURFACES.middle**2 * len(xyz)))
+    chosen = scattered(square.astype(np.int64)) < min(1.0, SURFACES.sample / (SURFACES.middle**2 * len(xyz)))
     middle &= chosen
     # A cloud on few squares, a mast or a wall, is looked at whole.
     return (chosen, middle) if middle.sum() >= SURFACES.least_of_sample * SURFACES.sample else (everything, everything)
