@@ -23,7 +23,7 @@ from qgis.core import (
 
 from ..algorithms.cloud.files import check_readable, count_points, read_extent, write_cloud
 from ..algorithms.help import pipeline_help
-from ..algorithms.pipeline import Output, Pipeline, Step
+from ..algorithms.pipeline import CLOUD, Output, Pipeline, Step
 from ..algorithms.stage import Cancelled
 from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
@@ -146,11 +146,16 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             child_output = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
             output = self._output(child_output.childId(), child_output.childOutputName().lower())
             mended.setName(output.name.upper())
-            if mended.name() != OUTPUT:
+            if mended.name() != OUTPUT or self._makes_more_than_clouds():
                 mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
+            if mended.name() != OUTPUT:
                 # Results of steps in between are made on request only.
                 mended.setCreateByDefault(_rank(output) < _INTERMEDIATE)
         return mended
+
+    def _makes_more_than_clouds(self) -> bool:
+        """Whether it has outputs, such as footprints, that may be all that is wanted."""
+        return any(output.of != CLOUD for output in self.pipeline.outputs)
 
     def _output(self, step_name: str, of: str) -> Output:
         return next(output for output in self.pipeline.outputs if (output.step.name, output.of) == (step_name, of))
@@ -225,7 +230,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
     def _not_kept(self, parameters: dict) -> list[str]:
         """Return the names of outputs that nobody asks for and a step makes for another one."""
         needed = [output.name.upper() for output in self.pipeline.outputs if self.pipeline.needs(output)]
-        return [name for name in needed if name != OUTPUT and parameters.get(name) in (None, "")]
+        return [name for name in needed if parameters.get(name) in (None, "")]
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback

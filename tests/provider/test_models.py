@@ -422,6 +422,13 @@ def test_what_is_not_kept_is_not_written(provider, context, log, mapping, out):
     assert result["ARROWS_LONGEST"] == pytest.approx(9 * np.sqrt(2))
 
 
+def test_layers_can_be_all_that_is_asked_for(provider, context, log, mapping, out):
+    """The classified cloud had to be written to get footprints alone."""
+    result = run("toymapping", {**mapping, "ARROWS": str(out / "arrows.gpkg")}, context, log)
+    assert [path.name for path in out.iterdir()] == ["arrows.gpkg"]
+    assert set(result) & set(KEPT) == {"ARROWS"}
+
+
 def test_the_mapping_chain_shows_what_it_is_given_and_makes(provider):
     algorithm = provider.algorithm("toymapping").create()
     definitions = {definition.name(): definition for definition in algorithm.parameterDefinitions()}
@@ -432,7 +439,7 @@ def test_the_mapping_chain_shows_what_it_is_given_and_makes(provider):
     made = algorithm.destinationParameterDefinitions()
     assert [d.name() for d in made][0] == "OUTPUT"
     assert {d.name() for d in made} == set(KEPT)
-    assert {d.name() for d in made if d.flags() & optional} == set(KEPT) - {"OUTPUT"}
+    assert {d.name() for d in made if d.flags() & optional} == set(KEPT)
     assert definitions["HIGH_OUTPUT"].description() == "High: selected points"
     # Clouds between the steps, and rasters, which would cover the result, are made for those who ask.
     assert {d.name() for d in made if not d.createByDefault()} == {"LIFT_OUTPUT", "HIGH_OUTPUT", "TOP", "FLOOR"}
