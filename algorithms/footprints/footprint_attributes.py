@@ -10,11 +10,11 @@ import numpy as np
 from ..cloud.reasons import ADDED, Reason
 from ..geometry.groups import split_groups
 from ..geometry.rings import along_sides, perimeter, sides_of_rings, signed_area
-from ..packages import ndimage, spatial
+from ..packages import spatial
 from ..stage import Field
 from ..threads import searchers
 from .drawn_blocks import Outlined
-from .soft_shares import APART, Lattice, smoothed
+from .soft_shares import APART, NODES
 
 FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
@@ -53,9 +53,6 @@ _FLAT = 0.15
 
 # Largest slope (tangent) of such a plane: 68°.
 _STEEPEST = 2.5
-
-# Least weight of roof points at a position whose height they give: that of one point 1.2 spacings away.
-_COVERED = 0.02
 
 
 @dataclass(frozen=True)
@@ -114,7 +111,7 @@ def footprint_attributes(
     if not outlines:
         return []
     plan_of_all = measures.plan(members)
-    owners = _Owners(outlines, plan_of_all, spacing)
+    owners = _Owners(outlines, spacing)
     plan, over_ground = measures.plan(points), measures.over_ground(points)
     own = split_groups(owners.at(plan), len(outlines))
     all_own = split_groups(owners.at(plan_of_all), len(outlines))
@@ -129,7 +126,7 @@ def footprint_attributes(
                 "cluster_id": outlined.building,
                 "area": area,
                 "perimeter": sum(map(perimeter, outlined.rings)),
-                "volume": area * _mean_height(outlined.nodes, plan[inner], over_ground[inner], spacing),
+                "volume": area * _mean_height(outlined.nodes, plan[inner], over_ground[inner]),
                 "regularized": int(outlined.is_straight),
                 "ground_elevation": _percentile(measures.xyz[points[inner], 2] - over_ground[inner], 50),
                 "eave_height": _percentile(eaves, _EAVE),
@@ -146,29 +143,23 @@ def footprint_attributes(
 
 
 class _Owners:
-    """Which outline each position belongs to: the one that it is in, or the nearest one."""
+    """Which outline each position belongs to: that of the nearest node of the lattice within one."""
 
-    def __init__(self, outlines: list[Outlined], plan: np.ndarray, spacing: float) -> None:
-        nodes = np.concatenate([outlined.nodes for outlined in outlines])
+    def __init__(self, outlines: list[Outlined], spacing: float) -> None:
         self.spacing = spacing
-        self.lattice = Lattice.around(np.concatenate([nodes, plan]), spacing)
-        self.face = np.full(self.lattice.shape, -1, np.int32)
-        for number, outlined in enumerate(outlines):
-            self.face[self.lattice.nearest(outlined.nodes)] = number
-        # Row and column of the nearest node of an outline: distances of all nodes would take several times the memory.
-        self.nearest = ndimage.distance_transform_edt(self.face < 0, return_distances=False, return_indices=True)
+        self.tree = spatial.cKDTree(np.concatenate([outlined.nodes for outlined in outlines]))
+        numbers = np.repeat(np.arange(len(outlines)), [len(outlined.nodes) for outlined in outlines])
+        self.face = np.append(numbers, -1)
 
-    def at(self, plan: np.ndarray) -> np.ndarray:
-        """Return the outline (n,) that positions (n, 2) belong to, -1 of those far from all."""
-        own = self.lattice.nearest(plan)
-        row, column = (nearest[own] for nearest in self.nearest)
-        is_near = self.lattice.step * np.hypot(row - own[0], column - own[1]) <= APART * self.spacing
-        return np.where(is_near, self.face[row, column], -1)
+    def at(self, plan: np.ndarray, within: float = APART) -> np.ndarray:
+        """Return the outline (n,) that positions (n, 2) belong to, -1 of those far from all, in spacings."""
+        reach = within * self.spacing
+        return self.face[self.tree.query(plan, distance_upper_bound=reach, workers=searchers(len(plan)))[1]]
 
     def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return positions (b, 2) along an outline, and which (b,) are not on a border with another; all if none is."""
         along, _, outward = along_sides(sides_of_rings(rings), self.spacing)
-        beyond = self.face[self.lattice.nearest(along + self.spacing * outward)]
+        beyond = self.at(along + self.spacing * outward, 1 / NODES)
         is_outer = (beyond < 0) | (beyond == face)
         return along, is_outer if is_outer.any() else np.ones(len(along), bool)
 
@@ -218,16 +209,12 @@ def _eave_heights(
     return np.where(is_plane, planes[:, 0, 0], at_border)
 
 
-def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float) -> float:
-    """Return the mean height of a roof's surface at nodes (k, 2) of a lattice, from its points (r, 2) and (r,)."""
+def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray) -> float:
+    """Return the mean height of a roof's surface: at nodes (k, 2) of a lattice that of the nearest of its points."""
     defined = np.isfinite(height)
     if not defined.any():
         return float("nan")
-    lattice = Lattice.around(np.concatenate([plan[defined], nodes]), spacing)
-    at = lattice.nearest(nodes)
-    weight, total = (smoothed(lattice.spread(plan[defined], values), 1.0)[at] for values in (None, height[defined]))
-    is_near = weight > _COVERED
-    return float(np.mean(total[is_near] / weight[is_near])) if is_near.any() else _mean(height, np.arange(len(height)))
+    return float(np.mean(height[defined][spatial.cKDTree(plan[defined]).query(nodes)[1]]))
 
 
 def _percentile(values: np.ndarray, percent: float) -> float:

@@ -96,14 +96,13 @@ def model_building(
     model = BuildingModel(base, n_points=len(xyz))
     planes = find_roof_planes(local, settings.tolerance, settings.max_slope, settings.min_points)
     planes = with_level_patches(local, ~is_low, planes, settings.spacing, settings.min_points)
-    tops = {"1.2": _single_top, "1.3": _level_tops, "2.2": _roof}
     limits = HeightsAround(around - [*origin, 0.0])
     top = _Top(local, is_low, plan, planes, settings, base)
     if np.median(xyz[top.is_roof, 2]) <= base:
         model.reason = "its roof is not above the ground beside it"
         return model
     for level in LEVELS[: LEVELS.index(settings.level) + 1]:
-        partition, why = tops[level](top)
+        partition, why = _partition(top, level)
         if partition is not None:
             if level == "1.3" and len(partition.coefficients) == 1 and "1.2" in model.solids:
                 # One part for all is the simplest level.
@@ -151,6 +150,16 @@ class _Top:
         return divide_footprint(self.xyz, ~self.is_low, self.planes, self.rings, spacing, tolerance, self.base)
 
 
+def _partition(top: _Top, level: str) -> tuple[Optional[Partition], str]:
+    """Return the partition of the roof at a level of detail, or None and why there is none."""
+    if level == "1.2":
+        return _single_top(top)
+    roof = top.roof
+    if roof is None:
+        return None, "no roof plane was found"
+    return (_level_tops(top, roof) if level == "1.3" else replace(roof, label=roof.label.copy())), ""
+
+
 def _single_top(top: _Top) -> tuple[Optional[Partition], str]:
     """Return the footprint under one level top."""
     roof = top.xyz[top.is_roof]
@@ -162,11 +171,8 @@ def _single_top(top: _Top) -> tuple[Optional[Partition], str]:
     return Partition(cells, np.where(inside, 0, -1), coefficients, np.zeros((len(cells), 1))), ""
 
 
-def _level_tops(top: _Top) -> tuple[Optional[Partition], str]:
+def _level_tops(top: _Top, roof: Partition) -> Partition:
     """Return the partition of the roof with level tops, one for all parts that are not clearly apart in height."""
-    roof = top.roof
-    if roof is None:
-        return None, "no roof plane was found"
     part = _joined_parts(roof, top.settings.min_step)
     inside = roof.label >= 0
     n = int(part.max()) + 1
@@ -180,15 +186,7 @@ def _level_tops(top: _Top) -> tuple[Optional[Partition], str]:
         heights[number] = max(float(np.percentile(z, top.settings.percentile)), top.base + 0.5)
     coefficients = np.column_stack([np.zeros((n, 2)), heights])
     cost = np.zeros((len(roof.cells), n))
-    return Partition(roof.cells, np.where(inside, part, -1), coefficients, cost), ""
-
-
-def _roof(top: _Top) -> tuple[Optional[Partition], str]:
-    """Return the partition of the roof."""
-    roof = top.roof
-    if roof is None:
-        return None, "no roof plane was found"
-    return Partition(roof.cells, roof.label.copy(), roof.coefficients, roof.cost), ""
+    return Partition(roof.cells, np.where(inside, part, -1), coefficients, cost)
 
 
 def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:

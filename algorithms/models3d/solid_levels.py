@@ -41,16 +41,8 @@ class Levels:
 
     Vertices move in plan, by centimeters, to where the planes beside them intersect: faces stay plane.
 
-    Parameters
-    ----------
-    cells : Subdivision
-        The cells.
-    label : ndarray of shape (cells,)
-        Plane of each cell, -1 outside.
-    coefficients : ndarray of shape (m, 3)
-        The planes z = a x + b y + c.
-    base : float
-        Height of the ground (m).
+    ``label`` (cells,) is the plane of each cell, -1 outside; ``coefficients`` (m, 3) are those of z = a x + b y + c;
+    ``base`` (m) is the height of the ground.
     """
 
     def __init__(self, cells: Subdivision, label: np.ndarray, coefficients: np.ndarray, base: float) -> None:
@@ -119,15 +111,13 @@ class Levels:
         x, y, _ = np.linalg.lstsq(factors, height.mean() - height, rcond=None)[0].tolist()
         return x, y
 
-    def _move(self, vertex: int, step: tuple[float, float]) -> bool:
-        """Move a vertex by a step (m) if the cells around it keep their orientation; return whether it was moved."""
+    def _move(self, vertex: int, step: tuple[float, float]) -> None:
+        """Move a vertex by a step (m) if the cells around it keep their orientation."""
         x, y = before = self.plan[vertex]
         self.plan[vertex] = x + step[0], y + step[1]
         loops = [self.cells.loops[self.cells.cell_of[vertex, other]] for other in self._spokes[vertex]]
-        kept = all(loop_area([self.plan[v] for v in loop]) > 0 for loop in loops)
-        if not kept:
+        if any(loop_area([self.plan[v] for v in loop]) <= 0 for loop in loops):
             self.plan[vertex] = before
-        return kept
 
     def _join_close_vertices(self) -> None:
         """Join the ends of edges that are shorter than cuts snap to vertices.
@@ -229,7 +219,7 @@ class Levels:
         for u, v in list(self.cells.cell_of):
             if u > v:
                 continue
-            one, other = self._planes_beside(u, v)
+            one, other = self.label[self.cells.cell_of[u, v]], self.plane_beyond(u, v)
             if one == other or BASE in (one, other):
                 continue
             at_u = self.height(u, one) - self.height(u, other)
@@ -242,10 +232,6 @@ class Levels:
             self.plan.append(self.cells.vertices[new])
             self.around[new] = {one, other}
             self._number(new)
-
-    def _planes_beside(self, u: int, v: int) -> tuple[int, int]:
-        cell = self.cells.cell_of[u, v]
-        return self.label[cell], self.plane_beyond(u, v)
 
     def crowded(self) -> list[int]:
         """Return the vertices where more than two walls would meet in an edge."""

@@ -9,7 +9,7 @@ from ..geometry.cheapest_labels import cheapest_cut
 from ..geometry.groups import components, members
 from ..geometry.rings import signed_area
 from ..stage import Monitor
-from .roof_cover import RoofCover
+from .roof_outline import RoofCover
 from .wall_edges import WallEdge, closed, edge_between, points_near
 from .wall_lines import Scale, WallLine
 
@@ -57,19 +57,7 @@ class OutlineCells:
     """The cells that all lines of a building make, and the cost of an outline of some of them.
 
     An outline is given by the cells that are ``inside`` (cells,). Its cost is a sum over cells, edges and crossings.
-
-    Parameters
-    ----------
-    lines : list of WallLine
-        Lines that it may run along.
-    walls : ndarray of shape (n, 2)
-        Wall points of the building, m.
-    cover : RoofCover
-        Its roof.
-    scale : Scale
-        Tolerance and bins of its walls.
-    overhang, max_overhang : float
-        How far the roof juts out over its walls, and how far a roof may, m.
+    The roof juts out by ``overhang`` over the ``walls`` (n, 2), and a roof may by ``max_overhang``, m.
     """
 
     def __init__(
@@ -148,7 +136,7 @@ def _cell_costs(
     cells: Arrangement, cover: RoofCover, overhang: float, max_overhang: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return what each cell (cells,) costs inside an outline and outside, by the roof."""
-    positions, depth = cover.positions, cover.depth.ravel()
+    positions, depth = cover.positions, cover.depth
     size = max(1, _AT_ONCE // max(1, len(cells.points)))
     parts = [positions[start : start + size] for start in range(0, len(positions), size)]
     cell = np.concatenate([cells.cells_at(sides_of(part, cells.points, cells.directions)) for part in parts])

@@ -357,14 +357,11 @@ class _Building:
 
     @cached_property
     def roof_outline(self) -> Optional[RoofOutline]:
-        """Outline of the roof, None where it has no area."""
-        return outline_roof(self.whole_roof, self.roof_spacing) if self.roof_spacing else None
-
-    @cached_property
-    def whole_roof(self) -> np.ndarray:
-        """Points of the roof (n, 2), and others where nothing was seen in gaps of it."""
+        """Outline of the roof, and of gaps in it where nothing was seen; None where it has no area."""
+        if not self.roof_spacing:
+            return None
         gaps = self.surroundings.gaps(self.roof_xyz, self.roof_spacing) - self.origin
-        return np.concatenate([self.roof, gaps])
+        return outline_roof(np.concatenate([self.roof, gaps]), self.roof_spacing)
 
     def parted(self, line: WallLine) -> list[_Building]:
         """Return the parts left and right of a line."""
@@ -395,7 +392,7 @@ class _Building:
         """Return the outline of the walls near the origin, None where there are too few."""
         if not len(self.walls) or self.roof_outline is None:
             return None
-        return outline_walls(self.walls, self.whole_roof, self.roof_outline, limits, self.is_party, monitor)
+        return outline_walls(self.walls, self.roof_outline, limits, self.is_party, monitor)
 
 
 def _buildings(

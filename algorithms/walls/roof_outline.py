@@ -1,4 +1,4 @@
-"""Outlines of single roofs, drawn as footprints are."""
+"""Outlines of single roofs, drawn as footprints are, and how deep positions lie within them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ import numpy as np
 from ..footprints.drawn_blocks import Drawing, draw_block
 from ..footprints.outline_pieces import blocks_of, pieces_alone
 from ..footprints.soft_shares import LEAST_SPACING
+from ..geometry.grid import plan_box
+from ..geometry.points_in_polygons import are_within
 from ..geometry.rings import sides_of_rings, signed_area
+from ..packages import ndimage
 from .surroundings import without_nested
 
 # Area of the smallest part and of the smallest courtyard (square spacings).
@@ -20,6 +23,18 @@ _LEAST_AREA = 16.0
 # Scale (spacings) of the sides under which walls are searched for: of twelve bends beside holes two were cut off at 0.8
 # and at 1, and one at 0.6. The price of corners leaves superfluous lines out.
 _FINE = 0.6
+
+# Side (m) of the cells in which a roof is compared with walls.
+_CELL = 0.25
+
+# Most cells of one building: those of extended ones are larger.
+_MOST_CELLS = 5e5
+
+# Side (m) of the largest cells.
+_LARGEST_CELL = 1.0
+
+# Width (m) of the margin around the roof in which walls are searched for.
+_ROOM = 2.0
 
 
 @dataclass(frozen=True)
@@ -49,3 +64,17 @@ def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
 
     parts = drawn(1.0)
     return RoofOutline(parts, drawn) if parts else None
+
+
+class RoofCover:
+    """Where a roof with some rings (k, 2) is, in small cells, and how deep (m) under it these lie, negative beyond."""
+
+    def __init__(self, rings: list[np.ndarray]) -> None:
+        low, high = plan_box(np.concatenate(rings))
+        self.cell = float(np.clip(np.sqrt((high - low).prod() / _MOST_CELLS), _CELL, _LARGEST_CELL))
+        shape = np.ceil((high - low + 2 * _ROOM) / self.cell).astype(np.int64)
+        self.low, self.high = low - _ROOM, low - _ROOM + shape * self.cell
+        self.positions = self.low + (np.indices(shape).reshape(2, -1).T + 0.5) * self.cell
+        covered = are_within(self.positions, sides_of_rings(rings)).reshape(shape)
+        inside, outside = ndimage.distance_transform_edt(covered), ndimage.distance_transform_edt(~covered)
+        self.depth = np.where(covered, inside - 0.5, 0.5 - outside).ravel() * self.cell

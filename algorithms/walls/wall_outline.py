@@ -12,8 +12,7 @@ from ..geometry.line_segments import nearest_edge_distances
 from ..geometry.rings import perimeter
 from ..stage import Monitor
 from .cheapest_outline import OutlineCells, simplified
-from .roof_cover import RoofCover
-from .roof_outline import RoofOutline
+from .roof_outline import RoofCover, RoofOutline
 from .wall_edges import WallEdge
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
@@ -64,7 +63,6 @@ def share_seen(rings: list[list[WallEdge]]) -> float:
 
 def outline_walls(
     walls: np.ndarray,
-    roof: np.ndarray,
     outline: RoofOutline,
     limits: Limits,
     is_party: Callable[[np.ndarray], np.ndarray],
@@ -74,8 +72,8 @@ def outline_walls(
 
     Parameters
     ----------
-    walls, roof : ndarray of shape (n, 2), (m, 2)
-        Points of walls and of the roof in plan, near the origin (m).
+    walls : ndarray of shape (n, 2)
+        Points of walls in plan, near the origin (m).
     outline : RoofOutline
         The roof's outline.
     limits : Limits
@@ -85,9 +83,8 @@ def outline_walls(
     monitor : Monitor
         Receives progress.
     """
-    exterior, *courtyards = outline.parts[0]
-    scale = wall_scale(len(walls), perimeter(exterior), limits.tolerance)
-    cover = RoofCover(roof, courtyards)
+    scale = wall_scale(len(walls), perimeter(outline.parts[0][0]), limits.tolerance)
+    cover = RoofCover([ring for rings in outline.parts for ring in rings])
     seen = find_lines(walls, scale, limits.min_length, np.random.default_rng(limits.seed), monitor.part(0.0, 0.3))
     seen = square_up(merge_lines(seen, walls, scale), walls)
     # Where no wall is seen, the sides are not drawn.
