@@ -39,7 +39,7 @@ _PENG = (
 _DETECTION = (
     Step("existing", "keep_classes"),
     Step("noise", "classify_noise_histogram"),
-    # Plants, water, wires and bridges are looked for anew; steps of their own do so for ground and buildings.
+    # Drops earlier classes of plants, water, wires and bridges; steps that find ground and buildings drop theirs.
     Step("earlier", "recode_classes", {"mapping": "3-5, 9, 14-15, 17=1"}),
     Step("ground", "classify_ground_tin"),
     Step("kept_ground", "restore_classes"),

@@ -15,8 +15,9 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QThread
 
+# The variant of WKT that is written: WKT 2, as the default of QGIS, WKT 1, has no words for many systems.
 FULL = QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED
-_DISTANCES_UNKNOWN = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
+_NO_LENGTHS = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
 
 
 def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
@@ -36,7 +37,7 @@ def meters_per_unit(crs: QgsCoordinateReferenceSystem) -> tuple[float, float]:
 def _meters(crs: QgsCoordinateReferenceSystem) -> float:
     """Return meters per unit of a CRS, 1 where it has no length as its unit."""
     unit = crs.mapUnits()
-    return 1.0 if unit in _DISTANCES_UNKNOWN else QgsUnitTypes.fromUnitToUnitFactor(unit, Qgis.DistanceUnit.Meters)
+    return 1.0 if unit in _NO_LENGTHS else QgsUnitTypes.fromUnitToUnitFactor(unit, Qgis.DistanceUnit.Meters)
 
 
 def crs_of(wkt: str) -> QgsCoordinateReferenceSystem:
@@ -86,12 +87,12 @@ def make_in_main_thread(wkts: Iterable[str]) -> list[QgsCoordinateReferenceSyste
         return []
     QgsCoordinateReferenceSystem.invalidateCache()
     made = [crs_of(wkt) for wkt in wkts]
-    # Layers in memory find theirs by this name.
+    # Layers in memory look up their CRS by its code.
     return made + [QgsCoordinateReferenceSystem(crs.authid()) for crs in made if crs.authid()]
 
 
 def renew_in_main_thread(layers: Iterable[QgsMapLayer]) -> None:
-    """Give layers that a run made in its own thread the same CRS made in the main thread, which outlives that."""
+    """Give layers of a run their CRS again, made in the main thread: one that the run made ends with its thread."""
     if not is_main_thread():
         return
     named = [(layer, layer.crs().authid(), layer.crs().toWkt(FULL)) for layer in layers if layer.crs().isValid()]
@@ -108,8 +109,8 @@ def is_main_thread() -> bool:
 def crs_of_layer(layer: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSystem:
     """Return the CRS of a layer, invalid when it names none.
 
-    A GeoPackage without a CRS comes back from disk in an "Undefined geographic SRS", by the name that its standard
-    gives it, which QGIS holds for valid. Reprojecting to or from it would make degrees of meters.
+    QGIS reads a GeoPackage without a CRS as one in "Undefined geographic SRS", as the standard of GeoPackage calls it,
+    and takes this for a valid CRS. Reprojecting to or from it would make degrees of meters.
     """
     crs = layer.sourceCrs()
     if is_hollow(crs):

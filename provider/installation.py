@@ -117,13 +117,15 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
         return not absent
     output = _run(parent, python(), pip_arguments(absent))
     _find_new_packages()
-    left = packages.absent()
-    if left:
+    remaining = packages.absent()
+    if remaining:
         reason = output.strip().splitlines()[-1] if output.strip() else tr("the command gave no reason")
-        QMessageBox.warning(parent, SOFTWARE, tr("Not installed: {}. Python says: {}").format(", ".join(left), reason))
+        QMessageBox.warning(
+            parent, SOFTWARE, tr("Not installed: {}. Python says: {}").format(", ".join(remaining), reason)
+        )
     else:
         QMessageBox.information(parent, SOFTWARE, tr("Everything is installed; the algorithms can run."))
-    return not left
+    return not remaining
 
 
 def _is_wanted(parent: Optional[QWidget], command: str) -> bool:
@@ -133,14 +135,14 @@ def _is_wanted(parent: Optional[QWidget], command: str) -> bool:
 
 
 def _run(parent: Optional[QWidget], program: str, arguments: list[str]) -> str:
-    """Run a program while a window shows that it is at work; return what it printed last, or why it failed."""
+    """Run a program while a window shows that it is at work; return what it printed, or why it did not start."""
     waiting = QProgressDialog(tr("Installing Python packages…"), tr("Cancel"), 0, 0, parent)
     waiting.setWindowTitle(SOFTWARE)
     waiting.setWindowModality(Qt.WindowModality.WindowModal)
     waiting.setMinimumDuration(0)
     process = QProcess(waiting)
     environment = QProcessEnvironment.systemEnvironment()
-    # Of QGIS's own start; another interpreter would look for its modules there.
+    # QGIS sets it for its own Python; another interpreter would look for its modules there.
     environment.remove("PYTHONHOME")
     process.setProcessEnvironment(environment)
     process.setProcessChannelMode(QProcess.ProcessChannelMode.MergedChannels)

@@ -59,12 +59,12 @@ def pipeline_parameters(pipeline: Pipeline) -> dict[str, QgsProcessingParameterD
 class _Layout:
     """Positions (pixels) in the drawing of a model: a band per step, parameters left, the algorithm on the right."""
 
-    columns, cell, box = 3, QSizeF(250, 66), QSizeF(220, 52)
-    child = QSizeF(260, 50)
-    margin, gap = 40.0, 40.0
+    columns, cell, box = 3, QSizeF(250, 66), QSizeF(220, 52)  #: of parameters: columns, cells, and boxes within these
+    child = QSizeF(260, 50)  #: the box of an algorithm
+    margin, gap = 40.0, 40.0  #: inside a band, and between bands
 
     def __init__(self) -> None:
-        self.top = 150.0
+        self.top = 150.0  #: of the band, under the row of the clouds
 
     def band(self, n_parameters: int, n_outputs: int) -> float:
         """Return the height of a band with these numbers of parameters and outputs."""
@@ -172,7 +172,7 @@ def _add_parameters(
     layers = _layers_taken(pipeline, step)
     own = [name for name in names if name.lower() not in pipeline.shared and name not in layers]
     cells = {name: i for i, name in enumerate(own)}
-    # Layers and results for other steps are at the lower right, where their lines cross the fewest boxes.
+    # Layers and parameters that steps share are at the lower right, where their lines cross the fewest boxes.
     cells.update({name: last - i for i, name in enumerate(name for name in names if name not in own)})
     for name, cell in cells.items():
         component = QgsProcessingModelParameter(name)
@@ -234,7 +234,7 @@ def _model_outputs(
     outputs = {}
     for i, made in enumerate(outputs_of_step):
         shown = output_title(pipeline, made)
-        # A layer that QGIS loads is called as the model's output.
+        # QGIS gives a layer that it loads the name of the model's output.
         output = QgsProcessingModelOutput(shown)
         output.setChildId(made.step.name)
         output.setChildOutputName(made.of.upper())
@@ -249,7 +249,7 @@ def _model_outputs(
 def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGroupBox:
     """Return the box around the band of a step."""
     box = QgsProcessingModelGroupBox(step.stage.title)
-    # QGIS draws a random id, which would make each generated file another.
+    # QGIS gives boxes random ids: the same pipeline would be another file each time.
     facts = box.toVariant()
     facts["uuid"] = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"{PROVIDER_ID}:{step.name}")) + "}"
     box.loadVariant(facts)

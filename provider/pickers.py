@@ -12,7 +12,7 @@ from .texts import tr
 
 
 class Picker(QWidget):
-    """A text field with a button whose menu ``fill`` makes each time that it opens, of the menu and the field."""
+    """A text field with a button; ``fill`` gets the emptied menu and the field each time that the menu opens."""
 
     def __init__(self, field: QLineEdit, tip: str, fill: Callable[[QMenu, QLineEdit], None]) -> None:
         super().__init__()

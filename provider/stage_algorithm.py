@@ -182,7 +182,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         warn_unknown_parameters(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback, self.stage, self.job.tunables)
         definitions, subject = self.destinationParameterDefinitions(), subject_of(self.job.paths, feedback)
-        # The layers of a step are those of its chain.
+        # In a chain, the chain itself puts the layers into a group.
         title = self.displayName() if self._alone else ""
         with (
             run_log() as log,
@@ -255,7 +255,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             )
 
     def _log_earlier_dimensions(self, clouds: list[Cloud], monitor: Monitor) -> None:
-        """Log which dimensions of earlier runs are read; of a chain they are those of its own steps."""
+        """Log which dimensions of earlier runs are read; in a chain, where its own steps made them, none."""
         names = [name for name in self.stage.optional if name in DIMENSIONS and not DIMENSIONS[name].standard]
         earlier = [DIMENSIONS[name].disk[0] for name in names if all(cloud.has(name) for cloud in clouds)]
         if self._alone and earlier:

@@ -1,4 +1,4 @@
-"""Write the generated files of the plugin: a help page per algorithm and a model per pipeline.
+"""Write the generated files of the plugin: help pages, models of pipelines, and texts to translate.
 
 ``make resources`` runs it with the Python of QGIS.
 """
@@ -49,7 +49,7 @@ def _remove_others(folder: Path, suffix: str, wanted: set[str]) -> None:
 
 
 def main() -> None:
-    """Write all files and remove those of algorithms that are no more."""
+    """Write all files and remove those of algorithms that no longer exist."""
     write_texts()
     pages = help_pages()
     _remove_others(HELP, ".html", set(pages))

@@ -13,7 +13,7 @@ _LEAST_SINE = np.sin(np.radians(5.0))
 
 @dataclass(frozen=True)
 class Frame:
-    """Position along, up and out of a plane that is not level."""
+    """Axes along, up and out of a plane that is not level."""
 
     origin: np.ndarray  #: (3,): a point on the plane (m)
     #: along, up, normal, (3,): unit vectors: level and to the right, seen from outside; up the plane; out of the facade

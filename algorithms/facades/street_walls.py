@@ -29,7 +29,7 @@ class _Rules:
     # Two walls in a row that are off each other by less than this (m) need no step between them.
     step: float = 0.1
     # A row of walls that shares more than this part of its way with a longer one is something before or behind it.
-    most: float = 0.3
+    shared: float = 0.3
     # Distance (m) of the positions at which walls are compared with footprints: less than an outline is off.
     sample: float = 0.25
     # Shortest wall (m) that is taken: shorter ones are of porches and pillars.
@@ -153,7 +153,7 @@ def _apart(pieces: list[_Piece], ring: _Ring) -> list[_Piece]:
     kept: list[_Piece] = []
     for piece in sorted(pieces, key=lambda piece: -ring.between(piece.first, piece.last)):
         length = ring.between(piece.first, piece.last)
-        if all(_overlap(piece, other, ring) <= _RULES.most * length for other in kept):
+        if all(_overlap(piece, other, ring) <= _RULES.shared * length for other in kept):
             kept.append(piece)
     return sorted(kept, key=lambda piece: piece.first)
 
@@ -184,10 +184,10 @@ def _joined(ring: _Ring, pieces: list[_Piece]) -> np.ndarray:
         following = pieces[(number + 1) % len(pieces)]
         lines += [(start, _unit(end - start), start) for start, end in zip(piece.corners[:-1], piece.corners[1:])]
         gap = ring.between(piece.last, following.first)
-        is_last = len(pieces) == 1
+        is_only = len(pieces) == 1
         is_same_edge = ring.edge(piece.last) == ring.edge(following.first) and following.first >= piece.last
         is_overlap = ring.between(following.first, piece.last) <= _RULES.gap
-        if not is_last and (gap <= _RULES.gap or is_same_edge or is_overlap):
+        if not is_only and (gap <= _RULES.gap or is_same_edge or is_overlap):
             lines += _step(piece.corners, following.corners)
         else:
             lines += _edges(ring, piece, following)
@@ -244,8 +244,8 @@ def _ends_at(end: np.ndarray, way: np.ndarray, point: np.ndarray, edge_way: np.n
     turn = _cross(way, edge_way)
     if abs(turn) < _RULES.same_way:
         return False
-    left = _cross(point - end, edge_way) / turn
-    return bool(abs(left) <= _RULES.corner)
+    distance = _cross(point - end, edge_way) / turn
+    return bool(abs(distance) <= _RULES.corner)
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

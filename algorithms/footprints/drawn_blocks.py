@@ -21,15 +21,16 @@ from .outline_pieces import Piece
 from .row_houses import Houses
 from .soft_shares import Lattice, Shares, spread_out
 
-# A corner costs as much as this many cubed spacings of squared distance along an outline: a bay of two spacings by four
-# is not drawn. With 10, corners of the map in Delft are 0.04 m farther off; with 6 there are more corners, no closer.
+# Cost of a corner (times the cubed scale of simplification), in m³ as squared distances along an outline: a bay of two
+# scales by four is not drawn. The scale is the spacing unless a tolerance is given. With 10, corners of the map in
+# Delft are 0.04 m farther off; with 6 there are more corners, no closer.
 _CORNER = 8.0
 
 # An outline is straight where more than this share of it runs along a main direction and square to that: of a circle
 # drawn along two main directions it is half.
-_MOST = 0.6
+_STRAIGHT_SHARE = 0.6
 
-# A cell's middle lies this close (m) to an edge that bounds it.
+# The middle of a border between cells lies this close (m) to the drawn edge that it is a part of.
 _ON_EDGE = 0.03
 
 
@@ -78,8 +79,8 @@ def draw_block(
     """
     prices = Prices(_CORNER * how.scale**3)
     rings = [draw_ring(ring, directions[piece.building], prices) for piece in pieces for ring in piece.rings]
-    # Edges on both sides of a border, or of a front that goes on, were drawn from the same points: within a spacing.
-    # So was an edge beside a party wall: a strip between the two would be left for the house beyond.
+    # Edges on both sides of a border, or of a front that goes on, were drawn from the same points and are less than a
+    # spacing apart: they get one line. So does an edge beside a party wall, lest the house beyond gets a strip between.
     numbers = sorted({piece.building for piece in pieces})
     both = [ends for number in numbers if number in houses for ends in houses[number].walls]
     there_and_back = [[Edge(start, end, True), Edge(end, start, True)] for start, end in both]
@@ -141,7 +142,7 @@ def _nodes_of(cells: Subdivision, lattice: Lattice) -> list[np.ndarray]:
 def _shares_of(
     pieces: list[Piece], numbers: list[int], shares: dict[int, Shares], edges: list[Edge], how: Drawing
 ) -> tuple[Lattice, np.ndarray]:
-    """Return the lattice of a block, and the share of the ground and of each of its buildings in it.
+    """Return the lattice of a block, and the shares (1 + buildings, rows, columns) of the ground and of each building.
 
     Other parts of these buildings, which are not of this block, have no share.
     """
@@ -181,6 +182,7 @@ def _moved(values: np.ndarray, own: Lattice, lattice: Lattice) -> np.ndarray:
 def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
     """Return the cells that the edges cut the box of the lattice into; longest edges first."""
     positions = lattice.positions
+    # A little beyond the outer nodes, so that these lie in cells and not on the rim.
     cells = Subdivision(positions[0] - 0.3 * lattice.step, positions[-1] + 0.3 * lattice.step, positions)
     length = [-float(np.hypot(*(edge.end - edge.start))) for edge in edges]
     for number in np.argsort(length, kind="stable"):
@@ -253,4 +255,4 @@ def _is_straight(rings: list[np.ndarray], edges: list[Edge]) -> bool:
     start, end = np.moveaxis(sides_of_rings(rings), 1, 0)
     length, angle = np.hypot(*(end - start).T), np.degrees(np.arctan2(*(end - start).T[::-1]))
     is_main = _are_drawn(start, end, [edge for edge in edges if edge.is_main])
-    return along_two_directions(length[is_main], angle[is_main]) > _MOST * length.sum()
+    return along_two_directions(length[is_main], angle[is_main]) > _STRAIGHT_SHARE * length.sum()

@@ -18,8 +18,11 @@ from .building_facts import NamedModel
 from .building_models import BuildingModel
 from .solids import GROUND, ROOF, WALL, Solid
 
-# A roof plane of a gable is this steep at least (°), and its ridge level within this angle (°).
-_LEAST_SLOPE, _LEVEL = 8.0, 6.0
+# Least slope (°) of the roof planes of a gable.
+_LEAST_SLOPE = 8.0
+
+# Largest slope (°) of a ridge.
+_LEVEL = 6.0
 
 # Both planes of a gable rise toward each other within this angle (°).
 _OPPOSITE = 15.0
@@ -28,7 +31,8 @@ _OPPOSITE = 15.0
 # them. Evenly spread points leave the same share of the width beyond.
 _EDGE = 0.02
 
-# Ground of a house is looked for this far around it (m).
+# Where no ground is near the corners of a house, it is looked for this much (m) farther from their middle than the
+# range of their coordinates.
 _AROUND = 10.0
 
 # The faces of a house by their vertices, from 1 as in the paper, counterclockwise seen from outside.
@@ -185,6 +189,7 @@ def _gables(
     """Return pairs of planes that are gables, each plane once, the ones with the longest ridge first."""
     normal, area = planes.normal, planes.area
     steep = np.degrees(np.arccos(np.clip(normal[:, 2], 0, 1)))
+    # Steeper planes than 80° are walls.
     good = np.flatnonzero((steep >= _LEAST_SLOPE) & (steep <= 80.0) & (area >= min_area))
     trees = {int(k): spatial.cKDTree(xyz[groups[k]]) for k in good}
     found = []
@@ -193,6 +198,7 @@ def _gables(
         for b in good[done + 1 :]:
             if not _are_opposite(planes, a, b):
                 continue
+            # Half the diagonal of a rectangle is at most 2.5 deviations: centers of two that touch are nearer.
             reach = np.sqrt(planes.eigenvalues[[a, b], 0].sum()) * 4 + max_gap
             if np.linalg.norm(planes.center[a] - planes.center[b]) > reach:
                 continue
@@ -247,22 +253,22 @@ def _house(
         across, along = -across, -along
     positions = [np.column_stack([(xyz[groups[k]] - point) @ way for way in (along, across)]) for k in (a, b)]
     every = np.concatenate(positions)
-    west, east = _ends(every[:, 0])
-    falls = [-_fall(planes.normal[k], across) for k in (a, b)]
+    first, last = _ends(every[:, 0])
+    falls = [abs(_rise(planes.normal[k], across)) for k in (a, b)]
     right, left = _ends(positions[0][:, 1])[0], _ends(positions[1][:, 1])[1]
     # One height for both eaves; each moves along its plane to it.
     drop = (abs(right * falls[0]) + abs(left * falls[1])) / 2
-    right, left = -drop / abs(falls[0]), drop / abs(falls[1])
-    flat = [(west, 0), (east, 0), (west, right), (east, right), (east, left), (west, left)]
-    plan = np.array([point + u * along + v * across for u, v in flat])
-    plan[2:, 2] = point[2] - drop
-    base = ground.near(plan[2:, :2])
+    right, left = -drop / falls[0], drop / falls[1]
+    flat = [(first, 0), (last, 0), (first, right), (last, right), (last, left), (first, left)]
+    upper = np.array([point + u * along + v * across for u, v in flat])
+    upper[2:, 2] = point[2] - drop
+    base = ground.near(upper[2:, :2])
     if base is None or base >= point[2] - drop:
         return None
-    feet = plan[2:].copy()
+    feet = upper[2:].copy()
     feet[:, 2] = base
     rms = np.sqrt(np.average(planes.eigenvalues[[a, b], 2], weights=planes.count[[a, b]]))
-    return House(np.concatenate([plan, feet]), float(rms), len(every))
+    return House(np.concatenate([upper, feet]), float(rms), len(every))
 
 
 def _ends(positions: np.ndarray) -> tuple[float, float]:
@@ -272,7 +278,7 @@ def _ends(positions: np.ndarray) -> tuple[float, float]:
     return float(low - beyond), float(high + beyond)
 
 
-def _fall(normal: np.ndarray, across: np.ndarray) -> float:
+def _rise(normal: np.ndarray, across: np.ndarray) -> float:
     """Return the rise (m per m) of a plane in a level direction."""
     return float(-(normal @ across) / normal[2])
 

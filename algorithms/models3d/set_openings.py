@@ -17,12 +17,13 @@ WINDOW, DOOR = "window", "door"
 class _Rules:
     """When an opening is one of a wall."""
 
-    # Wall and opening face the same way within this angle (cosine: 15°), and are off each other by this (m) at most.
+    # Wall and opening face the same way within this angle (cosine: 15°).
     same_way: float = 0.966
+    # Distance (m) of the middle of an opening from the plane of its wall, at most.
     off: float = 0.5
     # Distance (m) that stays between an opening and the edge of its wall: thinner strips make no sound triangles.
     margin: float = 0.03
-    # An opening is cut to its wall if at least this share of its area remains: across a bend, to the wall with most.
+    # An opening is cut to its wall if at least this share of its area remains: most of it lies in that wall.
     kept: float = 0.5
 
 
@@ -50,7 +51,7 @@ def with_openings(solid: Solid, openings: list[Opening]) -> tuple[Solid, list[Op
     done = []
     for opening in openings:
         wall, flat = _best_wall(walls, opening)
-        if wall is None or flat is None:
+        if wall is None:
             continue
         ring = wall.space(flat)
         numbers = list(range(len(vertices), len(vertices) + len(ring)))

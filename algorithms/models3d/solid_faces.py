@@ -22,7 +22,8 @@ _STRAIGHT = 0.0005
 def build_solid(levels: Levels) -> tuple[Solid, list[list[int]]]:
     """Return the solid between a level ground and the planes of cells, and the cells beside each of its faces.
 
-    Cells get vertices where roofs cross.
+    Cells get vertices where roofs cross. The levels have no crowded vertices (:meth:`.Levels.crowded`), at which edges
+    would have more than two faces.
     """
     levels.part_crossing_roofs()
     return _Builder(levels).solid()
@@ -53,6 +54,7 @@ class _Builder:
             for (u, v), cell in self.cells.cell_of.items()
             if self.label[cell] >= 0
         ]
+        # The positions at each vertex, from the lowest up.
         self.at: dict[int, list[int]] = defaultdict(list)
         for number, (vertex, _) in {n: key for key, n in levels.number.items()}.items():
             self.at[vertex].append(number)
@@ -106,7 +108,7 @@ class _Builder:
         return self._joined(walls)
 
     def _wall(self, u: int, v: int, plane: int, beyond: int) -> Ring:
-        """Return the wall that is seen from the right of an edge, empty where what lies there is as high."""
+        """Return the wall that is seen from the right of an edge, empty where what lies there is as high or higher."""
         number, positions = self.levels.number, self.levels.positions
         low_u, low_v, high_u, high_v = number[u, beyond], number[v, beyond], number[u, plane], number[v, plane]
         if positions[low_u][2] > positions[high_u][2] or positions[low_v][2] > positions[high_v][2]:
@@ -172,7 +174,7 @@ class _Builder:
         return self.levels.positions[a][:2] == self.levels.positions[b][:2]
 
     def _polygons(self, rings: list[Ring], upward: bool) -> list[list[Ring]]:
-        """Return the rings of one part: the exterior first, then its holes."""
+        """Return the polygons that rings make, each exterior first; exteriors are clockwise unless ``upward``."""
         closed = [self.plan[[*ring, ring[0]]][:: 1 if upward else -1] for ring in rings]
         return [[rings[i] for i in part] for part in polygons_of(closed)]
 

@@ -98,7 +98,7 @@ def _edge_faults(solid: Solid) -> Iterator[tuple[int, str]]:
 
 
 def _shell_faults(solid: Solid) -> Iterator[tuple[int, str]]:
-    """Yield the faces of all pieces but the largest one."""
+    """Yield the faces of all pieces but the largest one; the first face where a solid has fewer than four."""
     if len(solid.faces) < 4:
         yield 0, "there are fewer than four faces"
         return
@@ -166,7 +166,7 @@ class _Face:
     def _has_turned_triangle(self, width: float) -> bool:
         """Return whether a triangle of the face turns too far from it, where it is ``width`` (m) wide everywhere."""
         longest = float(np.hypot(*np.ptp(self.start, axis=0)))
-        # A short edge seen from the other end of a strip makes the lowest triangle.
+        # No triangle is lower than width² / longest: a short edge seen from the other end of a strip makes the lowest.
         if 2 * self.off * longest <= width**2 * np.tan(np.deg2rad(RULES.turn)):
             return False
         corner = self.vertices[np.array(triangulate_face(self.vertices, self.rings))]
@@ -239,7 +239,7 @@ def _fan_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
 
 
 def _sectors(face: _Face) -> dict[int, dict[int, int]]:
-    """Return the next corner and the one before, by corner of a face.
+    """Return the sectors of a face by their corner: the corner after it and, for each of these, the one before it.
 
     Where two rings touch in a corner the face has two sectors there. Each reaches from the next corner of one ring
     counterclockwise to the nearest corner before, which may be that of the other ring.
@@ -291,11 +291,11 @@ def _meeting_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
 
 def _is_crossed(face: _Face, one: np.ndarray, two: np.ndarray) -> bool:
     """Return whether edges, by their ends (n, 3), run through a face or lie in it."""
-    above, beyond = (one - face.center) @ face.normal, (two - face.center) @ face.normal
-    far = np.minimum(np.abs(above), np.abs(beyond)) > RULES.apart
-    through = far & (above * beyond < 0)
-    lies = np.maximum(np.abs(above), np.abs(beyond)) <= RULES.apart
-    share = np.where(through, above / np.where(through, above - beyond, 1.0), 0.5)
+    off_one, off_two = (one - face.center) @ face.normal, (two - face.center) @ face.normal
+    far = np.minimum(np.abs(off_one), np.abs(off_two)) > RULES.apart
+    through = far & (off_one * off_two < 0)
+    lies = np.maximum(np.abs(off_one), np.abs(off_two)) <= RULES.apart
+    share = np.where(through, off_one / np.where(through, off_one - off_two, 1.0), 0.5)
     rows = np.flatnonzero(through | lies)
     crossings = one[rows] + share[rows, None] * (two[rows] - one[rows])
     return bool(len(rows)) and bool(face.holds(crossings).any())

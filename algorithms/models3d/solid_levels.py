@@ -13,11 +13,11 @@ from .solids import DECIMALS, edges_around
 # Planes that intersect within this distance (m) of a vertex, in plan, meet in it: cuts pass that closely to vertices.
 _MEET = 2 * SNAP
 
-# Heights at one position that differ by at most this (m) become one: planes stay plane to half of that, where more than
-# three nearly meet.
+# Heights at one position that differ by at most this (m) become their mean: two planes move by half of that, less than
+# the 0.01 m by which corners may be off a face. Where up to three planes meet, the vertex moves and the planes stay.
 _SAME_HEIGHT = 0.016
 
-# Vertices stay where planes meet to this (m).
+# Vertices that are nearer to an intersection of planes than this (m) are not moved.
 _EXACT = 0.0001
 
 # A vertex this close (m) to the line of its neighbors on the outline is no corner of it.
@@ -32,7 +32,7 @@ BASE = -1
 # Easting, northing and height (m).
 Position = tuple[float, float, float]
 
-# As many changes between up and down around a vertex are one edge with four walls.
+# With this many changes between up and down around a vertex, four walls meet in one edge.
 _CROWD = 4
 
 
@@ -48,6 +48,7 @@ class Levels:
     def __init__(self, cells: Subdivision, label: np.ndarray, coefficients: np.ndarray, base: float) -> None:
         self.cells, self.label, self.base = cells, label.tolist(), round(base, DECIMALS)
         self.coefficients = [tuple(row) for row in coefficients.tolist()]
+        # The planes at each vertex, and the vertices at the other end of its edges, of all and of those on the outline.
         self.around: dict[int, set[int]] = defaultdict(set)
         self._spokes: dict[int, list[int]] = defaultdict(list)
         self._outline: dict[int, list[int]] = defaultdict(list)
@@ -59,6 +60,7 @@ class Levels:
                     self._outline[u].append(v)
                     self._outline[v].append(u)
         self.plan = list(cells.vertices)
+        # The positions, and the number of each by vertex and plane.
         self.number: dict[tuple[int, int], int] = {}
         self.positions: list[Position] = []
         for vertex, planes in self.around.items():
@@ -125,12 +127,12 @@ class Levels:
         The outline keeps its corners, and no position gets more heights than it had: walls would come of it.
         """
         for u, v in list(self.cells.cell_of):
-            is_left = (u, v) in self.cells.cell_of and len(self.around[u]) > 1 and len(self.around[v]) > 1
-            if is_left and math.dist(self.plan[u], self.plan[v]) < SNAP:
+            is_present = (u, v) in self.cells.cell_of and len(self.around[u]) > 1 and len(self.around[v]) > 1
+            if is_present and math.dist(self.plan[u], self.plan[v]) < SNAP:
                 _ = self._join(u, v) or self._join(v, u)
 
     def _join(self, kept: int, gone: int) -> bool:
-        """Join a vertex to another one, unless it is a corner of the outline; return whether it was."""
+        """Join a vertex to the one that is kept, unless it is a corner of the outline; return whether that was done."""
         planes = self.around[kept] | self.around[gone]
         options = [self.plan[kept]]
         if BASE in self.around[gone]:
@@ -250,12 +252,12 @@ class Levels:
             cell = self.cells.cell_of[vertex, v]
             loop = self.cells.loops[cell]
             following[v] = (cell, loop[loop.index(vertex) - 1])
-        start = here = next(iter(following))
+        start = spoke = next(iter(following))
         ring = []
         while True:
-            cell, here = following[here]
+            cell, spoke = following[spoke]
             ring.append(cell)
-            if here == start:
+            if spoke == start:
                 return ring
 
 

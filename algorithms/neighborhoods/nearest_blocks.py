@@ -19,7 +19,7 @@ from ..packages import spatial
 # Order of the six numbers of a symmetric matrix: xx, yy, zz, xy, xz, yz.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
-# Candidates beyond those of a block on a plane: with three tenths more, 95 % of the points find all theirs among them.
+# Candidates of a block (times those that it needs on a plane): 95 % of the points find all their neighbors among these.
 _SPARE = 1.3
 
 # Squared distances in one array (3 MB): chosen for the caches and for the cost of a call.
@@ -34,13 +34,13 @@ _TRIES = 9
 # Share of the points of a chunk that are sorted when no others are left: that takes less time than another try.
 _FEW = 0.06
 
-# The first try in squared reaches of the block's middle: none of the distances that points on a grid have.
+# The first try (times the squared reach of the block's middle): no ratio of squared distances on a grid.
 _FIRST_TRY = 1.0371
 
 # Squared distances that differ by less than this share are equal: coordinates of 5,000 km are right to a nanometer.
 EQUAL_SQUARES = 1e-7
 
-# The same of squared distances in 32 bits, each of which is off by up to 6e-8 of itself.
+# Squared distances in 32 bits that differ by less than this share are equal: each is off by up to 6e-8 of itself.
 _EQUAL_ROUNDED = 5e-7
 
 # Points of a chunk whose neighbors within a radius are counted, to choose the size of its blocks.
@@ -49,7 +49,7 @@ _SAMPLE = 200
 # Blocks are worked on together whose numbers of candidates differ by this factor at most.
 _ALIKE = 0.8
 
-# Squared distances of a block: ten multiplications each, 2^18 in all, are what OpenBLAS does with one thread at most.
+# Most squared distances of a block: with ten multiplications each, up to 2^18 in all, OpenBLAS uses one thread.
 _PRODUCT = 26_000
 
 
@@ -71,12 +71,12 @@ class Batch:
 
     #: (b, s): which points each block holds; of smaller blocks among larger ones the last point several times
     rows: np.ndarray
-    own: np.ndarray  #: (b, s, 3): where they are
+    own: np.ndarray  #: (b, s, 3): positions of these points
     others: np.ndarray  #: (3, b, c): the candidates
-    distances: np.ndarray  #: (b, c): those of the candidates from the middle, in ascending order
+    distances: np.ndarray  #: (b, c): distances of the candidates from the middle, ascending
 
     @cached_property
-    def offsets(self) -> np.ndarray:
+    def own_squares(self) -> np.ndarray:
         """Squared distances (b, s) of the points from the middle."""
         return np.einsum("ijk,ijk->ij", self.own, self.own)
 
@@ -84,7 +84,7 @@ class Batch:
     def squares(self) -> np.ndarray:
         """Squared distances (b, s, c) between points and candidates."""
         left = np.empty((*self.rows.shape, 5))
-        left[..., 0], left[..., 1] = self.offsets, 1
+        left[..., 0], left[..., 1] = self.own_squares, 1
         np.multiply(self.own, -2, out=left[..., 2:])
         right = np.empty((5, *self.distances.shape))
         right[0] = 1
@@ -125,7 +125,7 @@ def nearest_shapes(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int,
         if batch.distances.shape[1] == columns.shape[1]:
             return weights, np.full(limits.shape, True)
         # Others as far as the last candidate may have been left out.
-        return weights, np.sqrt(limits) + np.sqrt(batch.offsets) < (1 - EQUAL_SQUARES) * batch.distances[:, -1:]
+        return weights, np.sqrt(limits) + np.sqrt(batch.own_squares) < (1 - EQUAL_SQUARES) * batch.distances[:, -1:]
 
     return _shapes(columns, tree, rows, min(count, _size(count)), candidates, weigh, extents)
 
@@ -149,7 +149,7 @@ def shapes_within(columns: np.ndarray, tree: Any, rows: np.ndarray, radius: floa
     radius : float
         Radius, m.
     extents : bool
-        Whether extents are measured, too.
+        Whether height range and plan radius are wanted too.
     """
     sample = columns[:, rows[:: max(1, len(rows) // _SAMPLE)]].T
     mean = tree.query_ball_point(sample, radius, return_length=True).mean()
@@ -186,20 +186,20 @@ def _shapes(
     s) have all.
     """
     made = Shapes(np.empty((len(rows), 6)), np.empty(len(rows), np.int64), *np.empty((2, len(rows) * extents)))
-    left, points = np.arange(len(rows)), columns[:, rows].T
+    remaining, points = np.arange(len(rows)), columns[:, rows].T
     # Points at a block's corner may have neighbors beyond its candidates: those are done each by itself.
     for block_size in (size, 1):
-        sure = np.empty(len(left), bool)
-        for batch in _batches(columns, tree, points[left], block_size, candidates):
+        sure = np.empty(len(remaining), bool)
+        for batch in _batches(columns, tree, points[remaining], block_size, candidates):
             weights, complete = weigh(batch)
             counts, covariances, precise = _covariances(batch.others, weights)
             sure[batch.rows] = complete & precise
-            at = left[batch.rows]
+            at = remaining[batch.rows]
             made.covariances[at], made.counts[at] = covariances, np.rint(counts)
             if extents:
                 made.height_range[at], made.plan_radius[at] = _extents(batch, weights)
-        left = left[~sure]
-        if not len(left):
+        remaining = remaining[~sure]
+        if not len(remaining):
             break
     return made
 

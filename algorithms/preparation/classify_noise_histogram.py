@@ -36,7 +36,7 @@ HISTOGRAM = HistogramRules()
     group="Preparation",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,denoise,lasnoise",
     writes=("classification",),
-    # Cells, which borrow the histograms of those around, are as wide.
+    # About the width of an automatic cell: histograms are those of a cell and the cells around it.
     reach=SCENE.ground_within,
 )
 def classify_noise_histogram(

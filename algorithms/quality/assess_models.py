@@ -356,7 +356,7 @@ def _volume(faces: list[_Face], points: _RoofPoints) -> float:
     return total
 
 
-def _high(off: np.ndarray) -> float:
+def _p95(off: np.ndarray) -> float:
     """Return the 95th percentile of distances (m), NaN without any."""
     return float(np.percentile(np.abs(off), _PERCENTILE)) if len(off) else np.nan
 
@@ -369,7 +369,7 @@ def _values(buildings: list[_Building]) -> dict[str, float]:
         "buildings": len(buildings),
         "points": len(off),
         "rms": root_mean_square(off),
-        "p95": _high(off),
+        "p95": _p95(off),
         "median_rms": float(np.median(each)) if each else np.nan,
         "on_model": 100.0 * float(np.mean(np.concatenate([building.is_on for building in buildings]))),
         "all_faces": sum(len(building.faces) for building in buildings),
@@ -386,20 +386,20 @@ def _face_layer(buildings: list[_Building], points: _RoofPoints) -> LayerFeature
     for building in buildings:
         for face in building.faces:
             geometries.append(face.rings)
-            rows.append(_distances(building.name, face.status, face.off))
+            rows.append(_attributes(building.name, face.status, face.off))
         for xyz in building.missing:
             outlines = _outlines(xyz, RULES.cell_size(points.spacing))
             geometries += outlines
-            rows += [_distances(building.name, MISSING, np.zeros(0), len(xyz))] * len(outlines)
+            rows += [_attributes(building.name, MISSING, np.zeros(0), len(xyz))] * len(outlines)
     columns = {field.name: [row[field.name] for row in rows] for field in _FACES.fields if field.name != "id"}
     return LayerFeatures(geometries, {"id": list(range(1, len(rows) + 1)), **columns})
 
 
-def _distances(building: str, status: str, off: np.ndarray, n_points: int = 0) -> dict[str, Any]:
+def _attributes(building: str, status: str, off: np.ndarray, n_points: int = 0) -> dict[str, Any]:
     """Return the attributes of a face, or of a plane that has points and no face to measure them from."""
     mean = float(off.mean()) if len(off) else np.nan
     facts = {"building": building, "status": status, "points": len(off) or n_points, "mean": mean}
-    return {**facts, "rms": root_mean_square(off), "p95": _high(off)}
+    return {**facts, "rms": root_mean_square(off), "p95": _p95(off)}
 
 
 def _outlines(xyz: np.ndarray, size: float) -> list:
@@ -420,7 +420,7 @@ def _building_layer(buildings: list[_Building]) -> LayerFeatures:
         "building": [building.name for building in buildings],
         "points": [len(building.off) for building in buildings],
         "rms": [root_mean_square(building.off) for building in buildings],
-        "p95": [_high(building.off) for building in buildings],
+        "p95": [_p95(building.off) for building in buildings],
         "faces": [len(building.faces) for building in buildings],
         "missing": [len(building.missing) for building in buildings],
         "invented": [building.n_invented for building in buildings],

@@ -15,7 +15,7 @@ from .kinds import LASER
 class ClosedSurfaceRules:
     """Where a cloud is seen through."""
 
-    least_spacing: float = rule(0.25, "m", "of points on the surface seen from above, at least; details are smaller")
+    least_spacing: float = rule(0.25, "m", "least; in denser clouds cells would be as small as details of surfaces")
     cell: float = rule(3.0, "point spacings", "statistics: nine points share a cell")
 
 
@@ -35,9 +35,10 @@ def seen_through_share(xyz: np.ndarray, spacing: float) -> float:
     Returns
     -------
     float
-        Share, 0 to 1, of occupied cells that are deep and have eight deep neighbors. Edges and walls make cells deep
-        along lines, and few have eight such neighbors. Crowns that pulses pass make them deep over areas. Measured:
-        0 to 0.011 on image-matched clouds, 0.023 to 0.53 on airborne laser clouds with trees.
+        Share, 0 to 1, of occupied cells that are deep and have eight deep neighbors. Deep are cells whose points differ
+        in elevation by more than ``LASER.lowest_roof`` m. Edges and walls make cells deep along lines, and few have
+        eight such neighbors. Crowns that pulses pass make them deep over areas. Measured: 0 to 0.011 on image-matched
+        clouds, 0.023 to 0.53 on airborne laser clouds with trees.
     """
     grid = grid_over(xyz, CLOSED.cell * max(CLOSED.least_spacing, spacing))
     number = grid.number(xyz)

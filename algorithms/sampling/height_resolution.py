@@ -16,7 +16,7 @@ class HeightRules:
     least: float = rule(0.01, "m", "files keep a centimeter; smaller deviations can not be distinguished from zero")
     levels: int = rule(10, "levels", "fewer are those of flat roofs, not of rounded heights")
     most_step: float = rule(0.5, "m", "physics: larger steps between levels are those of storeys")
-    even: float = rule(0.01, "share", "of the usual step, within which half of all are the same")
+    even: float = rule(0.01, "share", "of the median step; at least half of all steps differ from it by no more")
 
 
 HEIGHTS = HeightRules()

@@ -63,7 +63,7 @@ def pieces(
 
     Points of a line that are near each other, directly or through others, are a piece; it may pass over points that
     lie off it. Groups of fewer than ``min_points`` points are left out. A piece goes on behind an ``obstacle`` of at
-    most that width (m) if the line between their ends meets the criteria of ``near`` but the distance.
+    most that width (m) if the line between its ends on both sides meets the criteria of ``near`` but the distance.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def _over_obstacles(points: np.ndarray, along: np.ndarray, piece: np.ndarray, ne
 def merged_pieces(piece_sets: list[np.ndarray]) -> np.ndarray:
     """Return the segment (n,), int32, of each point: pieces (n,) of all directions are one where they share a point.
 
-    Segments count from 0; -1 if unassigned.
+    Numbers are 0 or more, not consecutive; -1 if unassigned.
     """
     n = len(piece_sets[0])
     first, ones, others = n, [], []

@@ -80,7 +80,7 @@ def segment_clusters(
     Raises
     ------
     ValueError
-        If a minimum height is asked for and heights are missing, or the points are spread too far for the distance.
+        If a minimum height is asked for and heights are missing, or the points are spread too far for the radius.
 
     Notes
     -----
@@ -174,11 +174,11 @@ def _cores(boxes: Boxes, is_near, min_points: int, monitor: Monitor) -> np.ndarr
     count = np.repeat(boxes.size, boxes.size)
     steps = around()
     for done, offset in enumerate(steps, start=1):
-        here, there = boxes.beside(boxes, offset)
+        box, beside = boxes.beside(boxes, offset)
         # Boxes in which every point has enough already need no more.
-        is_open = np.minimum.reduceat(count, boxes.start)[here] < min_points
-        here, there = here[is_open], there[is_open]
-        for _, a, b in boxes.pairs(here, boxes, there):
+        is_open = np.minimum.reduceat(count, boxes.start)[box] < min_points
+        box, beside = box[is_open], beside[is_open]
+        for _, a, b in boxes.pairs(box, boxes, beside):
             near = a[is_near(boxes.xyz[a] - boxes.xyz[b])]
             if len(near):
                 # Boxes come in order, so a chunk counts for a short stretch of points only.
@@ -195,8 +195,8 @@ def _first_cluster(others: Boxes, cores: Boxes, cluster: np.ndarray, is_near, mo
     least = np.full(len(others.order), none, np.int32)
     steps: list[Offset] = [(0, 0, 0), *around()]
     for done, offset in enumerate(steps, start=1):
-        here, there = others.beside(cores, offset)
-        for _, a, b in others.pairs(here, cores, there):
+        box, beside = others.beside(cores, offset)
+        for _, a, b in others.pairs(box, cores, beside):
             near = is_near(others.xyz[a] - cores.xyz[b])
             np.minimum.at(least, a[near], cluster[b[near]])
         monitor.progress(done / len(steps))

@@ -59,7 +59,10 @@ def upward(axis: np.ndarray) -> np.ndarray:
 
 
 def fit_cylinder(xyz: np.ndarray, start: Cylinder, rounds: int = _ROUNDS) -> Cylinder:
-    """Return the cylinder with the least sum of squared distances of points (n, 3), n >= 6, from it."""
+    """Return the cylinder with the least sum of squared distances of points (n, 3), n >= 6, from it.
+
+    Without a solution, or where the radius changes by more than itself, it is ``start``.
+    """
     cylinder = start
     # The distance falls as the axis moves or leans toward the point, and as the radius grows.
     design = np.ones((5, len(xyz)))
@@ -95,7 +98,10 @@ def _solved(design: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def fit_sphere(xyz: np.ndarray, center: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
-    """Return center (3,) and radius of the sphere with the least sum of squared distances of points (n, 3), n >= 5."""
+    """Return center (3,) and radius of the sphere with the least sum of squared distances of points (n, 3), n >= 5.
+
+    Without a solution, or where the radius changes by more than itself, they are those given.
+    """
     at, size = center, radius
     for _ in range(_ROUNDS):
         offset = xyz - at
@@ -113,7 +119,7 @@ def fit_sphere(xyz: np.ndarray, center: np.ndarray, radius: float) -> tuple[np.n
 def explained(residual: np.ndarray, patterns: np.ndarray) -> float:
     """Return the deviation (root mean square, m) that patterns (n, k) explain of residuals (n,), m, beyond chance.
 
-    By chance, k patterns explain the share k / n of the variance.
+    By chance, k patterns explain the share k / n of the variance on average; twice this share is subtracted.
     """
     count, k = patterns.shape
     size, direction = np.linalg.eigh(patterns.T @ patterns)
@@ -128,8 +134,8 @@ def bends(cylinder: Cylinder, xyz: np.ndarray) -> float:
     """Return the deviation (m) of points that a torus, a cone, a sphere or faces explain.
 
     The distances of the points of a cylinder from its axis depend on neither the position along it nor the angle
-    around it. On a torus, a cone or a sphere they follow the position, and its square, by the angle; on faces, the
-    angle.
+    around it. On a torus, a cone or a sphere they follow the position and its square, both also times the cosine and
+    the sine of the angle. On faces they follow the angle.
     """
     along, distance, away = cylinder.local(xyz)
     u = (along - (along.max() + along.min()) / 2) / max(float(np.ptp(along)) / 2, 1e-9)

@@ -95,7 +95,7 @@ def reconstruct_pipes(
 
 
 def _shapes(layer: Optional[LayerFeatures], radius: float) -> list[tuple[int, np.ndarray, float]]:
-    """Return number, geometry (n, 3) and radius of each feature; one whose own radius is no number is left out."""
+    """Return number, geometry (n, 3) and radius of each feature; one whose own radius is not positive is left out."""
     if layer is None:
         return []
     order = range(1, len(layer) + 1)

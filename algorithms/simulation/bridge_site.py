@@ -17,7 +17,7 @@ LOT = 140.0
 # Obstacles end this far (m) before the border of their lot: neighbors do not meet.
 _MARGIN = 4.0
 
-# Length (m) over which they rise to the land there.
+# Length (m) over which obstacles rise to the land at their ends.
 _FADE = 12.0
 
 # Vertical walls that are terrain are this steep (tangent): beams up to 30° off the vertical meet them once.
@@ -56,7 +56,7 @@ class Kind:
     """What a lot holds."""
 
     half_width: float  #: Half the width of the obstacle between its edges, m
-    depth: float  #: Its depth under the land, m
+    depth: float  #: Its depth under the land, m; negative where it rises above it
     bank: float  #: Slope of its banks, a tangent; they lie within ``half_width``
     is_water: bool = False  #: Whether it holds water
     decks: tuple[float, ...] = (9.0,)  #: Widths of the decks side by side, m; none where nothing crosses it
@@ -93,13 +93,16 @@ _WATER = 1.0
 # Half the length of the tunnel (m), over which the land goes on.
 _TUNNEL = 30.0
 
-# Slope of the road down to its mouths: it reaches them within the lot.
+# Slope of the road down to the mouths of the tunnel: steep, so that it begins within the lot.
 _ROAD = 0.16
 
 
 @dataclass(frozen=True)
 class Lot:
-    """One kind at one site: its middle (m) and the angle (rad) of decks to the shortest way across."""
+    """One kind at one site.
+
+    Its middle (m), the direction (rad) across the obstacle, and the angle (rad) of decks to it, the shortest way.
+    """
 
     kind: str
     x: float
@@ -119,19 +122,19 @@ class Lot:
     def height(self, x, y) -> np.ndarray:
         """Return the elevation (m) of the land, of the bottom under water."""
         u, v = self.frame.local(x, y)
-        made = KINDS[self.kind]
+        obstacle = KINDS[self.kind]
         if self.kind == "fly-over":
             return self._embankment(u, v)
         fade = np.clip((LOT / 2 - _MARGIN - np.abs(v)) / _FADE, 0, 1)
         if self.kind == "ramp":
             # A road that climbs along the lot and ends over a wall, as loading ramps do.
-            climb = np.clip((v + 35) * _RAMP, 0, -made.depth) * (v < 5)
-            side = (made.half_width + 2 - np.abs(u)) * _WALL
+            climb = np.clip((v + 35) * _RAMP, 0, -obstacle.depth) * (v < 5)
+            side = (obstacle.half_width + 2 - np.abs(u)) * _WALL
             return np.clip(np.minimum(np.minimum(climb, side), np.maximum(5 - v, 0) * _WALL), 0, None)
-        depth = np.clip((made.half_width + made.behind - np.abs(u)) * made.bank, 0, made.depth)
+        depth = np.clip((obstacle.half_width + obstacle.behind - np.abs(u)) * obstacle.bank, 0, obstacle.depth)
         if self.kind == "tunnel":
             # The road comes down to both mouths between walls, and the land goes on over it between them.
-            down = np.clip((LOT / 2 - _MARGIN - np.abs(v)) * _ROAD, 0, made.depth)
+            down = np.clip((LOT / 2 - _MARGIN - np.abs(v)) * _ROAD, 0, obstacle.depth)
             return -np.minimum(np.minimum(depth, down), np.clip((np.abs(v) - _TUNNEL) * _WALL, 0, None))
         return -depth * fade
 
@@ -150,14 +153,14 @@ class Lot:
     @property
     def span(self) -> float:
         """Length (m) of the deck from edge to edge of the obstacle."""
-        made = KINDS[self.kind]
-        return 2 * made.half_width / np.cos(self.skew) + made.width * np.tan(abs(self.skew))
+        obstacle = KINDS[self.kind]
+        return 2 * obstacle.half_width / np.cos(self.skew) + obstacle.width * np.tan(abs(self.skew))
 
     @property
     def water_level(self) -> float:
         """Elevation (m) of the water, -inf without any."""
-        made = KINDS[self.kind]
-        return _WATER - made.depth if made.is_water else -np.inf
+        obstacle = KINDS[self.kind]
+        return _WATER - obstacle.depth if obstacle.is_water else -np.inf
 
 
 @dataclass(frozen=True)
@@ -168,7 +171,7 @@ class BridgeRelief(Relief):
 
     @property
     def spread(self) -> float:
-        """Height (m) that the land never leaves the plane by."""
+        """Largest height (m) of the land above or below the plane."""
         return max(max(kind.depth, _FLY_OVER) for kind in KINDS.values())
 
     def ground(self, x, y) -> np.ndarray:
@@ -229,7 +232,7 @@ def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, se
     cars, trees : bool
         Whether there are cars on the decks, and trees.
     seed : int
-        The same seed makes the same.
+        The same seed gives the same site.
     """
     rng = np.random.default_rng([seed, 7])
     columns = int(np.ceil(np.sqrt(len(kinds))))
@@ -252,25 +255,25 @@ def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, se
 
 def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
     """Put the decks of a lot with parapets, piers under long ones, and cars."""
-    made = KINDS[lot.kind]
+    obstacle = KINDS[lot.kind]
     top = _FLY_OVER if lot.kind == "fly-over" else 0.05
-    decks, at = [], -made.width / 2
-    for width in made.decks:
+    decks, at = [], -obstacle.width / 2
+    for width in obstacle.decks:
         frame = lot.frame.part(0.0, 0.0, 1.0, 1.0, lot.skew)
         rect = frame.part(0.0, at + width / 2, lot.span + 2 * _SEAT, width)
         at += width + 1.5
         number = scene.new_id()
-        deck_top = _deck_top(rect, top, made.arch)
+        deck_top = _deck_top(rect, top, obstacle.arch)
         scene.solids.append(Solid(rect, deck_top, top - _THICKNESS, PointClass.BRIDGE_DECK, number))
         for side in (-1, 1):
             rail = rect.part(0.0, side * (width - _PARAPET_WIDTH) / 2, rect.length, _PARAPET_WIDTH)
-            tops = _deck_top(rail, top + _PARAPET, made.arch)
+            tops = _deck_top(rail, top + _PARAPET, obstacle.arch)
             scene.solids.append(Solid(rail, tops, top - _THICKNESS, PointClass.UNCLASSIFIED, number))
         if rect.length > 40:
             for share in (-0.2, 0.2):
                 pier = rect.part(share * rect.length, 0.0, 1.2, width - 2.0)
                 scene.add_box(pier, -20.0, top - _THICKNESS, PointClass.UNCLASSIFIED, number)
-        if cars and width > 4 and not made.arch:
+        if cars and width > 4 and not obstacle.arch:
             _cars(scene, rect, top)
         decks.append(Deck(number, lot.kind, float(np.degrees(lot.skew)), rect))
     return decks
@@ -301,23 +304,23 @@ def _cars(scene: Scene, deck: Rect, top: float) -> None:
 
 def _quays(scene: Scene, lot: Lot) -> None:
     """Put vertical walls along a canal, and a jetty into it where nothing crosses it; both are terrain."""
-    made = KINDS[lot.kind]
+    obstacle = KINDS[lot.kind]
     long = LOT - 2 * (_MARGIN + _FADE)
     for side in (-1, 1):
-        quay = lot.frame.part(side * (made.half_width + 1.5), 0.0, 3.0, long)
-        scene.add_box(quay, -made.depth - 1, 0.0, PointClass.GROUND, 0)
-    if not made.decks:
-        jetty = lot.frame.part(-made.half_width / 2, 0.0, made.half_width + 2, 6.0)
-        scene.add_box(jetty, -made.depth - 1, 0.0, PointClass.GROUND, 0)
+        quay = lot.frame.part(side * (obstacle.half_width + 1.5), 0.0, 3.0, long)
+        scene.add_box(quay, -obstacle.depth - 1, 0.0, PointClass.GROUND, 0)
+    if not obstacle.decks:
+        jetty = lot.frame.part(-obstacle.half_width / 2, 0.0, obstacle.half_width + 2, 6.0)
+        scene.add_box(jetty, -obstacle.depth - 1, 0.0, PointClass.GROUND, 0)
 
 
 def _trees(scene: Scene, lot: Lot, rng: np.random.Generator) -> None:
     """Plant trees on the land at some distance from decks."""
-    made = KINDS[lot.kind]
+    obstacle = KINDS[lot.kind]
     for u, v in rng.uniform(-LOT / 2 + 8, LOT / 2 - 8, (24, 2)):
         x, y = lot.frame.at(u, v)
         across = abs(v * np.cos(lot.skew) - u * np.sin(lot.skew))
-        is_free = abs(u) > made.half_width + 4 and across > sum(made.decks) / 2 + 12
+        is_free = abs(u) > obstacle.half_width + 4 and across > sum(obstacle.decks) / 2 + 12
         if is_free and max(abs(x - lot.x), abs(y - lot.y)) < LOT / 2 - 6:
             radius = float(rng.uniform(2, 4))
             z = float(scene.relief.ground(x, y))

@@ -44,7 +44,7 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass
 class Plant:
-    """Parts, and the stations of the scanner (k, 3), m."""
+    """Parts, and the stations of the scanner, positions (3,), m."""
 
     parts: list[Part] = field(default_factory=list)
     stations: list[np.ndarray] = field(default_factory=list)
@@ -63,15 +63,16 @@ def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.ran
         Source of random numbers.
     """
     plant, bay = Plant(), 0
-    left = pipes
+    remaining = pipes
+    # With some 35 pipes on a rack, bays make about four times as many columns as rows.
     columns = max(1, int(np.ceil(np.sqrt(max(1, pipes / 9)))))
-    while left > 0:
+    while remaining > 0:
         corner = np.array([bay % columns, bay // columns, 0.0]) * PITCH
-        left -= _rack(plant, corner + PITCH / 2 * np.array([1.0, 1.0, 0.0]), left, clutter, rng)
+        remaining -= _rack(plant, corner + PITCH / 2 * np.array([1.0, 1.0, 0.0]), remaining, clutter, rng)
         _stations(plant, corner)
         bay += 1
     rows = int(np.ceil(bay / columns))
-    width, depth = max(columns, 1) * PITCH, max(rows, 1) * PITCH
+    width, depth = columns * PITCH, max(rows, 1) * PITCH
     edge = _tanks(plant, tanks, depth, rng)
     _spheres(plant, spheres, width, rng)
     plant.parts.append(_floor(min(-2.0, edge), width + 2.0 + 6.0 * (spheres > 0), depth))
@@ -156,7 +157,7 @@ def _tanks(plant: Plant, count: int, depth: float, rng: np.random.Generator) -> 
     """Add tanks west of the racks with stations around them; return where they end in the west."""
     edge = -4.0
     for number in range(count):
-        share = number / max(1, count - 1) if count > 1 else 0.3
+        share = number / (count - 1) if count > 1 else 0.3
         radius = float(np.exp(np.log(TANKS[0]) + share * np.log(TANKS[1] / TANKS[0]))) / 2
         height = float(rng.uniform(0.6, 0.9) * min(2 * radius, 12.0))
         foot = np.array([edge - radius, depth / 2, 0.0])

@@ -19,10 +19,10 @@ from .vehicle import Drive, pulses_of
 # The scanners are this high over the street (m).
 _HEIGHT = 2.2
 
-# Points of a wall this far from its front are on its ends and reveals (m), without noise.
+# Points of a wall farther than this (m) from its front, noise apart, are on its ends and reveals.
 _ON_FRONT = 0.01
 
-# What the noise adds to that distance (standard deviations): one point of 16,000 is farther off.
+# Largest error by noise (standard deviations) of a point on the front: one of 16,000 is larger.
 _DEVIATIONS = 4.0
 
 # From where the street may be scanned.
@@ -142,11 +142,11 @@ def simulate_street(
     classification : ndarray of shape (n,), uint8
         The truth: 2 ground; 3, 4, 5 vegetation by height; 6 buildings with their balconies; 1 cars, poles and people.
     return_number, number_of_returns : ndarray of shape (n,), uint8
-        1: the scanners record the first echo only.
+        1: the vehicle's scanners record the first echo only. From the airplane as of "Simulate town".
     scan_angle : ndarray of shape (n,), float32
-        Angle of the beam to the nadir (°), negative to the left of the vehicle.
+        Angle of the beam to the nadir (°), negative to the left.
     point_source_id : ndarray of shape (n,), uint16
-        1 for the scanner that looks ahead on the left, 2 for the other one.
+        1 for the vehicle's scanner that looks ahead on the left, 2 for the other one; strips of the airplane.
     segment_id : ndarray of shape (n,), int32
         Number of the facade; 0 for everything else, reveals, panes and frames too.
     cluster_id : ndarray of shape (n,), int32

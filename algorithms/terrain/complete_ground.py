@@ -57,7 +57,7 @@ def complete_ground(
 
     Notes
     -----
-    For clouds of which buildings are already known, as their steps and low walls begin at this height, too. 0.1 m is
+    Buildings must be classified before: their steps and low walls are as near to the ground. The default of 0.1 m is
     the vertical accuracy that airborne surveys promise (root mean square) and the height from which
     'Classify vegetation' finds plants.
 

@@ -33,7 +33,7 @@ def on_no_object(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.n
 
 
 def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points (n,) are ground points on small objects, which a surface climbs where walls are smeared.
+    """Return which points (n,) are ground points on small objects: a ground surface climbs them over smeared walls.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
 
     Notes
     -----
-    The lowest ground points of cells are opened with a window. Planes of any slope and plateaus wider than the window
-    stay as they are. Sheds are removed, and so is the ring of ground points on the smeared walls of a house, since no
-    window is centered on its roof. Ridges and dikes narrower than the window rise above the opened surface as well:
-    what is longer than two windows stays, except for such rings.
+    The lowest ground points of cells are opened with a window of ``SMEARED.width`` m. Planes of any slope and plateaus
+    wider than the window stay as they are. Sheds are removed, and so is the ring of ground points on the smeared walls
+    of a house, since no window is centered on its roof. Ridges and dikes narrower than the window rise above the
+    opened surface as well: what is longer than two windows stays, except for such rings.
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)

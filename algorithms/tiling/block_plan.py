@@ -7,14 +7,14 @@ import numpy as np
 from .blocks import Block
 from .survey import Survey
 
-# A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point). Two of them, one
-# with a window that was enlarged, need less than 4 GB with the main process.
+# A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point). Two workers, one
+# of them with a window that was enlarged, and the main process need less than 4 GB.
 MOST_POINTS = 5_300_000
 
 # Sides of blocks are multiples of this, m.
 _SIDE_STEP = 50.0
 
-# Least and greatest side, m; smaller blocks would work mostly on what lies around them.
+# Least and greatest side unless a cloud is dense, m; smaller blocks would work mostly on what lies around them.
 _LEAST_SIDE, _MOST_SIDE = 100.0, 1600.0
 
 # In dense clouds sides are multiples of this, m.
@@ -31,7 +31,15 @@ _POINTS_PER_BLOCK = 100
 
 
 def side_of_blocks(density: float, halo: float) -> float:
-    """Return the largest side of a block, m, whose window has room for its points."""
+    """Return the largest side of a block, m, whose window holds no more than ``MOST_POINTS``, or the least side.
+
+    Parameters
+    ----------
+    density : float
+        Points per m².
+    halo : float
+        Distance around a block within which points are read, m.
+    """
     fits = np.sqrt(MOST_POINTS / density) - 2 * halo
     if fits >= _LEAST_SIDE:
         return float(min(np.floor(fits / _SIDE_STEP) * _SIDE_STEP, _MOST_SIDE))

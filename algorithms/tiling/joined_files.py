@@ -1,4 +1,4 @@
-"""Text files of a survey, of what its blocks have kept for them."""
+"""Text files of a survey, from the items that its blocks have kept."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ def join_files(pipeline: Pipeline, results: list[Path], kept: dict[str, np.ndarr
         The composite.
     results : list of Path
         Files of :meth:`.BlockResult.write`, which stay until the text is written.
-    kept : dict of str to ndarray of shape (m, 2), int64
-        Of each layer, from :func:`.join_features`: position among ``results`` and number of the features that stay.
+    kept : dict of str to ndarray of shape (m, 3), int64
+        Of each layer, from :func:`.join_features`: of the features that stay their position among ``results``, their
+        number in that block, and their number in the survey.
     """
     return {
         name: FileContent(_Items(results, file.item, new_names(kept[of])), file.write)
@@ -37,7 +38,10 @@ def join_files(pipeline: Pipeline, results: list[Path], kept: dict[str, np.ndarr
 
 @dataclass(frozen=True)
 class _Items(Collection):
-    """The items of a text file under the names of the survey, those of one block in memory at a time."""
+    """The items of a text file under the names of the survey, those of one block in memory at a time.
+
+    ``becomes`` are the numbers in the survey by block and name there; items without one are left out.
+    """
 
     results: list[Path]
     item: type[FileItem]

@@ -37,10 +37,10 @@ _Feature = tuple[Any, dict[str, Any]]
 # Distance in plan within which points lie on a wall (times the roughness).
 _ON_WALL = 3.1
 
-# Least value of that distance (m), that of the tunable.
+# Least automatic distance (m): the least that the parameter takes.
 _LEAST_TOLERANCE = 0.01
 
-# Largest value of that distance (m), that of the tunable.
+# Largest automatic distance (m): the largest that the parameter takes.
 _MOST_TOLERANCE = 2.0
 
 _FIELDS = (
@@ -337,14 +337,14 @@ def _tell_unseen(footprints: LayerFeatures, monitor: Monitor) -> None:
 
 @dataclass(frozen=True)
 class _Building:
-    """The points of one building near their south-western corner, in an order that is theirs (m)."""
+    """The points of one building."""
 
     number: int
-    origin: np.ndarray
-    roof: np.ndarray
-    walls: np.ndarray
-    roof_rows: np.ndarray
-    roof_xyz: np.ndarray
+    origin: np.ndarray  #: (2,): south-western corner of the roof's points, m
+    roof: np.ndarray  #: (n, 2): points of the roof from the origin, m, sorted by their coordinates
+    walls: np.ndarray  #: (k, 2): points of the walls in the same way
+    roof_rows: np.ndarray  #: (n,): rows of the roof's points in the cloud
+    roof_xyz: np.ndarray  #: (n, 3): points of the roof in this order, m, not from the origin
     surroundings: Surroundings
 
     @cached_property

@@ -17,7 +17,7 @@ _CELL = 0.3
 def split_blocks(
     xyz: np.ndarray, height: np.ndarray, cluster_id: np.ndarray, spacing: float, monitor: Monitor
 ) -> np.ndarray:
-    """Return the buildings (n,), from 1 and from west to east, with the houses of rows and blocks one by one.
+    """Return the buildings (n,), each house of rows and blocks as one, from 1 from west to east; 0 if unassigned.
 
     Parameters
     ----------
@@ -34,8 +34,8 @@ def split_blocks(
 
     Notes
     -----
-    Houses are separated as in rows of gables, along a line from one side of the block to the other with another such
-    line a house away. There a wall rises above both roofs, or one roof steps down to the other.
+    Houses are separated as in rows of gables: along lines from one side of the block to the other, a house apart. Along
+    such a line a wall rises above both roofs, or one roof steps down to the other.
     """
     own = np.flatnonzero(cluster_id > 0)
     if not len(own):
@@ -43,15 +43,15 @@ def split_blocks(
     size = max(_CELL, 2 * spacing)
     top = own[highest_of_cells(xyz[own], size)[0]]
     # Roofs are compared by their elevations: over sloping ground, heights above ground vary on a level roof.
-    lowest = np.full(int(cluster_id.max()) + 1, np.inf)
-    np.minimum.at(lowest, cluster_id[top], (xyz[:, 2] - height)[top])
+    lowest_ground = np.full(int(cluster_id.max()) + 1, np.inf)
+    np.minimum.at(lowest_ground, cluster_id[top], (xyz[:, 2] - height)[top])
     corner = xyz[own, :2].min(axis=0)
     count = int(cluster_id.max())
     house = cluster_id[own].astype(np.int64)
     buildings = np.unique(cluster_id[top])
     for done, number in enumerate(buildings.tolist()):
         roof, mine = top[cluster_id[top] == number], cluster_id[own] == number
-        over_lowest = xyz[roof, 2] - lowest[number]
+        over_lowest = xyz[roof, 2] - lowest_ground[number]
         part = _houses_at(xyz[roof, :2] - corner, over_lowest, xyz[own[mine], :2] - corner, size)
         house[mine] = np.where(part > 1, count + part - 1, number)
         count += int(part.max()) - 1
@@ -62,7 +62,10 @@ def split_blocks(
 
 
 def _houses_at(plan: np.ndarray, height: np.ndarray, positions: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the house (k,), from 1, at positions (k, 2) of a building with these roof points and heights."""
+    """Return the house (k,), from 1, at positions (k, 2), m, of a building.
+
+    Its roof has points at ``plan`` (n, 2), m, ``spacing`` (m) apart, with heights (n,) above one level, m.
+    """
     shares, pieces, directions = pieces_alone(plan, spacing, 0.0)
     if not pieces:
         return np.ones(len(positions), np.int64)
