@@ -35,7 +35,7 @@ from .texts import tr
 # The parameter of a composite whose class codes are written.
 _CODES = "CODES_CODES"
 
-# Outputs that are shown at once; further ones are folded.
+# Outputs that stay shown where others are folded, which are two or more.
 _OUTPUTS = 3
 
 
@@ -125,9 +125,9 @@ class GroupedPanel(ParametersPanel):
         """Hide QGIS's own group of advanced parameters when all of them are in other groups."""
         box = self._advanced()
         if box is not None:
-            left = [widget for widget in box.findChildren(QWidget) if widget.objectName() != "" or widget.layout()]
+            inside = [widget for widget in box.findChildren(QWidget) if widget.objectName() != "" or widget.layout()]
             holds = any(box.isAncestorOf(part) for name in self.wrappers for part in self._parts(name) if part)
-            box.setVisible(bool(left) and holds)
+            box.setVisible(bool(inside) and holds)
 
     def _rename(self, name: str, label: str) -> None:
         """Give a parameter the label that it has within its group."""

@@ -16,10 +16,10 @@ _GB = 1e9
 
 def warn_if_memory_is_short(n_points: int, monitor: Monitor) -> None:
     """Warn of clouds that hardly fit into memory: where it ends, most systems end QGIS without a word."""
-    there, needed = installed_memory(), _PER_POINT * n_points
-    if needed > there:
+    installed, needed = installed_memory(), _PER_POINT * n_points
+    if needed > installed:
         monitor.warn(
-            f"{n_points:,} points may need {needed / _GB:.1f} GB of memory, this computer has {there / _GB:.1f}; "
+            f"{n_points:,} points may need {needed / _GB:.1f} GB of memory, this computer has {installed / _GB:.1f}; "
             f"if that is not enough, {less_memory()}."
         )
 

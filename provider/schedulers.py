@@ -23,7 +23,7 @@ def check_scheduler(address: str) -> None:
     Raises
     ------
     ValueError
-        If the address is not confirmed; says how to.
+        If the address is not confirmed; the message says how to confirm it.
     """
     if not address or address in confirmed():
         return

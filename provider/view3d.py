@@ -16,15 +16,18 @@ from qgis.core import (
 
 from .texts import tr
 
-# Angles (°) of the camera from straight down and from south: seen from there, upright planes would be lines.
-_PITCH, _YAW = 55.0, 35.0
+# Angle (°) of the camera from straight down: seen from above, walls would be lines.
+_PITCH = 55.0
+
+# Angle (°) of the camera from south: seen from south, walls from south to north would be lines.
+_YAW = 35.0
 
 # Distance of the camera, in sides of the extent that is shown.
 _AWAY = 1.8
 
 
 def show_view(iface: Any) -> None:
-    """Open a 3D view with the layers of the current group alone, or with all that are visible where none has models."""
+    """Open a 3D view with the layers of the current group alone, or with all visible ones where it has no vectors."""
     layers = layers_to_show(iface.layerTreeView().currentGroupNode(), iface.mapCanvas().layers())
     if not layers:
         iface.messageBar().pushInfo(tr("3D"), tr("There is no layer to show; run a model first."))
@@ -52,7 +55,7 @@ def _elevation(layers: list[QgsMapLayer]) -> float:
 
 
 def layers_to_show(group: QgsLayerTree, visible: list[QgsMapLayer]) -> list[QgsMapLayer]:
-    """Return the visible layers of a group with models, else all visible layers that can be shown in space."""
+    """Return the visible layers of a group with vectors, else all visible layers, if they can be shown in space."""
     of_group = [node.layer() for node in group.findLayers() if node.isVisible()]
     chosen = of_group if any(isinstance(layer, QgsVectorLayer) for layer in of_group) else visible
     return [layer for layer in chosen if layer is not None and layer.renderer3D() is not None]

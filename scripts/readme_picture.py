@@ -23,13 +23,13 @@ from qgis.utils import iface
 from lidar_buildings.provider.paths import PLUGIN
 
 PICTURE = Path(PLUGIN).resolve() / "resources" / "readme" / "models.png"
-WINDOW = QSize(1400, 900)
+WINDOW = QSize(1400, 900)  # pixels: the whole of the screen
 REDRAW = 20000  # milliseconds until the map is drawn
 CAMERA = 210.0, 55.0, 30.0  # distance (m), angle from the vertical and azimuth (°) of the camera of the 3D view
 
 
 def modelled_buildings() -> None:
-    """Model the buildings of the tile and load roofs, walls and grounds."""
+    """Model the buildings of the tile and load their footprints, walls and roofs."""
     project = QgsProject.instance()
     project.clear()
     targets = {
@@ -48,7 +48,7 @@ class View:
     """The 3D view over the whole window."""
 
     def open(self) -> None:
-        """Open it."""
+        """Open the view."""
         self.canvas = iface.createNewMapCanvas3D("Models")
         shown = [window for window in QgsApplication.topLevelWidgets() if window.isVisible()]
         (self.window,) = (window for window in shown if window is not iface.mainWindow())
@@ -61,7 +61,7 @@ class View:
         self.canvas.cameraController().setLookingAtPoint(center, *CAMERA)
 
     def picture(self) -> None:
-        """Save it as the screen shows it, without its buttons."""
+        """Save the view as the screen shows it, without its buttons."""
         bar = self.window.findChild(QToolBar).height()
         image = QgsApplication.primaryScreen().grabWindow(self.window.winId())
         # The window may be larger than the screen.

@@ -235,7 +235,7 @@ def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
     # Multipath through a skylight is no ground that shows in it.
     covered = covered_cells(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
     building, refused = numbered(covered, limits.min_area, cell_size)
-    top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)
+    top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered.shape)
     if roofs.segment_id is not None:
         at_roof = raised & (np.abs(roofs.xyz[:, 2] - top[cell]) <= limits.clearance)
         on_surface = roofs.is_roof & (roofs.segment_id > 0)
@@ -260,7 +260,7 @@ def _coverage_in_images(roofs: _Roofs, limits: _Limits) -> Coverage:
     raised = (roofs.height >= LASER.foot) | (building[cell] > 0)
     building = extent.faces(building)
     raised |= (building[cell] > 0) & (roofs.height >= IMAGES.foot)
-    top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)
+    top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered.shape)
     return Coverage(cell, surface.size, building, refused, top, raised & roofs.may_belong)
 
 

@@ -11,6 +11,7 @@ from ..geometry.grid import EIGHT
 from ..geometry.groups import least_of
 from ..packages import ndimage
 
+# Row and column (n,) of the cell of a raster that each point is in.
 Cell = tuple[np.ndarray, np.ndarray]
 
 
@@ -27,7 +28,10 @@ class Coverage:
     raised: np.ndarray  #: (n,), bool: points that belong to a building if their cell does
 
     def refusal(self, owner: np.ndarray) -> np.ndarray:
-        """Return why points (n,) are of no building, as :class:`~..cloud.reasons.Reason`; 0 for points of one."""
+        """Return why points are of no building, as :class:`~..cloud.reasons.Reason`; 0 for points of one.
+
+        ``owner`` (n,) is the building of each point, 0 for none.
+        """
         why = np.where(self.building[self.cell] > 0, np.uint8(Reason.TOO_LOW), self.refused[self.cell])
         return np.where(owner > 0, np.uint8(0), why)
 
@@ -119,7 +123,7 @@ def renumbered(kept: np.ndarray) -> np.ndarray:
     return np.where(kept, np.cumsum(kept), 0).astype(np.int32)
 
 
-def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np.ndarray) -> np.ndarray:
+def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """Return the elevation (rows, columns) of the highest roof point of each cell, or of the nearest such cell.
 
     Parameters
@@ -130,17 +134,17 @@ def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np
         Elevations, m.
     is_roof : ndarray of shape (n,), bool
         Points of roofs.
-    covered : ndarray of shape (rows, columns), bool
-        Cells that roofs cover.
+    shape : tuple of int
+        Rows and columns.
     """
     row, column = cell
-    number = row[is_roof] * covered.shape[1] + column[is_roof]
-    top = -least_of(-elevation[is_roof], number, covered.size).reshape(covered.shape)
+    number = row[is_roof] * shape[1] + column[is_roof]
+    top = -least_of(-elevation[is_roof], number, shape[0] * shape[1]).reshape(shape)
     nearest = ndimage.distance_transform_edt(~np.isfinite(top), return_distances=False, return_indices=True)
     return top[tuple(nearest)]
 
 
 def disk(radius: int) -> np.ndarray:
-    """Return a disk of a radius (cells), with those a quarter of a cell beyond it, so that it looks round."""
+    """Return a disk of a radius (cells) and a quarter of a cell more, so that it looks round."""
     row, column = np.mgrid[-radius : radius + 1, -radius : radius + 1]
     return row**2 + column**2 <= radius**2 + 0.5 * radius

@@ -88,7 +88,7 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
 
 
 def _nodes(path: Path, stream: BinaryIO, at: int, size: int, most: int) -> np.ndarray:
-    """Return the entries of all nodes with points, page by page from the root's on."""
+    """Return the entries of all nodes with points, page by page from the root's on; ``most`` is how many may be."""
     total = path.stat().st_size
     waiting, seen, found = [(at, size)], set(), [np.empty(0, ENTRY)]
     count = 0

@@ -118,14 +118,14 @@ def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:
     descriptor come as one undocumented field.
     """
     fields: list[ExtraField] = []
-    left = size
+    remaining = size
     for start in range(0, len(payload) - DESCRIPTOR_SIZE + 1, DESCRIPTOR_SIZE):
         field = _field(payload[start : start + DESCRIPTOR_SIZE])
-        if field.dtype.itemsize > left:
+        if field.dtype.itemsize > remaining:
             break
         fields.append(field)
-        left -= field.dtype.itemsize
-    return (*fields, ExtraField("", np.dtype(f"V{left}"), None)) if left else tuple(fields)
+        remaining -= field.dtype.itemsize
+    return (*fields, ExtraField("", np.dtype(f"V{remaining}"), None)) if remaining else tuple(fields)
 
 
 def _field(raw: bytes) -> ExtraField:

@@ -50,7 +50,7 @@ def read_cloud(
         it is geographic), or None if unknown; asked when a file gives a code and no unit.
     box : ndarray of shape (2, 2), optional
         Least and greatest easting and northing, in coordinates of the file: only points within are kept, edges
-        included. Memory is needed for these.
+        included, and only these need memory.
 
     Returns
     -------

@@ -9,7 +9,7 @@ import numpy as np
 # Distance (m) before a wall from which points are of ground, landings and stairs: sills and cornices jut out less.
 FROM_WALL = 0.2
 
-# Distance (m) before a wall up to which these lead up to a door: a landing is rarely deeper.
+# Distance (m) before a wall up to which ground, landings and stairs lead to a door: a landing is rarely deeper.
 BEFORE = 1.5
 
 
@@ -46,8 +46,8 @@ class Approach:
     def leads_to(self, box: np.ndarray) -> bool:
         """Return whether a person can walk up to an opening with a box (2, 2), m, and through it.
 
-        The highest surface below the sill, in most columns of the opening, is at most a step below it, and no wall is
-        seen further down. Where nothing is seen before the wall, the foot of the wall is taken instead.
+        The highest surface up to a step above the sill is, in most columns of the opening, at most a step below it. No
+        wall is seen further down. Where nothing is seen before the wall, the foot of the wall is taken instead.
         """
         low, high = box[:, 1]
         if high - low < _RULES.least_height:

@@ -37,7 +37,9 @@ class RowRules:
         0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
     )
     seen: float = rule(0.5, "share", "of a wall that shows a row: what is seen of it beside roofs")
-    glimpsed: float = rule(0.3, "share", "the same of a further one: hips hide valleys at their ends")
+    glimpsed: float = rule(
+        0.3, "share", "of a further wall of a row that is seen beside roofs: hips hide valleys at their ends"
+    )
     evident: float = rule(0.2, "m, or tangent", "mean strength of a wall; noise of matched images reaches 0.17")
     high: float = rule(0.5, "share", "of the median height: lower parts are no roof of a row")
     narrowest: float = rule(3.5, "m", "physics: least width and depth of a house")
@@ -93,7 +95,7 @@ def split_row(
     plan : ndarray of shape (n, 2)
         Points of its roof, m.
     height : ndarray of shape (n,)
-        Their heights above ground, m; NaN where unknown.
+        Their heights above the ground or one level, m; NaN where unknown.
     angles : ndarray of shape (k,)
         Its main directions, °.
     spacing : float
@@ -160,11 +162,11 @@ class _Runs:
     column: np.ndarray  #: int64: its column
     first: np.ndarray  #: int64: its first row
     last: np.ndarray  #: int64: the row after its last one
-    shift: np.ndarray  #: Columns from there to where two lines fit the roof best
-    strength: np.ndarray  #: Strength of the evidence for it, m²
-    is_above: np.ndarray  #: bool: whether most of that is a wall above both roofs
+    shift: np.ndarray  #: Columns from its column to where two lines fit the roof best
+    strength: np.ndarray  #: Sum of the strength of the evidence along it, m² (of valleys m)
+    is_above: np.ndarray  #: bool: whether most of its strength is that of a wall above both roofs
     misfit: np.ndarray  #: Mean deviation of the roof from two lines that meet, m
-    beyond: np.ndarray  #: The same from two lines that begin beyond a wall, m
+    beyond: np.ndarray  #: Mean deviation of the roof from two lines that begin beyond a wall, m
     is_clear: np.ndarray  #: bool: whether most of it is seen
 
     def take(self, index: np.ndarray) -> _Runs:
@@ -188,29 +190,31 @@ def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarr
     length = (last - first) * step
     is_seen = ndimage.maximum_filter1d(weight, 3, axis=1) > 0
     counted, supported, strength, above, beyond = (
-        _sums(values, column, first, last) * step
+        _sums_of_runs(values, column, first, last) * step
         for values in (is_high, is_seen & is_high, weight, is_above * weight, beyond)
     )
     beside = (np.clip(column + at, 0, roof.shape[1] - 1) for at in (-1, 0, 1))
-    before, here, after = (_sums(misfit, at, first, last) * step / length for at in beside)
-    bend = before - 2 * here + after
+    before, at_line, after = (_sums_of_runs(misfit, at, first, last) * step / length for at in beside)
+    bend = before - 2 * at_line + after
     # Beside a wall above both roofs the misfit is that of the wall, and its least value is no evidence.
-    is_sharp = bend > here / 2
+    is_sharp = bend > at_line / 2
     shift = np.where(is_sharp, np.clip((before - after) / np.where(is_sharp, 2 * bend, 1.0), -0.5, 0.5), 0.0)
     is_clear = (supported >= np.maximum(ROWS.narrowest, ROWS.seen * counted)) & (strength >= ROWS.evident * counted)
     is_long = (length >= ROWS.narrowest) & (length <= ROWS.largest)
     good = np.flatnonzero(is_long & (supported >= ROWS.glimpsed * np.maximum(ROWS.narrowest, counted)))
-    return _Runs(column, first, last, shift, strength, 2 * above > strength, here, beyond / length, is_clear).take(good)
+    is_wall = 2 * above > strength
+    return _Runs(column, first, last, shift, strength, is_wall, at_line, beyond / length, is_clear).take(good)
 
 
 def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
-    """Return for party walls along the first axis at samples their strength (m), and the height beside them (m).
+    """Return the strength of party walls along the first axis at samples (m; of valleys a tangent).
 
-    Further whether they are a wall above both roofs, and the misfits of roofs that meet and of those beyond a wall.
+    Further the height beside them (m), whether they are a wall above both roofs, and the misfits of roofs that meet and
+    of those beyond a wall.
     """
     sums = _Sums.along(roof, seen, step)
     left, right = _side(sums, step, -1), _side(sums, step, 1)
-    jump = np.abs(right.here - left.here)
+    jump = np.abs(right.at_sample - left.at_sample)
     is_valley = (left.rise > ROWS.rise) & (right.rise > ROWS.rise)
     is_ridge = (left.rise < -ROWS.rise) & (right.rise < -ROWS.rise)
     is_parallel = (jump > ROWS.least_height) & (np.abs(left.rise + right.rise) < ROWS.parallel)
@@ -218,7 +222,7 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarr
     is_smooth = np.maximum(left.rough, right.rough) < ROWS.rough
     is_house = np.minimum(left.mean, right.mean) >= ROWS.least_share * np.maximum(left.mean, right.mean)
     above = _above(sums, left, right, step)
-    goes_on = _goes_on(sums.mean(), sums.n >= 1, right.here - left.here, step)
+    goes_on = _goes_on(sums.mean(), sums.n >= 1, right.at_sample - left.at_sample, step)
     is_step = (is_parallel | is_large) & is_smooth & is_house & goes_on
     is_parapet = (above > ROWS.least_height) & is_smooth
     strength = np.where(is_step, np.minimum(jump, 2 * ROWS.large_step), np.where(is_parapet, above, 0.0))
@@ -264,7 +268,7 @@ class _Sums:
 class _Side:
     """The plane fitted to the roof on one side of each sample."""
 
-    here: np.ndarray  #: Its height at the sample, m
+    at_sample: np.ndarray  #: Its height at the sample, m
     rise: np.ndarray  #: How it rises outward
     slope: np.ndarray  #: How it rises along the line
     rough: np.ndarray  #: Root mean square deviation of the points, m
@@ -288,14 +292,14 @@ def _side(sums: _Sums, step: float, sign: int) -> _Side:
         return ndimage.correlate1d(values, kernel[::sign], axis=1, mode="constant", origin=origin)
 
     across = [total(*term) for term in terms]
-    here, rise, slope, rough = _fitted(across, last + 1 - first)
+    at_sample, rise, slope, rough = _fitted(across, last + 1 - first)
     mean = np.where(np.isfinite(rise), across[6] / np.maximum(across[0], 1.0), np.nan)
     for offset in range(1, first):
         own, other = slice(None, -offset), slice(offset, None)
         own, other = (own, other) if sign > 0 else (other, own)
         for one, (values, exponent) in zip(across, terms):
             one[:, own] += values[:, other] * (offset * step) ** exponent
-    return _Side(here, rise, slope, rough, mean, _fitted(across, last)[3])
+    return _Side(at_sample, rise, slope, rough, mean, _fitted(across, last)[3])
 
 
 def _fitted(across: list, count: int) -> tuple[np.ndarray, ...]:
@@ -312,8 +316,8 @@ def _fitted(across: list, count: int) -> tuple[np.ndarray, ...]:
     det = np.where(good, det, 1.0)
     rise = np.where(good, xz * yy - yz * xy, np.nan) / det
     slope = np.where(good, yz * xx - xz * xy, np.nan) / det
-    here = (z - rise * x - slope * y) / n
-    return here, rise, slope, np.sqrt(np.maximum(zz - rise * xz - slope * yz, 0.0) / n)
+    at_sample = (z - rise * x - slope * y) / n
+    return at_sample, rise, slope, np.sqrt(np.maximum(zz - rise * xz - slope * yz, 0.0) / n)
 
 
 def _above(sums: _Sums, left: _Side, right: _Side, step: float) -> np.ndarray:
@@ -323,7 +327,7 @@ def _above(sums: _Sums, left: _Side, right: _Side, step: float) -> np.ndarray:
     for at in (-1, 0, 1):
         beside = level.take(np.clip(columns + at, 0, len(columns) - 1), axis=1)
         above = np.maximum(
-            above, beside - np.maximum(left.here - at * step * left.rise, right.here + at * step * right.rise)
+            above, beside - np.maximum(left.at_sample - at * step * left.rise, right.at_sample + at * step * right.rise)
         )
     return above
 
@@ -348,7 +352,7 @@ def _runs(is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return column, first, np.nonzero(change == -1)[1]
 
 
-def _sums(values: np.ndarray, column: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+def _sums_of_runs(values: np.ndarray, column: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """Return the sum of the values in each run."""
     total = np.cumsum(np.pad(values.astype(float), ((1, 0), (0, 0))), axis=0)
     return total[last, column] - total[first, column]
@@ -358,18 +362,18 @@ def _distinct(runs: _Runs, same: float) -> np.ndarray:
     """Return one of the runs that lie side by side: where two lines fit best, of those with strong evidence."""
     found = []
     column, first, last, strength = runs.column, runs.first, runs.last, runs.strength
-    is_left = np.ones(len(column), bool)
+    is_open = np.ones(len(column), bool)
     for best in np.argsort(-strength, kind="stable").tolist():
-        if not is_left[best]:
+        if not is_open[best]:
             continue
         shared = np.minimum(last, last[best]) - np.maximum(first, first[best])
-        beside = is_left & (2 * shared > last[best] - first[best])
+        beside = is_open & (2 * shared > last[best] - first[best])
         near = beside & (np.abs(column - column[best]) <= same)
         strong = np.flatnonzero(near & (strength >= ROWS.strong * strength[best]))
         fit = runs.beyond if runs.is_above[best] else runs.misfit
         found.append(int(strong[np.argmin(fit[strong])]))
-        is_left &= ~beside | (np.abs(column - column[found[-1]]) > same)
-        is_left[best] = False
+        is_open &= ~beside | (np.abs(column - column[found[-1]]) > same)
+        is_open[best] = False
     return np.array(found, np.int64)
 
 

@@ -16,7 +16,7 @@ _OTHER = int(PointClass.UNCLASSIFIED)
 # What agencies write for classes of ASPRS; classes that are not named keep their code.
 CODES: dict[str, dict[int, int]] = {
     _ASPRS: {},
-    # Civil works are 26; plants and noise are "other", wires 14 and their masts "other".
+    # Civil works are 26; plants, noise and masts are "other", and wires keep 14.
     "AHN (Netherlands)": {
         **{int(one): _OTHER for one in (0, *VEGETATION, *NOISE, PointClass.TRANSMISSION_TOWER)},
         int(PointClass.BRIDGE_DECK): 26,

@@ -163,6 +163,7 @@ def _partition(top: _Top, level: str) -> tuple[Optional[Partition], str]:
 def _single_top(top: _Top) -> tuple[Optional[Partition], str]:
     """Return the footprint under one level top."""
     roof = top.xyz[top.is_roof]
+    # A top is half a meter above the ground at least, so that the walls of its solid have a height.
     height = max(float(np.percentile(roof[:, 2], top.settings.percentile)), top.base + 0.5)
     cells, inside = empty_partition(top.rings, top.xyz[:, :2])
     if not inside.any():
@@ -190,7 +191,7 @@ def _level_tops(top: _Top, roof: Partition) -> Partition:
 
 
 def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
-    """Return the part (cells,) of each cell, -1 outside: parts meet where roofs step by less than ``min_step`` (m)."""
+    """Return the part (cells,) of each cell, -1 outside: one where roofs step by less than ``min_step`` (m)."""
     ends, beside = roof.cells.edges()
     one, other = roof.label[beside[:, 0]], roof.label[beside[:, 1]]
     rows = (one >= 0) & (other >= 0)
@@ -226,7 +227,7 @@ def _off(top: _Top, above: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def _worse(model: BuildingModel, level: str, top: _Top, above: np.ndarray) -> str:
-    """Return why the next level is no improvement, "" where it is one."""
+    """Return why a level is no improvement, "" where it is one; keep its deviation in the model."""
     off = np.minimum(np.abs(above[np.isfinite(above) & top.is_roof & ~top.is_low]), FARTHEST)
     if not len(off):
         return "no points lie over it"

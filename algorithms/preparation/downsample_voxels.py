@@ -17,7 +17,7 @@ from ..threads import in_chunks
 # Points of a chunk: values gathered for them stay in the processor's cache.
 _CHUNK = 50_000
 
-# Positions inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
+# Steps on the side of a voxel: positions in it are whole numbers of steps, so that sums don't depend on the order.
 _STEPS = 2.0**32
 
 # Numbers that a class can have in LAS.
@@ -180,7 +180,7 @@ def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
 
 
 def _keys_of_wide(xyz: np.ndarray, size: float) -> np.ndarray:
-    """Return the same where there are more voxels than numbers: only those that have points are numbered."""
+    """Return what :func:`_keys` does, but number only voxels with points: all are more than int64 holds."""
     key, n_keys = np.zeros(len(xyz), np.int64), 1
     for column in xyz.T:
         index, n_index = _renumbered(voxel_index(column / size, size))
@@ -215,23 +215,23 @@ def _nearest(
 ) -> np.ndarray:
     """Return, for each of k voxels, the position of the point nearest to the center.
 
-    Of m points these are ``position`` (m, 3), int64, by voxel, their voxels ``which`` (m,) and their ``rows`` in the
-    cloud (m,); ``total`` (k, 3) is the sum of the positions of each voxel. Distances that differ by less than ``touch``
-    (steps) are equal but for rounding. ``times`` are dimensions (n,) of the cloud, or None, that order points at one
-    position.
+    The points come voxel by voxel, with their ``position`` (m, 3), int64, their voxel ``which`` (m,) and their
+    ``rows`` (m,) in the cloud; ``total`` (k, 3) is the sum of the positions of each voxel. Distances that
+    differ by less than ``touch`` (steps) are equal but for rounding. ``times`` are dimensions (n,) of the cloud, or
+    None, that order points at one position.
     """
     count = np.bincount(which)[which]
     # Whole numbers: the two points of a pair are equally near to the last bit.
     away = (position * count[:, None] - total[which]).astype(float)
     distance = np.sqrt(np.einsum("ij,ij->i", away, away)) / count
     least = np.minimum.reduceat(distance, run_starts(which))
-    left = np.flatnonzero(distance <= (least + touch)[which])
+    remaining = np.flatnonzero(distance <= (least + touch)[which])
     for values in _criteria(position, times, rows):
-        if len(left) == len(total):
+        if len(remaining) == len(total):
             break
-        least = np.minimum.reduceat(values[left], run_starts(which[left]))
-        left = left[values[left] == least[which[left]]]
-    return left[run_starts(which[left])]
+        least = np.minimum.reduceat(values[remaining], run_starts(which[remaining]))
+        remaining = remaining[values[remaining] == least[which[remaining]]]
+    return remaining[run_starts(which[remaining])]
 
 
 def _criteria(position: np.ndarray, times: tuple, rows: np.ndarray) -> Iterator[np.ndarray]:

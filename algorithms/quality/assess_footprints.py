@@ -197,8 +197,9 @@ def assess_footprints(
 class _Match:
     """Which footprints belong to which buildings of the reference.
 
-    ``building[k]`` and ``footprint[k]`` belong together, by the first and then by the second, with their ``iou``.
-    ``best`` is the footprint with the greatest IoU for each building, -1 without one.
+    ``building[k]`` and ``footprint[k]`` belong together, sorted by both, with their ``iou``. ``best`` and
+    ``status`` are of each building: the footprint with the greatest IoU, -1 without one, and what became of it.
+    ``is_invented`` is of each footprint.
     """
 
     overlap: Overlap
@@ -217,8 +218,8 @@ def _match(overlap: Overlap, min_overlap: float) -> _Match:
     building, footprint, iou = overlap.one[same], overlap.other[same], overlap.iou[same]
     n_footprints = np.bincount(building, minlength=len(overlap.area))
     n_buildings = np.bincount(footprint, minlength=len(overlap.other_area))
-    shares = np.bincount(building, n_buildings[footprint] > 1, len(overlap.area)) > 0
-    status = np.select([n_footprints == 0, shares, n_footprints > 1], [MISSED, MERGED, SPLIT], FOUND)
+    is_sharing = np.bincount(building, n_buildings[footprint] > 1, len(overlap.area)) > 0
+    status = np.select([n_footprints == 0, is_sharing, n_footprints > 1], [MISSED, MERGED, SPLIT], FOUND)
     best = np.full(len(overlap.area), -1)
     # Of values that go to one position the last one stays, which has the greatest IoU.
     order = np.argsort(iou, kind="stable")
@@ -313,7 +314,7 @@ def _counterparts(match: _Match, names: list[str]) -> list[str]:
 
 
 def _values(table: dict, match: _Match, corners: tuple[Corners, Corners], moved: np.ndarray) -> dict[str, float]:
-    """Return the measures; medians of nothing are NaN."""
+    """Return the measures, with the shifts ``moved`` (k, 2), m, of matched corners; medians of nothing are NaN."""
     n, n_new = len(match.best), len(match.is_invented)
     status = np.array(table["status"], dtype=object)
     found, has_footprint = status[:n] == FOUND, match.best >= 0

@@ -32,8 +32,8 @@ class _Rules:
     Attributes
     ----------
     deviations : float
-        Changes exceed the median of all differences by this multiple of it: 3 times the median of normal errors is
-        two standard deviations.
+        Changes are larger than this multiple of the median of all differences: 3 times the median of normal errors
+        is two standard deviations.
     least_outline, least_height : float
         Least automatic tolerances, m: smaller changes are not built.
     most_outline, most_height : float
@@ -221,7 +221,8 @@ class _Groups:
 class _Changes:
     """What has changed in each group: area gained and lost (m²), distance of outlines and difference in height (m).
 
-    Distances and differences are NaN in groups that one survey lacks, and where heights are unknown.
+    Distances and differences are NaN in groups that one survey lacks, and where heights are unknown. ``in_old`` and
+    ``in_new`` say which survey has the group.
     """
 
     gained: np.ndarray

@@ -28,7 +28,7 @@ _BENDS = 0.05
 # Distance to a plane within which a point belongs to it (standard deviations): one point in 370 lies farther off.
 _WITHIN = 3.0
 
-# Largest automatic tolerance (radii) where the noise allows it: steps of a scan finer than a centimeter part surfaces.
+# Tolerance (radii) up to which the noise of a cloud, at least a centimeter, is used; beyond, that of the scan if finer.
 _OF_RADIUS = 0.25
 
 # Root mean square distance of the points of a seed (standard deviations): with nine degrees of freedom 1 % of the
@@ -38,7 +38,7 @@ _SMOOTH = 1.55
 # Reach within which neighborhoods decide on neighborhoods beside them (radii).
 _GROWTH = 4.0
 
-# A radius (m) that automatic ones seldom exceed: that of 36 points per m².
+# Automatic radius (m) that the reach allows for: that of 36 points per m².
 _WIDE_RADIUS = 0.5
 
 _Noise = Annotated[
@@ -90,7 +90,7 @@ _Radius = Annotated[
     group="Segmentation",
     tags="surface growing,region growing,plane growing,smooth,normals,Hough,planes,segmentation",
     writes=("segment_id",),
-    # Which points beside each other are of one surface; it goes on as far as it likes.
+    # What decides which points beside each other are of one surface; surfaces themselves may be larger.
     reach=lambda tunables: _GROWTH * (tunables["radius"] or _WIDE_RADIUS),
 )
 def segment_surfaces(

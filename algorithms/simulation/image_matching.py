@@ -22,13 +22,13 @@ _ROUNDING_CHANGES = 8.0
 # these errors (m). With these, simulated crowns are as rough over 0.75 to 2 m as those of a real suburb.
 _LEAF_NOISE = ((0.6, 0.25), (1.6, 0.3))
 
-# And single points of crowns lie apart from their neighbors by this (m, standard deviation of heights).
+# Standard deviation (m) of the heights of single points of crowns from those of their neighbors.
 _LEAF_SCATTER = 0.08
 
-# Some crowns are matched better than others: least and greatest multiple of these errors.
+# Some crowns are matched better than others: least and greatest multiple of the errors of leaves.
 _LEAF_NOISE_FACTORS = (0.4, 1.6)
 
-# Plants of this height (m) and more have the full errors.
+# Plants of this height (m) and more have the full errors of leaves.
 _FULL_LEAF_NOISE = 2.0
 
 # The sun: its azimuth from east, counterclockwise, and its elevation (rad), as on a morning in summer.
@@ -49,13 +49,13 @@ _GRASS = (104, 124, 62)
 # Brightness of bare soil.
 _SOIL = (150, 128, 100)
 
-# Brightness of leaves: green, yellow and red plants, one each.
+# Brightness of leaves: two green plants, a yellow and a red one.
 _LEAVES = np.array([(62, 92, 40), (84, 110, 50), (92, 98, 44), (120, 74, 60)])
 
 # Brightness of roofs: tiles, slate and metal, bright and dark.
 _ROOFS = np.array([(150, 76, 56), (112, 66, 56), (96, 97, 102), (132, 110, 92), (222, 222, 218), (60, 60, 64)])
 
-# Brightness of cars, bright and dark, too.
+# Brightness of cars, bright and dark.
 _CARS = np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (170, 172, 176)])
 
 # Brightness (of 255) below which matching is difficult: shadows have no texture.
@@ -67,13 +67,13 @@ _BRIGHT = 205.0
 # Share of difficult surfaces on which matching fails.
 _FAILS = 0.35
 
-# Share of cars, which mirror, on which it fails.
+# Share of cars, which mirror, on which matching fails.
 _FAILS_ON_CARS = 0.35
 
-# Share of everything else on which it fails.
+# Share of everything else on which matching fails.
 _FAILS_ELSEWHERE = 0.005
 
-# Where it fails it finds nothing, or spikes where smooth noise of unit deviation exceeds this, on 16 % of the cells.
+# Where matching fails it finds nothing, or spikes where smooth noise of unit deviation exceeds this (16 % of cells).
 _SPIKES_ABOVE = 1.0
 
 # Deviation (m) of these spikes.
@@ -82,11 +82,11 @@ _SPIKE = 0.5
 
 @dataclass(frozen=True)
 class Matched:
-    """The surface that matching makes: elevations and colors (0 to 255), and where there is nothing."""
+    """The surface that matching makes."""
 
-    top: np.ndarray
-    colors: np.ndarray
-    is_hole: np.ndarray
+    top: np.ndarray  #: (rows, columns): elevations, m
+    colors: np.ndarray  #: (rows, columns, 3): red, green and blue, 0 to 255
+    is_hole: np.ndarray  #: (rows, columns), bool: cells in which nothing is found
 
 
 def match(field: HeightField, rounding: float, waves: float, rng: np.random.Generator) -> Matched:
@@ -107,7 +107,7 @@ def match(field: HeightField, rounding: float, waves: float, rng: np.random.Gene
     colors = _lit(field, _materials(field, rng), rng)
     top = _rounded(field.top, rounding, rng)
     shared = sum(share * smooth_noise(shape, length, rng) for length, share in _WAVES)
-    # On roofs with little texture, errors of matching are larger.
+    # Errors of matching are larger on roofs, which have little texture.
     by_texture = np.where(field.classification == PointClass.BUILDING, 1.2, 0.8)
     top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * by_texture
     top += _leaf_noise(field, rng)
@@ -186,7 +186,7 @@ def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
 
 
 def _moved(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Return the values shifted by rows and columns, those of the edge beyond it."""
+    """Return the value some rows and columns farther on for each cell, beyond the edge that of the edge."""
     row = np.clip(np.arange(values.shape[0]) + rows, 0, values.shape[0] - 1)
     column = np.clip(np.arange(values.shape[1]) + columns, 0, values.shape[1] - 1)
     return values[np.ix_(row, column)]
@@ -235,7 +235,7 @@ def sample(
 
 
 def _faces(matched: Matched, density: float, rng: np.random.Generator) -> np.ndarray:
-    """Return points (n, 3) on steep faces between a cell and the next, as many as their area has; smeared walls."""
+    """Return points (n, 3), m, on steep faces between a cell and the next, which are smeared walls, by their area."""
     parts = []
     for axis in (0, 1):
         # The last cell has no next one.

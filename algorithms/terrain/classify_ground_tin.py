@@ -28,8 +28,10 @@ class GroundRules:
     )
     sweep_noise: float = rule(4.0, "deviations", "beyond which low plants make the roughness larger than noise")
     sweep_bend: float = rule(0.1, "cells", "greatest increase of the distance beyond that, for bends of the surface")
-    angle: float = rule(20.0, "°", "fitted on eight ISPRS samples: iteration angle, but in nature")
-    angle_in_nature: float = rule(30.0, "°", "physics: the same there, where breaks are steeper and objects fewer")
+    angle: float = rule(20.0, "°", "fitted on eight ISPRS samples: iteration angle where terrain is not nature")
+    angle_in_nature: float = rule(
+        30.0, "°", "physics: iteration angle in nature, where breaks are steeper and objects fewer"
+    )
 
 
 GROUND = GroundRules()
@@ -49,8 +51,9 @@ def _largest_building(terrain: str) -> float:
 # The granularities: least cell, m; cells are the point spacing wide where that is more, half of it where fine.
 _GRANULARITIES = {"coarse": 2.0, "medium": 1.0, "fine": 1.0, "extra fine": 0.5}
 
-# In blocks of Delft with this much around them, and 40 m for all other steps, the buildings are those of the whole
-# cloud on 99.8 % of the points, as with twice as much. The rest is where cells fall (m).
+# Least distance (m) around a part of a cloud within which points decide on its ground. In blocks of Delft with this
+# much around them, buildings are those of the whole cloud on 99.8 % of the points, and on no more with twice as much:
+# the rest depends on where cells begin.
 _REACH = 40.0
 
 _IterationDistance = Annotated[
@@ -218,8 +221,9 @@ def classify_ground_tin(
     In each round at most one point per facet joins it: the one with the smallest angle to the facet's nodes, if angle
     and distance to the facet are under the thresholds. The distance threshold is estimated in each round from the
     residuals of the nodes over the plane of their neighbors, and allows for the point spacing; the largest angle is
-    fixed. It ends when hardly any point joins. Distances are measured across the facet, so that slopes don't loosen or
-    tighten them. Free-standing segments, with steps down all round, are excluded from the seeds and from densification.
+    fixed. The growth ends when hardly any point joins. Distances are measured across the facet, so that slopes don't
+    loosen or tighten them. Free-standing segments, with steps down all round, are excluded from the seeds and from
+    densification.
 
     The final sweep adds the points within the noise of the finished surface, which the paper leaves unclassified.
     Where strips overlap that were not adjusted to one another, the surface follows the lower one; 'Complete ground'
@@ -253,7 +257,7 @@ def classify_ground_tin(
     xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing
     usable = in_plan_order(xyz, usable, spacing)
-    points, last = xyz.take(usable, axis=0), last_returns(return_number, number_of_returns, usable)
+    points, is_last = xyz.take(usable, axis=0), last_returns(return_number, number_of_returns, usable)
     granularity, cell_size = _cell(granularity, cell_size, spacing)
     edge_length = 2 * cell_size if edge_length is None else edge_length
     size = _largest_building(terrain) if max_building_size is None and terrain else max_building_size
@@ -263,17 +267,17 @@ def classify_ground_tin(
     # 1. Seeds. Free-standing segments may not join either: the surface would climb noisy roofs a step at a time.
     kind = sampling.kind(source)
     seeds, stands_free, size = seeds_by_opening(
-        points[last], cell_size, size, monitor.part(0, 0.3), spacing, low_uphill=kind.is_surface
+        points[is_last], cell_size, size, monitor.part(0, 0.3), spacing, low_uphill=kind.is_surface
     )
-    may_join = last.copy()
-    may_join[last] = ~stands_free
+    may_join = is_last.copy()
+    may_join[is_last] = ~stands_free
     terrain = _terrain(size) if terrain is None else terrain
     monitor.resolved(terrain=terrain, granularity=granularity, max_building_size=size, cell_size=cell_size)
 
     # 2. The surface grows from them.
     scale, least = max(cell_size, spacing), sampling.height_resolution
     rules = JoinRules(angle, iteration_distance, GROUND.bend * spacing, edge_length, least)
-    surface, distance, _ = grow(points, np.flatnonzero(last)[seeds], may_join, rules, monitor.part(0.3, 0.9))
+    surface, distance, _ = grow(points, np.flatnonzero(is_last)[seeds], may_join, rules, monitor.part(0.3, 0.9))
 
     # 3. Points near the finished surface are ground.
     is_ground, sweep_distance = sweep(surface, sweep_distance, scale, sampling)
@@ -303,16 +307,14 @@ def sweep(
 ) -> tuple[np.ndarray, float]:
     """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
 
-    Where it comes from the roughness, its bend is tied to ``scale`` (m).
-
     Parameters
     ----------
     surface : Surface
         The finished surface.
     distance : float, optional
-        Largest distance from it, m; None comes from the roughness.
+        Largest distance from it, m; None takes it from the roughness, and adds a share of ``scale`` for bends.
     scale : float
-        Length over which the surface bends, m.
+        Length over which the surface bends, m: cell size or point spacing.
     sampling : CloudSampling
         How the cloud was sampled.
     """

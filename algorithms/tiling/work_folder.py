@@ -12,7 +12,7 @@ from ..cloud.outputs import LOCK, locked_folder
 _NAME = ".lidar-buildings"
 _STOP = "stop"
 
-# What a run makes in it: nothing else is removed. The last are folders of runs that were killed while they wrote.
+# What a run makes in the folder: nothing else is removed. The last are of runs that were killed while they wrote.
 _MADE = ("block-*.npz", "numbers-*.npz", "view-*.npz", _STOP, "pieces", ".lb-*.part")
 
 

@@ -19,10 +19,10 @@ from .stacked_roofs import join_stacked
 # Least distance (m) within which surfaces are of one roof: roofs of two buildings are seldom as close.
 _LEAST_GAP = 0.6
 
-# The same in point spacings, where that is more.
+# Distance within which surfaces are of one roof (point spacings), if it is larger than the least.
 _GAP_SPACINGS = 3.0
 
-# Largest value of that distance (m), the width of a lane, however few points there are.
+# Largest distance (m) within which surfaces are of one roof, however few points there are: the width of a lane.
 _MOST_GAP = 5.0
 
 

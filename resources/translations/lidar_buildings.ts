@@ -4104,6 +4104,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Buildings must be classified before: their steps and low walls are as near to the ground. The default of 0.1 m is the vertical accuracy that airborne surveys promise (root mean square) and the height from which 'Classify vegetation' finds plants.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Buildings new, gone and changed</source>
         <translation type="unfinished"></translation>
     </message>
@@ -5129,10 +5133,6 @@
     </message>
     <message>
         <source>Footprints that are outlines of walls</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>For clouds of which buildings are already known, as their steps and low walls begin at this height, too. 0.1 m is the vertical accuracy that airborne surveys promise (root mean square) and the height from which 'Classify vegetation' finds plants.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7480,7 +7480,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Seeds make a first TIN: the lowest points of cells that stay when the lowest surface is opened with growing windows. In each round at most one point per facet joins it: the one with the smallest angle to the facet's nodes, if angle and distance to the facet are under the thresholds. The distance threshold is estimated in each round from the residuals of the nodes over the plane of their neighbors, and allows for the point spacing; the largest angle is fixed. It ends when hardly any point joins. Distances are measured across the facet, so that slopes don't loosen or tighten them. Free-standing segments, with steps down all round, are excluded from the seeds and from densification.</source>
+        <source>Seeds make a first TIN: the lowest points of cells that stay when the lowest surface is opened with growing windows. In each round at most one point per facet joins it: the one with the smallest angle to the facet's nodes, if angle and distance to the facet are under the thresholds. The distance threshold is estimated in each round from the residuals of the nodes over the plane of their neighbors, and allows for the point spacing; the largest angle is fixed. The growth ends when hardly any point joins. Distances are measured across the facet, so that slopes don't loosen or tighten them. Free-standing segments, with steps down all round, are excluded from the seeds and from densification.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
