@@ -7,7 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
-from ..features.greenness import greenness, greenness_between
+from ..features.greenness import MOST_GREEN, greenness, greenness_between
 from .cluster_decisions import Decisions
 from .cluster_evidence import ClusterEvidence
 
@@ -92,4 +92,4 @@ def green_clusters(
         return nothing, None
     known = in_cluster & np.isfinite(values)
     share = np.bincount(group[known], values[known] > least, count)
-    return share > 0.5 * np.maximum(np.bincount(group[known], minlength=count), 1), least
+    return share > MOST_GREEN * np.maximum(np.bincount(group[known], minlength=count), 1), least

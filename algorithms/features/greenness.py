@@ -9,8 +9,8 @@ import numpy as np
 # Darker than this share of the median brightness, color is noise of the camera.
 _DARK = 0.1
 
-# Least difference between the share of leaves and that of roofs above the threshold (two thirds and one third).
-_LEAST_PARTED = 1 / 3
+# Least share of leaves above the threshold and of roofs below it, and of a cluster's points above it if it is green.
+MOST_GREEN = 2 / 3
 
 
 def greenness(red: np.ndarray, green: np.ndarray, blue: np.ndarray) -> np.ndarray:
@@ -42,4 +42,4 @@ def greenness_between(plants: np.ndarray, roofs: np.ndarray) -> Optional[float]:
         return None
     # Gray to red materials are no plants.
     least = max(0.0, float(np.median(plants) + np.median(roofs)) / 2)
-    return least if np.mean(plants > least) - np.mean(roofs > least) >= _LEAST_PARTED else None
+    return least if np.mean(plants > least) - np.mean(roofs > least) >= 2 * MOST_GREEN - 1 else None

@@ -95,6 +95,17 @@ def test_most_points_of_a_cluster_decide():
     np.testing.assert_array_equal(is_green, [False, False])
 
 
+def test_a_roof_hardly_greener_than_the_limit_stays():
+    """Three fifths of the points of a stadium's roof were greener than the middle of plants and roofs: it was lost."""
+    group = np.repeat(np.arange(3), 100)
+    bands = colors((GREEN, GRAY, GRAY), 100)
+    for band, of_green in zip(bands, GREEN):
+        band[240:] = of_green
+    is_green, least = green(bands, group, 3)
+    assert least is not None
+    np.testing.assert_array_equal(is_green, [True, False, False])
+
+
 @pytest.mark.parametrize("missing", [0, 1, 2])
 def test_without_color_nothing_is_green(missing):
     bands = list(colors((GREEN, GRAY), 100))
