@@ -10,7 +10,7 @@ from .places import Place
 from .styles import layer_style, show_on_load, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
 
-# What an optional output is that nobody asks for: left out, or written without a value on the command line.
+# Values of an optional output that is not wanted: None where it is left out, "" where the command line gives none.
 UNWANTED = (None, "")
 
 # Features, or pieces of a text, that are written between two looks at whether to stop.

@@ -25,7 +25,7 @@ MENU = "LiDAR Buildings"
 
 
 def find_in_view_text() -> str:
-    """Return what the menu and the button are called that find buildings in the map view."""
+    """Return the text of the menu entry and of the button that find buildings in the map view."""
     return tr("Find buildings in this view…")
 
 
@@ -100,7 +100,7 @@ def _cloud(active: Optional[QgsMapLayer], visible: list[QgsMapLayer]) -> Optiona
 
 
 def _visible_part(cloud: QgsPointCloudLayer, canvas: Any) -> Optional[QgsReferencedRectangle]:
-    """Return the extent of the map view, in the CRS of the map; None where it shows all of a cloud or nothing of it."""
+    """Return the part of a cloud's extent in the map view, in the CRS of the map; None where that is all or nothing."""
     view, crs = canvas.extent(), canvas.mapSettings().destinationCrs()
     try:
         change = QgsCoordinateTransform(cloud.crs(), crs, QgsProject.instance())

@@ -207,7 +207,7 @@ class Run:
                 check_copc_beside(path, ())
 
     def final(self, value: Any) -> Any:
-        """Return results with the files that they name where these are when all is in place."""
+        """Return results with each path in a working folder replaced by that of its target."""
         if isinstance(value, dict):
             return {self.final(key): self.final(one) for key, one in value.items()}
         if isinstance(value, list):
@@ -230,7 +230,7 @@ def all_in_place(
     context : QgsProcessingContext
         The context of the run.
     subject : str
-        What the results are of: layers that have no name but their output's get it too.
+        What the results are of, added to the names of layers that are called like their output.
     title : str
         Title of the algorithm, for the group of the layers.
 
@@ -279,8 +279,8 @@ def through_memory(
 
     Raises
     ------
-    ValueError
-        If the file can't be written.
+    ValueError, QgsProcessingException
+        If the file can't be written, or as the block does.
     """
     path = target_path(parameters[name])
     if path is None:
@@ -302,7 +302,8 @@ def through_memory(
 def write_for_qgis(cloud: Cloud, target: str, context: QgsProcessingContext, monitor: Monitor) -> str:
     """Write ``cloud`` to ``target`` and return the file that QGIS is to load.
 
-    That is ``target``, or a COPC beside it where the result is to be loaded by a QGIS without PDAL.
+    That is ``target``, or a COPC beside it where the result is to be loaded by a QGIS without PDAL. Without the package
+    lazrs the COPC is neither written nor loaded.
     """
     path = Path(target)
     needs_copc = kind_of(path) != COPC and context.willLoadLayerOnCompletion(target) and not reads_las()

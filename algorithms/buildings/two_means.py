@@ -50,7 +50,9 @@ def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
     """Return the split of ascending mean entropies that can't be separated, and say so; None where they can."""
     if len(known) >= 2 and np.ptp(known) >= _SAME:
         return None
-    one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
-    monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
+    only = "are only clusters of the same entropy"
+    if len(known) < 2:
+        only = "is only one cluster" if len(known) else "is no cluster with an entropy"
+    monitor.warn(f"There {only}: nothing to separate, so nothing was called a building.")
     same = float(known.mean()) if len(known) else np.nan
     return Split(same, same)

@@ -42,8 +42,8 @@ AROUND_CORNER = 5.0
 # another one.
 _SEEN_HEIGHT = 0.9
 
-# Points up to 10 m before a facade show from which side it was seen, and as many before the facades next to it, on
-# which its border depends. The length of the facade itself is not included (m).
+# Distance (m) of points that decide on a facade. Those up to 10 m before it show from which side it was seen; those up
+# to 10 m before the facades next to it decide on its border. The length of the facade itself is not included.
 _AROUND = 20.0
 
 FACADE_FIELDS = (
@@ -208,6 +208,7 @@ def extract_facades(
             tolerance=tolerance,
             min_slope=90.0 - max_tilt,
             max_slope=90.0,
+            # Half: a facade may be found in two pieces, which are joined afterwards.
             min_area=min_area / 2,
             seed=seed,
             sampling=sampling,

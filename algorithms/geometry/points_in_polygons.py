@@ -7,7 +7,7 @@ import numpy as np
 from ..stage import Monitor
 from .polygon_overlap import Polygons
 
-# Points are sorted into rows of cells about as high as this many of them lie above each other on average.
+# Points are sorted into rows so high that a square of that height holds this many of them on average.
 _PER_ROW = 1000
 
 # Polygons between two looks at whether to stop.

@@ -133,9 +133,9 @@ def _shared(
     pair = pair_of_edge[row]
     # From a corner of the pair: large coordinates would lose the area's digits.
     origin = first.box[one[pair], 0][:, None]
-    below = first.edges[first.first[one[pair]] + edge[row]] - origin
-    beside = second.edges[second.first[other[pair]] + column] - origin
-    return np.bincount(pair, _below_both(below, beside), len(one))
+    edges_of_first = first.edges[first.first[one[pair]] + edge[row]] - origin
+    edges_of_second = second.edges[second.first[other[pair]] + column] - origin
+    return np.bincount(pair, _below_both(edges_of_first, edges_of_second), len(one))
 
 
 def _below_both(first: np.ndarray, second: np.ndarray) -> np.ndarray:

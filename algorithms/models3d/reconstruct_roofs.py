@@ -41,12 +41,18 @@ from .roof_partition import inside_rings
 from .roof_points import RADIUS, are_low
 from .solids import ROOF, WALL
 
-# Fewer points than this over a footprint, or a smaller share of its area with points, show no roof.
-_LEAST_POINTS, _LEAST_COVERED = 6, 0.1
+# Fewer points than this over a footprint show no roof.
+_LEAST_POINTS = 6
 
-# The ground of a building is this percentile of the ground points nearest to positions along its outline;
-# the distance between these positions (m).
-_GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
+# A smaller share of the area of a footprint with points shows no roof.
+_LEAST_COVERED = 0.1
+
+# The ground of a building is this percentile of the elevations of ground points nearest to positions along its outline.
+# It is low, so that walls reach the ground on slopes, but not the least, which may be an error.
+_GROUND_PERCENTILE = 5.0
+
+# Distance between these positions (m).
+_GROUND_STEP = 2.0
 
 # Number of footprints without a model that a warning names.
 _NAMED = 5
@@ -231,7 +237,7 @@ def reconstruct_roofs(
 
 @dataclass(frozen=True)
 class _Outline:
-    """A footprint: its name, its closed rings in plan (m), and what its map knows of it."""
+    """A footprint: its name, its closed rings in plan (m), and its attributes in the layer if an identifier is set."""
 
     name: str
     rings: list

@@ -52,7 +52,7 @@ SURFACE, IMAGE_SURFACE = RoofSurfaceRules(), ImageSurfaceRules()
     group="Segmentation",
     tags="roof,plane,planar,surface growing,segmentation",
     writes=("segment_id", "cluster_id", "reason"),
-    # Of the surroundings that decide on a cluster; clusters themselves may be of any size.
+    # Width (m) of the surroundings that decide on a cluster; clusters themselves may be of any size.
     reach=5.0,
 )
 def segment_roofs(
@@ -214,7 +214,7 @@ class _Planes:
 def _patches_of_scan(
     xyz: np.ndarray, used: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor
 ) -> np.ndarray:
-    """Return the patch (u,) from 0, -1 for no one, of the ``used`` rows of the points (n, 3) of a laser scan."""
+    """Return the patch (u,) from 0, -1 for none, of the ``used`` rows of the points (n, 3) of a laser scan."""
     around = sampling.neighborhood(planes.density, planes.off_plane)
     return segment_patches(xyz, used, around, planes.off_plane, planes.max_slope, monitor, sampling.corner)
 
@@ -227,7 +227,7 @@ def _patches_of_images(
         return np.zeros(0, np.int32)
     rules = IMAGE_SURFACE
     highest, under = highest_of_cells(sampling.from_corner(xyz.take(used, axis=0)), rules.cell)
-    # Of cells that hold points at random, with the density's number on the average, these have one.
+    # Cells with points per square meter, of each of which one point is kept, if points lie at random.
     kept = -np.expm1(-planes.density * rules.cell**2) / rules.cell**2
     count = max(LEAST_NEIGHBORS, round(np.pi * SURFACES.least_reach**2 * kept))
     # Matched points share the error of their window, which is as large as their own.
@@ -247,13 +247,13 @@ def _clusters(
 
 @dataclass(frozen=True)
 class _Patches:
-    """Smooth surfaces: of which each point is (n,), from 0 and -1 for none, with heights above ground (m)."""
+    """Smooth surfaces of a cloud."""
 
-    xyz: np.ndarray
-    number: np.ndarray
-    height: np.ndarray
-    density: float
-    foot: float
+    xyz: np.ndarray  #: (n, 3): points, m
+    number: np.ndarray  #: (n,): surface of each point from 0, -1 for none
+    height: np.ndarray  #: (n,): heights above ground, m
+    density: float  #: Points per square meter
+    foot: float  #: Height under which points are low, m
 
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Return the mean value of the points of each patch."""

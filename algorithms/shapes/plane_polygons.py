@@ -32,7 +32,7 @@ _OVERSHOOT = 0.5 - (1 - np.exp(-(_CELL_SPACINGS**2))) / _CELL_SPACINGS**2
 _LEVEL = 0.5
 
 
-def plane_polygons(xyz: np.ndarray, label: np.ndarray, first: int, density: float) -> LayerFeatures:
+def plane_polygons(xyz: np.ndarray, label: np.ndarray, offset: int, density: float) -> LayerFeatures:
     """Return the largest piece of each plane as a polygon with heights.
 
     Parameters
@@ -41,7 +41,7 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, first: int, density: floa
         Points (m).
     label : ndarray of shape (n,), int
         Plane of each point, from 1; 0 if unassigned.
-    first : int
+    offset : int
         Number that is added to these in the layer.
     density : float
         Points per square meter of surface.
@@ -57,12 +57,12 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, first: int, density: floa
             normal, center = planes.normal[number], planes.center[number]
             rings = _outline(xyz[part], center, normal, _CELL_SPACINGS / np.sqrt(density))
             area = sum(signed_area(ring) for ring in rings)
-            east, north = plane_axes(normal)
-            geometries.append([center + ring[:, :1] * east + ring[:, 1:] * north for ring in rings])
+            level, upward = plane_axes(normal)
+            geometries.append([center + ring[:, :1] * level + ring[:, 1:] * upward for ring in rings])
             slope = float(np.degrees(np.arccos(np.clip(normal[2], 0, 1))))
             aspect = float(np.degrees(np.arctan2(normal[0], normal[1])) % 360) if slope > _LEVEL else float("nan")
             rms = float(np.sqrt(max(planes.eigenvalues[number, 2], 0)))
-            row = (number + 1 + first, len(part), slope, aspect, area, rms)
+            row = (number + 1 + offset, len(part), slope, aspect, area, rms)
             for field, value in zip(PLANE_FIELDS, row):
                 columns[field.name].append(value)
     return LayerFeatures(geometries, columns)
@@ -86,7 +86,9 @@ def _outline(xyz: np.ndarray, center: np.ndarray, normal: np.ndarray, cell: floa
 
 
 def outline_of_cells(grid: Grid, cells: np.ndarray, count: np.ndarray, overshoot: float) -> list:
-    """Return the rings (m, 2) around the largest group of cells, simplified by a cell.
+    """Return the rings (m, 2) around the largest group of cells, simplified by a cell and drawn in.
+
+    Where that makes no valid polygon, they run along the sides of the cells.
 
     Parameters
     ----------

@@ -26,7 +26,10 @@ _KEYS = ("gps_time", "return_number", "number_of_returns", "point_source_id", "i
 
 @dataclass(frozen=True)
 class Source:
-    """A file of the survey: its header, and the least and greatest easting and northing (2, 2) of its points, m."""
+    """A file of the survey, its header, and its box: least and greatest easting and northing (2, 2) by the header, m.
+
+    The box ends at the extent of the survey, if it has one.
+    """
 
     path: Path
     header: Header
@@ -76,7 +79,7 @@ class Survey:
 
     @property
     def box(self) -> np.ndarray:
-        """Least and greatest easting and northing (2, 2) of all files, m, by their headers."""
+        """Least and greatest easting and northing (2, 2) of the boxes of all files, m."""
         return np.array([self.boxes[:, 0].min(axis=0), self.boxes[:, 1].max(axis=0)])
 
     @property

@@ -15,7 +15,7 @@ from ..segmentation.top_surface import TopSurface
 from ..stage import Monitor
 from ..threads import n_threads
 
-# Least height (m) of objects above the ground.
+# Least height (m) of objects above the ground: lower points are of the ground, of plants, kerbs and steps.
 _RAISED = 0.5
 
 # Width (m) of the ground around an object that is looked at with it: whether a surface goes on into the ground, and
@@ -54,7 +54,7 @@ def bent_roofs(
     """
     surface = TopSurface(xyz, height, ~np.isin(classification, NOISE), sampling.effective_density)
     is_near = _beside_roofs(surface, cluster_id > 0)[surface.cell]
-    # With the corner of the cloud cells fall as in the whole of it.
+    # With the westernmost and the southernmost point, cells begin where those of the whole cloud do.
     is_near[np.argmin(xyz[:, :2], axis=0)] = True
     near = np.flatnonzero(is_near)
     segment_id = np.zeros(len(xyz), np.int32)
@@ -122,7 +122,7 @@ def with_bent_roofs(
         np.column_stack([part[touches], cluster_id[plane[nearest[touches]]]]), axis=0, return_counts=True
     )
     owner = np.zeros(int(part.max()) + 1, np.int32)
-    # The last of equal parts counts: that with the most contacts.
+    # Of several buildings that a part touches, the one assigned last counts: that with the most contacts.
     order = np.lexsort((pairs[:, 1], count))
     owner[pairs[order, 0]] = pairs[order, 1]
     owner[plan_areas(xyz[bent], part, density) < min_area] = 0

@@ -1,4 +1,7 @@
-"""The cheapest outline of a building's walls among the cells that all of its lines make, made simpler line by line."""
+"""The cheapest outline of a building's walls among the cells that all of its lines make, made simpler line by line.
+
+The unit of all costs is a meter of wall without points.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from .wall_lines import Scale, WallLine
 # Cost of a square meter of the outline without roof points.
 _OUTSIDE = 5.0
 
-# Distance (m) beyond the roof within which this costs nothing: noise and the uneven edge of the roof.
+# Distance (m) beyond the roof within which outline costs nothing: noise and the uneven edge of the roof.
 _BEYOND = 0.4
 
 # Cost of a square meter of roof that is left out although it is farther from the edge than the overhang.
@@ -28,7 +31,8 @@ _WELL_INSIDE = 0.3
 # Additional cost of a square meter of roof left out farther from the edge than the largest overhang.
 _DEEP = 2.0
 
-# Distance from the edge from which this is due on small roofs (times that of the position farthest from the edge).
+# Distance from the edge beyond which ``_DEEP`` is due on roofs too small for the largest overhang, as a share of the
+# distance of the position farthest from the edge.
 _DEEPER = 0.6
 
 # A cost above that of any wall: of leaving out the position farthest from the edge, and of the surrounding rectangle.
@@ -71,7 +75,7 @@ class OutlineCells:
     ) -> None:
         self.lines, self.scale = lines, scale
         self.near = [points_near(walls, line, scale) for line in lines]
-        points, self.directions = (np.array([getattr(line, of) for line in lines]) for of in ("point", "direction"))
+        points, self.directions = (np.array([getattr(line, name) for line in lines]) for name in ("point", "direction"))
         self.arrangement = Arrangement(points, self.directions, cover.low, cover.high)
         self.edges = self.arrangement.edges
         self.cost = _edge_costs(self.arrangement, lines, self.near, scale)
@@ -112,8 +116,8 @@ class OutlineCells:
         positions = self.arrangement.positions
         rings = [
             [
-                edge_between(positions[here], positions[there], self.lines[line], self.near[line], self.scale)
-                for (line, here), (_, there) in zip(ring, [*ring[1:], ring[0]])
+                edge_between(positions[start], positions[end], self.lines[line], self.near[line], self.scale)
+                for (line, start), (_, end) in zip(ring, [*ring[1:], ring[0]])
             ]
             for ring in self.arrangement.outline(inside)
             if len(ring) >= 3

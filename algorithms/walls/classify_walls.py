@@ -28,10 +28,10 @@ from ..threads import n_threads
 # The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
 _REACH_DEVIATIONS = SURFACES.reach
 
-# They are at least this many, ...
+# Least number of points of a normal that is set automatically.
 _LEAST_NEIGHBORS = 8
 
-# ... and at most this many: more would reach around corners.
+# Largest number of points of a normal that is set automatically: more would reach around corners.
 _MOST_NEIGHBORS = 30
 
 # Side (m) of the cells of which one roof point is taken when the nearest roof in plan is searched for.
@@ -226,16 +226,16 @@ def _hull(xy: np.ndarray) -> np.ndarray:
 
 
 def _upright(
-    xyz: np.ndarray, neighborhood: Neighborhood, max_tilt: float, roughness: float, monitor: Monitor
+    xyz: np.ndarray, neighborhood: Neighborhood, max_tilt: float, max_deviation: float, monitor: Monitor
 ) -> np.ndarray:
-    """Return which points (n,) lie on a steep plane with their neighbors."""
+    """Return which points (n,) lie on a steep plane with their neighbors (°, m)."""
     upright = np.zeros(len(xyz), bool)
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
         eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
         lift = np.abs(smallest_eigenvectors(shapes.covariances, eigenvalues)[:, 2])
         with np.errstate(invalid="ignore"):
-            upright[rows] = (lift <= np.sin(np.radians(max_tilt))) & (eigenvalues[:, 2] <= roughness**2)
+            upright[rows] = (lift <= np.sin(np.radians(max_tilt))) & (eigenvalues[:, 2] <= max_deviation**2)
 
     reduce_neighborhoods(xyz, neighborhood, keep, monitor=monitor)
     return upright

@@ -17,9 +17,10 @@ _OVER = 2
 
 
 def join_stacked(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarray:
-    """Return the roof (n,) of each point (n, 3), m, from 0, -1 if unassigned; surrounded roofs are of the one around.
+    """Return the roofs (n,) of points (n, 3), m, where one larger roof that surrounds others takes their place.
 
-    Cells have the ``size`` (m) of the distance within which points are of one roof.
+    ``cluster`` (n,) are the roofs before, from 0; -1 if unassigned. Cells have the ``size`` (m) of the distance within
+    which points are of one roof.
     """
     joined = cluster.copy()
     while True:
@@ -44,10 +45,10 @@ def _surrounding(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarra
     top = topmost(xyz[own, 2], number, -cluster[own])
     cells, label = number[top], cluster[own[top]]
     area = np.bincount(label, minlength=count)
-    here, there = _borders(cells, columns, label)
-    length = np.bincount(here, minlength=count)
-    meets = there >= 0
-    pairs, shared = np.unique(here[meets] * count + there[meets], return_counts=True)
+    ending, beginning = _borders(cells, columns, label)
+    length = np.bincount(ending, minlength=count)
+    meets = beginning >= 0
+    pairs, shared = np.unique(ending[meets] * count + beginning[meets], return_counts=True)
     one, other = np.divmod(pairs, count)
     inner = (shared > _ENCLOSED * length[one]) & (area[one] < area[other])
     # The surrounding roof is larger, so that there is no circle.
@@ -60,13 +61,13 @@ def _borders(cells: np.ndarray, columns: int, label: np.ndarray) -> tuple[np.nda
 
     ``cells`` (m,) are numbers, ascending, of which those of one row differ from those of the next by ``columns``.
     """
-    here, there = [], []
+    ending, beginning = [], []
     for step in (1, -1, columns, -columns):
         beside = np.full(len(cells), -1)
         for times in range(1, _OVER + 2):
             position, found = find_cells(cells, cells + times * step)
             beside = np.where((beside < 0) & found, label[position], beside)
         ends = beside != label
-        here.append(label[ends])
-        there.append(beside[ends])
-    return np.concatenate(here), np.concatenate(there)
+        ending.append(label[ends])
+        beginning.append(beside[ends])
+    return np.concatenate(ending), np.concatenate(beginning)

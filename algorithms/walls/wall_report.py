@@ -39,7 +39,7 @@ def point_counts(
     classification: Optional[np.ndarray],
     voxel_count: Optional[np.ndarray],
 ) -> dict[str, float]:
-    """Return the number of points of each kind, NaN where the cloud lacks the evidence.
+    """Return the number of points of each kind; NaN where the cloud lacks the evidence, but no walls without wall_of.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ def point_counts(
         Points that each point was made of.
     """
     nan = math.nan
-    below = (PointClass.GROUND, *NOISE)
+    left_out = (PointClass.GROUND, *NOISE)
     return {
         "original_points": nan if voxel_count is None else int(voxel_count.sum(dtype=np.int64)),
         "points": len(cluster_id),
-        "points_above_ground": nan if classification is None else int((~np.isin(classification, below)).sum()),
+        "points_above_ground": nan if classification is None else int((~np.isin(classification, left_out)).sum()),
         "roof_points": int((cluster_id > 0).sum()),
         "wall_points": 0 if wall_of is None else int((wall_of > 0).sum()),
     }
