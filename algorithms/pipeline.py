@@ -53,8 +53,8 @@ class Pipeline:
     """A chain of stages that users meet as one algorithm.
 
     The last step that makes a cloud gives the composite's OUTPUT. Every layer, raster, file and report of every step is
-    an output of its own. So are the clouds of the steps that ``kept`` names. ``shared`` names tunables that are one
-    parameter of the composite and go to all the steps beside them; they have the same declaration and default there.
+    an output of its own. So are the clouds of the steps that ``kept`` names. ``shared`` gives, for each tunable that is
+    one parameter of the composite, the names of the steps it goes to, which declare it alike and with one default.
     ``shown`` are the parameters that users meet first, in this order; all others are folded away. ``switched_off`` are
     layers that are loaded switched off: those of steps that another step has taken further.
     """
@@ -148,7 +148,7 @@ class Pipeline:
 
     @property
     def outputs(self) -> tuple[Output, ...]:
-        """All outputs in the order of steps; of two of one name the step's name is put before.
+        """All outputs in the order of steps; where several have one name, that of the step is put before it.
 
         The last cloud and the last report keep their plain names.
         """

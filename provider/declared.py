@@ -68,7 +68,7 @@ class DeclaredAlgorithm:
         return QUrl.fromLocalFile(str(HELP / f"{self.declared.id}.html")).toString()
 
     def createCustomParametersWidget(self, parent: Optional[QWidget] = None) -> Optional[QWidget]:  # noqa: N802
-        """Return the dialog with parameters in groups; None, which is QGIS's own, where this QGIS has other parts."""
+        """Return the dialog with parameters in groups; None, for QGIS's own one, where this QGIS lacks parts of it."""
         try:
             from .dialog import GroupedDialog
         except ImportError:
@@ -82,7 +82,7 @@ class DeclaredAlgorithm:
                 output.setDescription(f"{output.description()} ({self.displayName()})")
 
     def shown(self, text: str) -> str:
-        """Return its help as dialogs, with the picture, or the command line show it."""
+        """Return a help text for the dialog, with the picture, or as plain text for the command line."""
         if on_command_line():
             return as_text(text)
         return with_picture(translated(text, tr), self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString(), tr)

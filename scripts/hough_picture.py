@@ -44,9 +44,11 @@ SCENES = 4
 # not fit into memory.
 FIXED = {"slope_bin": 3.0, "tolerance": 2.3 * NOISE, "window_size": 4.0, "max_gap": 1.5, "min_area": 2.0}
 
-# Widths of bins, in deviations. A plane is found, or separated, where this share of its points is one segment, and the
-# same share of the segment's points on planes is the plane's.
+# Widths of bins, in standard deviations of the noise.
 WIDTHS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+
+# A plane is found, or separated, where this share of its points is one segment, and the same share of the segment's
+# points on planes is the plane's.
 SAME = 0.7
 
 SIZE = (640, 360)  # pixels

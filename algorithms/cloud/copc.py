@@ -32,7 +32,7 @@ _LEAF_POINTS = 65_536
 _GRID_LEVELS = 7
 # Bits per axis of a position in the root cube; three of them fill a 64-bit Morton code.
 _BITS = 21
-# Points are sorted within the cubes of the second level, one at a time.
+# Highest bits of a Morton code that number the 64 cubes of the second level: points are sorted in one cube at a time.
 _TOP_BITS = 6
 # Level of the smallest nodes, whose grid is the finest one.
 _DEEPEST = _BITS - _GRID_LEVELS
@@ -54,7 +54,7 @@ class Octree:
 
     @property
     def spacing(self) -> float:
-        """Distance of the points that the root shows."""
+        """Distance of the points that the root shows, in units of the file."""
         return self.side / 2**_GRID_LEVELS
 
 
@@ -134,23 +134,23 @@ def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the octree level of each point, uint8 (n,); ``codes`` is sorted."""
     generator = np.random.default_rng(_SEED)
     levels = np.empty(len(codes), np.uint8)
-    left = np.arange(len(codes))
+    waiting = np.arange(len(codes))
     for level in range(_DEEPEST + 1):
-        monitor.progress(1 - len(left) / len(codes))
-        current = codes[left]
+        monitor.progress(1 - len(waiting) / len(codes))
+        current = codes[waiting]
         taken = _in_leaves(current >> np.uint64(3 * (_BITS - level)), level)
         first = run_starts(current >> np.uint64(3 * (_BITS - level - _GRID_LEVELS)))
         lengths = np.diff(np.append(first, len(current)))
         taken[first + (generator.random(len(first)) * lengths).astype(np.int64)] = True
-        levels[left[taken]] = level
-        left = left[~taken]
-        if not len(left):
+        levels[waiting[taken]] = level
+        waiting = waiting[~taken]
+        if not len(waiting):
             break
     return levels
 
 
 def _in_leaves(nodes: np.ndarray, level: int) -> np.ndarray:
-    """Return which points lie in nodes that hold all that is left, bool (n,)."""
+    """Return which points lie in nodes that hold all points not taken by a level above, bool (n,)."""
     first = run_starts(nodes)
     counts = np.diff(np.append(first, len(nodes)))
     return np.repeat((counts <= _LEAF_POINTS) | (level == _DEEPEST), counts)
@@ -228,8 +228,8 @@ def _write_nodes(
         points = take(octree.order[start : octree.ends[last - 1]])
         header.count_in(las, points)
         low, high = min(low, points["gps_time"].min()), max(high, points["gps_time"].max())
-        inner = np.split(points, octree.ends[first : last - 1] - start)
-        zipper.compress_chunks([np.ascontiguousarray(node).view(np.uint8) for node in inner])
+        nodes = np.split(points, octree.ends[first : last - 1] - start)
+        zipper.compress_chunks([np.ascontiguousarray(node).view(np.uint8) for node in nodes])
         start, first = int(octree.ends[last - 1]), last
     zipper.done()
     return low, high

@@ -20,7 +20,7 @@ POINTS_PER_CHUNK = 50_000
 _LAZRS, _LAZRS_IN_TURN, _LASZIP = "LazrsParallel", "Lazrs", "Laszip"
 # How points are compressed: all in one go, as before 2011, or in chunks.
 _POINTWISE, _CHUNKED = 1, 2
-# The number of points of a chunk, in the LASzip record, that says that it is another one in each.
+# The number of points of a chunk in a LASzip record whose chunks have different numbers, each in the chunk table.
 _VARIABLE_CHUNKS = 2**32 - 1
 # Where the record has the number of points of a chunk, and its items.
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
@@ -96,7 +96,7 @@ class _Laz:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold at most {held}")
 
     def check_chunks(self, table_at: int, record: bytes) -> np.ndarray:
-        """Hold what the chunk table says of points and bytes, and each chunk of its layers, against the file.
+        """Hold the points and bytes of the chunk table, and the sizes of layers in each chunk, against the file.
 
         Return position, bytes and number of points (m, 3) of each chunk, int64.
         """
@@ -273,7 +273,7 @@ def open_chunks(path: Path, header: Header, stream: BinaryIO) -> tuple[np.ndarra
 
 
 def has_variable_chunks(header: Header) -> bool:
-    """Whether chunks of a LAZ file may have any number of points each, and lazrs is there, which alone reads some."""
+    """Whether chunks of a LAZ file may differ in their numbers of points, and lazrs, to read some, is installed."""
     record = header.find(LASZIP)
     if record is None or record.data is None or len(record.data) < _ITEMS_AT:
         return False

@@ -132,14 +132,14 @@ def _feature(tile: Path, folder: Path, to_degrees: Optional[ToDegrees]) -> dict:
     header = open_header(tile)
     low, high = header.low, header.high
     corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]], [low[0], low[1]]])
-    there = corners if to_degrees is None else to_degrees(corners)
+    geographic = corners if to_degrees is None else to_degrees(corners)
     return {
         "type": "Feature",
         "stac_version": "1.0.0",
         "stac_extensions": list(_EXTENSIONS),
         "id": stem_of(tile),
-        "geometry": {"type": "Polygon", "coordinates": [there.tolist()]},
-        "bbox": [*there.min(axis=0).tolist(), float(low[2]), *there.max(axis=0).tolist(), float(high[2])],
+        "geometry": {"type": "Polygon", "coordinates": [geographic.tolist()]},
+        "bbox": [*geographic.min(axis=0).tolist(), float(low[2]), *geographic.max(axis=0).tolist(), float(high[2])],
         "properties": {
             "datetime": datetime.fromtimestamp(tile.stat().st_mtime, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
             "pc:count": header.count,
@@ -269,9 +269,9 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
         monitor.warn(f"The {what} count GPS time in different ways; the values are kept as they are.")
     layout = merged_layout([header.layout for header in headers])
     scale, offset = _grid(headers, what)
-    apart = [header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS) for header in headers]
+    reduced = [header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS) for header in headers]
     merged = replace(
-        apart[0],
+        reduced[0],
         minor=max(header.minor for header in headers),
         encoding=first.encoding if layout.is_old else first.encoding | WKT_BIT,
         count=sum(header.count for header in headers),
@@ -280,8 +280,8 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
         waveforms_at=0,
         user_bytes=b"",
         gap=b"",
-        vlrs=_union([header.vlrs for header in apart]),
-        evlrs=_union([header.evlrs for header in apart]),
+        vlrs=_union([header.vlrs for header in reduced]),
+        evlrs=_union([header.evlrs for header in reduced]),
     )
     return merged.with_layout(layout)
 

@@ -35,8 +35,8 @@ _ROUNDS = 5
 def as_strips(xyz: np.ndarray, wall: np.ndarray, tolerance: float) -> np.ndarray:
     """Return wall numbers (n,) from 1, those of curved fronts as upright strips side by side; 0 stays 0.
 
-    On a curved front the planes of walls overlap. The points of a column lie off their strip by at most ``tolerance``
-    (root mean square, m).
+    On a curved front the planes of walls overlap. A plane is left out if the points of each of its columns lie off
+    another one by at most ``tolerance`` (root mean square, m).
     """
     result = wall.copy()
     count = int(wall.max(initial=0))
@@ -70,6 +70,7 @@ def _strips(xyz: np.ndarray, label: np.ndarray, count: int, tolerance: float) ->
     while True:
         for _ in range(_ROUNDS):
             label = np.argmin(np.where(alive, off, np.inf), axis=1)[column]
+            # Three points always lie on a plane.
             alive &= np.bincount(label, minlength=count) > 3
             off = _deviations(xyz, label, count, column)
         dropped = _dispensable(off, alive, tolerance)

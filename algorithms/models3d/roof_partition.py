@@ -23,17 +23,30 @@ _WEDGE = 0.02
 # A point off a plane by this many tolerances explains nothing more; farther ones count the same.
 _FAR_OFF = 2.0
 
-# All points on top draw their cells to planes nearby: one that is this far (m) off, or farther, counts for this share
-# of its area.
-FARTHEST, _FAR_WEIGHT = 1.0, 0.5
+# All points on top of the roof draw their cells to planes nearby: those at least this far (m) off count in full.
+FARTHEST = 1.0
 
-# A meter of border between two planes costs as much as this area (m²) of roof that no plane explains. So does a square
-# meter of the wall between them, up to a step of 1 m. A dormer of 1.5 m by 1.5 m has 6 m of border.
-_BORDER, _STEP, _MOST_STEP = 0.10, 0.05, 1.0
+# Share of its area that a point on top counts for in full.
+_FAR_WEIGHT = 0.5
 
-# Roofs end no lower over the ground (m), and reach no farther (m) below their points. A plane that leaves these limits
-# within a cell is charged with more (m²) than any cell's points could.
-_LEAST_HEIGHT, _BELOW_POINTS, _FORBIDDEN = 0.5, 1.5, 1000.0
+# Area (m²) of roof without a plane that costs as much as a meter of border between two planes. A dormer of 1.5 m by
+# 1.5 m has 6 m of border.
+_BORDER = 0.10
+
+# Area (m²) of roof without a plane that costs as much as a square meter of the wall between two planes.
+_STEP = 0.05
+
+# Highest step (m) between two planes that costs more than a lower one.
+_MOST_STEP = 1.0
+
+# Least height (m) of roofs over the ground.
+_LEAST_HEIGHT = 0.5
+
+# Largest depth (m) of a roof below the lowest of its points.
+_BELOW_POINTS = 1.5
+
+# Cost (m²) of a plane that is too low within a cell: more than the points of any cell could cost.
+_FORBIDDEN = 1000.0
 
 
 @dataclass
@@ -179,7 +192,7 @@ def _costs(
 
 
 def _forbidden(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np.ndarray, base: float) -> np.ndarray:
-    """Return a charge (len(used), m) for planes that reach into the ground within a cell."""
+    """Return a charge (len(used), m) for planes that within a cell are too near the ground or too far below points."""
     low = max(base + _LEAST_HEIGHT, float(xyz[planes.label >= 0, 2].min()) - _BELOW_POINTS)
     size = np.array([len(cells.loops[cell]) for cell in used])
     xy = np.array(cells.vertices)[np.concatenate([cells.loops[cell] for cell in used])]

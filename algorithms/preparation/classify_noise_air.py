@@ -12,7 +12,7 @@ from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import stage
 from .points_in_the_air import in_the_air
 
-# Distance (m) up to which points tie others to the scene.
+# Width (m) of the surroundings that decide on a point: chains of points that tie it to the scene are searched in them.
 _REACH = 10.0
 
 
@@ -64,13 +64,13 @@ def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
-    made = classification.astype(np.uint8)
-    used = not_noise(made)
+    classes = classification.astype(np.uint8)
+    used = not_noise(classes)
     if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
-        return made
+        return classes
     hanging = in_the_air(xyz[used], sampling.spacing, monitor)
-    made[used[hanging]] = PointClass.HIGH_NOISE
+    classes[used[hanging]] = PointClass.HIGH_NOISE
     monitor.resolved(high_noise=int(hanging.sum()))
     monitor.progress(1.0)
-    return made
+    return classes

@@ -114,8 +114,8 @@ def detect_cylinders(
     Deviations from the paper. Radii are searched octave by octave, from small to large, each in windows of four times
     the least radius and among points thinned accordingly. A window holds few objects, as the segments of the paper do,
     and time and memory don't grow with the radius. A bin of the Gaussian sphere counts at most a sixteenth of the
-    normals, so that planes don't decide the direction. A cylinder is at least 1.5 diameters long, or one meter if its
-    diameter is larger, and 0.3 diameters in any case: shorter pieces can't be distinguished from elbows and spheres. A
+    normals, so that planes don't decide the direction. A cylinder is at least 1.5 diameters long, or one meter if that
+    is less, and 0.3 diameters in any case: shorter pieces can't be distinguished from elbows and spheres. A
     bend, a cone or a bulge shows in the distances of the points from the cylinder. These must not follow their position
     on it by more than 0.6 of the noise and 0.3 % of the radius, the tolerance to which tanks are built. The inside is
     counted in ten slices along the axis, of which the middle one decides, so that a roof within the wall has no effect.

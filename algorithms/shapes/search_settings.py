@@ -25,7 +25,7 @@ _REACH = 0.5
 # Least ratio of the largest radius to the least, with nothing set.
 _LEAST_RANGE = 2.0
 
-# Largest radius as a share of the longest side of the cloud: wider ones are seen on less than a third of their arc.
+# Largest radius as a share of the longest side of the cloud: larger shapes do not lie in the cloud as a whole.
 _SHARE_OF_EXTENT = 0.5
 
 MinRadius = Annotated[
@@ -72,8 +72,8 @@ ShapeTolerance = Annotated[
 def reach_of_radius(max_radius: Optional[float]) -> float:
     """Return how far (m) from a point of a shape others decide on it, for the largest radius (m), None if automatic.
 
-    Half a radius from a point of a cylinder lies a third of its circumference at least, and of a sphere a quarter of
-    its area: more than it takes to find it.
+    Within half a radius of a point lie a sixth of the circumference of a cylinder and a sixteenth of the area of a
+    sphere.
     """
     return _REACH * (_LARGEST_RADIUS if max_radius is None else max_radius)
 

@@ -25,7 +25,7 @@ _SAME_STEM = 0.5
 # grass turn.
 _LEAST_STRAIGHT = 0.6
 
-# Voxels whose neighbors across gaps are listed at once: with nothing set up to 2100 each, of 40 bytes, so 86 MB.
+# Voxels whose neighbors across gaps are listed at once: with nothing set up to 2100 each, of 40 bytes, so 84 MB.
 _CHUNK = 1_000
 
 # Rounds in which a line is smoothed: its steps are those of voxels.
@@ -146,7 +146,7 @@ def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
 
 
 def self_supporting_slices(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: float) -> Slices:
-    """Return the slices of the trees over those stems that can carry themselves.
+    """Return the slices of the trees over those stems that can carry themselves; the thickest stem always stays.
 
     Parameters
     ----------
@@ -179,7 +179,8 @@ def self_supporting_slices(voxels: Voxels, stems: np.ndarray, radii: np.ndarray,
 def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:
     """Return the slices of the trees over some roots (t,), those near the roots first.
 
-    A scanned stem is a hollow tube. Thinned, it would be a net; levels of equal length of the path cut across it.
+    A scanned stem is a hollow tube: a skeleton of its voxels would be a net, while slices between two lengths of the
+    path from the root cut across it.
     """
     n = len(voxels.positions)
     graph = sparse.coo_matrix((voxels.length, (voxels.one, voxels.other)), (n, n)).tocsr()
@@ -233,7 +234,7 @@ def branches_of(slices: Slices, min_length: float, monitor: Monitor) -> tuple[li
         while heir[line[-1]] >= 0:
             line.append(int(heir[line[-1]]))
         if base >= 0:
-            low = positions[base, 2] < foot[slices.tree[first], 2] + _CLEAR if len(foot) > slices.tree[first] else False
+            low = positions[base, 2] < foot[slices.tree[first], 2] + _CLEAR
             length = beyond[first] + step[first]
             if low or length < min_length or not _is_straight(positions[[base, *line]]):
                 continue
@@ -245,7 +246,10 @@ def branches_of(slices: Slices, min_length: float, monitor: Monitor) -> tuple[li
 
 
 def smooth(line: np.ndarray) -> np.ndarray:
-    """Return a line (k, 3) without the steps of its voxels: each inner vertex the mean of it and its neighbors."""
+    """Return a line (k, 3) without the steps of its voxels: inner vertices move halfway to the mean of their neighbors.
+
+    That is done ``_SMOOTHINGS`` times.
+    """
     line = line.copy()
     for _ in range(_SMOOTHINGS):
         line[1:-1] = (line[:-2] + 2 * line[1:-1] + line[2:]) / 4

@@ -164,7 +164,7 @@ def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flig
     duration : float
         Duration, s.
     seed : int
-        The same seed makes the same.
+        The same seed makes the same flight.
     """
     x, y = (SIZE / 2 + part for part in _START)
     foot = np.array([x, y, float(scene.relief.ground(x, y)) + _STANDING])

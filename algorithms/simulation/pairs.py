@@ -25,8 +25,8 @@ def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.
     which, column = items(end[:, 0] - start[:, 0] + 1)
     run = (start[which, 0] + column) * shape[1]
     begin, stop = starts[run + start[which, 1]], starts[run + end[which, 1] + 1]
-    again, offset = items(stop - begin)
-    point, box = order[begin[again] + offset], box[which[again]]
+    column_of_point, offset = items(stop - begin)
+    point, box = order[begin[column_of_point] + offset], box[which[column_of_point]]
     inside = ((points[point] >= low[box]) & (points[point] <= high[box])).all(axis=1)
     return point[inside], box[inside]
 

@@ -176,6 +176,7 @@ def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor:
         monitor.progress(number / len(plant.parts))
         nearest = max(1.0, float(stations.query(part.middle)[0]) - np.sqrt(part.area) / 2)
         falling = min(1.0, (_FULL_DENSITY / nearest) ** 2)
+        # At least 20, so that small parts are not missed by chance.
         count = max(20, round(_CANDIDATES * density * falling * part.area * (_FLOOR if part.kind == "floor" else 1.0)))
         for start in range(0, count, _DRAWN):
             positions, normals = part.sample(rng, min(_DRAWN, count - start))
@@ -204,6 +205,7 @@ def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarr
     # Surfaces that face away hide what lies behind them, too: plates and pipes are closed.
     azimuth = np.arctan2(offset[:, 1], offset[:, 0]) + np.pi
     elevation = np.arcsin(np.clip(offset[:, 2] / distance, -1, 1)) + np.pi / 2
+    # Near the zenith and the nadir, cells are no narrower than about 1° from them.
     around = azimuth * np.maximum(np.sin(elevation), 0.02)
     is_first = np.ones(len(near), bool)
     # Cells wider than the gaps between candidates hide what lies behind a surface.
@@ -247,10 +249,10 @@ def _dimensions(xyz: np.ndarray, part: np.ndarray, plant: Plant) -> tuple:
     """Return the dimensions of the points, and the layers of axes and centers."""
     parts = plant.parts
     unnumbered = np.array([one.kind in {"clutter", "grating"} for one in parts])
-    flange = np.array([one.kind == "flange" for one in parts])
+    is_flange = np.array([one.kind == "flange" for one in parts])
     ids = np.where(unnumbered, 0, np.cumsum(~unnumbered)).astype(np.int32)
     # The three surfaces of a flange are one part.
-    for number in np.flatnonzero(flange[1:] & flange[:-1]) + 1:
+    for number in np.flatnonzero(is_flange[1:] & is_flange[:-1]) + 1:
         ids[number] = ids[number - 1]
     count = np.bincount(part, minlength=len(parts))
     classes = np.where(np.array([one.kind == "floor" for one in parts]), PointClass.GROUND, PointClass.UNCLASSIFIED)

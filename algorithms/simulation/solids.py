@@ -164,8 +164,8 @@ def stack(solids: Sequence[Solid]) -> SolidArrays:
     # Faces that a solid doesn't have are (0, 0, 0, 1): every point is inside of them.
     faces = np.zeros((len(solids), _FACES, 4))
     faces[:, :, 3] = 1.0
-    # One by one: of arrays, numpy's cosines depend in the last bit on where these lie in memory.
-    cos, sin = (np.array([of(angle) for angle in np.asarray(rects.angle).tolist()]) for of in (math.cos, math.sin))
+    # One by one: the last bit of numpy's cosines of an array depends on where the array lies in memory.
+    cos, sin = (np.array([call(angle) for angle in np.asarray(rects.angle).tolist()]) for call in (math.cos, math.sin))
     for i, (side, reach) in enumerate([(1, rects.length), (-1, rects.length), (1, rects.width), (-1, rects.width)]):
         x, y = (side * cos, side * sin) if i < 2 else (-side * sin, side * cos)
         faces[:, i] = np.column_stack([x, y, np.zeros(len(solids)), x * rects.x + y * rects.y + reach / 2])

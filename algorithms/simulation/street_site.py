@@ -60,6 +60,7 @@ def build_site(trees: int, slope: float, seed: int) -> Scene:
     scene = Scene(Relief(SIZE, angle, float(np.tan(np.deg2rad(slope)))))
     for x, y, length, width, turn, eave, has_gable in _HOUSES:
         _build_house(scene, Rect(*_position(x, y), length, width, np.deg2rad(turn)), eave, has_gable, rng)
+    # Cars of 4.3 m by 1.8 m, up to 0.4 m and 3° off their places.
     for x, y in _CARS:
         park_car(scene, Rect(*_position(x + rng.uniform(-0.4, 0.4), y), 4.3, 1.8, np.deg2rad(rng.uniform(-3.0, 3.0))))
     for x, y in _LAMPS:
@@ -78,11 +79,12 @@ def _position(x: float, y: float) -> tuple[float, float]:
 
 
 def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np.random.Generator) -> None:
-    """Put a house with balconies on its front, whose height counts from the middle of its ground."""
+    """Put a house with balconies on its front; heights count from the ground at the middle of the house."""
     number, ground = scene.new_id(), float(scene.relief.ground(rect.x, rect.y))
     tops = gable(rect, ground + eave, _PITCH) if has_gable else flat(rect, ground + eave)
     solids = [Solid(rect, tops, ground - 3.0, PointClass.BUILDING, number)]
     long, deep = _BALCONY
+    # A balcony each 5 m, of which seven in ten are there, with a parapet of 1 m, and none less than 2 m under the eave.
     for floor in np.arange(_STOREY, eave - 2.0, _STOREY):
         for along in np.arange(-rect.length / 2 + 3.0, rect.length / 2 - 2.0, 5.0):
             if rng.random() < 0.7:
@@ -93,7 +95,10 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
 
 
 def _tree_positions(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:
-    """Return positions (m from the middle): first in front of the houses, then in a row, then behind it."""
+    """Return positions (m from the middle): first in front of the houses, then in a row, then behind it.
+
+    Rows are 6 m apart, and trees up to 0.8 m off their places.
+    """
     behind = [(x, _ROW_OF_TREES - 6.0 * line) for line in range(4) for x in (-6.0, 6.0, 0.0, -12.0, 12.0)]
     positions = [*_TREES_IN_FRONT, *behind][:count]
     return [(float(x + rng.uniform(-0.8, 0.8)), float(y + rng.uniform(-0.8, 0.8))) for x, y in positions]

@@ -16,10 +16,10 @@ from .scene import Scene
 # scanner number, the source id of its points. As on most mapping vehicles, each scanner sees one side of a recess.
 PLANES = {1: 45.0, 2: -45.0}
 
-# Most pulses worked on at once.
+# Most pulses worked on at once, which bounds memory.
 _BLOCK = 50_000
 
-# Longest distance (m) that the vehicle drives during these.
+# Longest distance (m) that the vehicle drives while it sends the pulses that are worked on at once.
 _BLOCK_WAY = 1.0
 
 # Distinguishes the random numbers of the drive from those of other parts of the simulation with the same seed.
@@ -66,7 +66,10 @@ class Drive:
             yield (lines[:, None] + np.arange(per_line) / per_line).ravel() / rate
 
     def _pulses(self, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-        """Return the beams of pulses at times (n,) (s) in a plane turned by ``turn`` (°), and the left (n, 3)."""
+        """Return the beams of pulses at times (n,) (s) in a plane turned by ``turn`` (°).
+
+        Further the directions (n, 3) to the left of the vehicle.
+        """
         cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
         left = np.array([-self.way[1], self.way[0], 0.0]) / np.hypot(*self.way[:2])
         ahead = np.array([left[1], -left[0], 0.0])

@@ -145,7 +145,7 @@ class _Process:
     """One process: a connection to it, and what it writes where it can't start."""
 
     def __init__(self, python: str, search_path: list[str]) -> None:
-        own, others = Pipe()
+        own, other = Pipe()
         self._connection, self._python, self._search_path = own, python, search_path
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process runs
         inherited = os.environ.get("PYTHONPATH", "").split(os.pathsep)
@@ -157,19 +157,19 @@ class _Process:
         try:
             # Signals of a terminal are for the main process: it ends the others.
             self._program = subprocess.Popen(  # nosec B603 - the interpreter that runs this, no shell
-                [python, str(_PROGRAM), str(others.fileno())],
+                [python, str(_PROGRAM), str(other.fileno())],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=self._errors,
                 env=environment,
-                **_inherits(others),
+                **_inherits(other),
             )
         except OSError as error:
             own.close()
             self._errors.close()
             raise CannotStart(_not_started(python, error.strerror or str(error))) from error
         finally:
-            others.close()
+            other.close()
 
     def prepare(self, threads: int) -> None:
         """Send the process the folder of its package; wait until it has imported it.
@@ -231,8 +231,8 @@ class _Process:
 def own_python() -> str:
     """Return the interpreter that new processes of this machine are started with: the one that runs this program.
 
-    A program that embeds Python, as QGIS, is no interpreter itself. Python then believes that it is the first one on
-    the PATH, which may be another one, that can't load the packages of this one.
+    A program that embeds Python, as QGIS, is no interpreter itself. ``sys.executable`` is then the first interpreter on
+    the PATH, which may have another version and fail to load the packages of this one.
     """
     prefix = Path(sys.exec_prefix)
     version = f"python{sys.version_info.major}.{sys.version_info.minor}"

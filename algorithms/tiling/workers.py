@@ -75,8 +75,8 @@ class Workers:
         if os.name == "nt":
             count = min(count, _MOST_PROCESSES)
         if count == 1:
-            with ThreadPoolExecutor(1) as here:
-                yield here
+            with ThreadPoolExecutor(1) as thread:
+                yield thread
             return
         processes = Processes(count, max(1, n_threads() // count), distrusted)
         try:
@@ -127,7 +127,10 @@ class _Call:
 
 
 class _Remote(Executor):
-    """An executor of a cluster. Its scheduler reads all that it passes on, and only its workers have this program."""
+    """An executor of a cluster, to which calls go as bytes.
+
+    The scheduler unpickles functions and arguments that it passes on, but only workers have this program.
+    """
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor

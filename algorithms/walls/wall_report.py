@@ -39,7 +39,7 @@ def point_counts(
     classification: Optional[np.ndarray],
     voxel_count: Optional[np.ndarray],
 ) -> dict[str, float]:
-    """Return the number of points of each kind; NaN where the cloud lacks the evidence, but no walls without wall_of.
+    """Return the number of points of each kind; NaN where evidence is missing, but 0 walls without ``wall_of``.
 
     Parameters
     ----------
