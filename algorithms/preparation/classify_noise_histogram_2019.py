@@ -23,7 +23,8 @@ from .height_histograms import (
 # Points of a cell on average: enough that the highest and lowest meter of a scene hold some, whatever the density.
 _POINTS_PER_CELL = 4000
 
-# Width (m) of the surroundings that decide on a point: its cell, at 1 point/m². It is narrower in denser clouds.
+# Width (m) of the surroundings that decide on a point: its cell, at 1 point/m². It is narrower in denser clouds. A
+# cell without a full bin borrows from cells around it, which may lie beyond that where a survey is run in tiles.
 _REACH = 64.0
 
 
