@@ -1,4 +1,4 @@
-"""The Processing provider: one algorithm for every stage and every pipeline."""
+"""The Processing provider: an algorithm for every stage and every pipeline, and those for surveys in tiles."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Provider(QgsProcessingProvider):
         self._with_pipelines = with_pipelines
 
     def loadAlgorithms(self) -> None:  # noqa: N802 - QGIS asks for this name
-        """Add one algorithm per stage and per pipeline, and one per pipeline that runs in tiles."""
+        """Add an algorithm per stage, per pipeline and per pipeline that runs in tiles, and that which cuts tiles."""
         for stage in STAGES.values():
             self.addAlgorithm(StageAlgorithm(stage))
         # A model gets its outputs from its children, which must be registered before it.

@@ -102,7 +102,7 @@ def with_penetration(
     is_edge = is_planar & (evidence.non_last_return_share() < _SPLIT_AT_EDGES)
     is_building = evidence.with_adjacent(is_solid, is_edge)
     # The first that applies is the reason.
-    found = {
+    applies = {
         Reason.WITHOUT_ENTROPY: undefined,
         Reason.SOLID_PLANE: is_building & is_solid & is_planar,
         Reason.SOLID: is_building & is_solid,
@@ -110,7 +110,7 @@ def with_penetration(
         Reason.TOO_SMALL: is_solid,
         Reason.PENETRATED: is_planar,
     }
-    reasons = np.select(list(found.values()), list(found), Reason.ROUGH).astype(np.uint8)
+    reasons = np.select(list(applies.values()), list(applies), Reason.ROUGH).astype(np.uint8)
     return Decisions(np.where(is_building, np.where(is_solid, both, confidence), np.minimum(both, 0.5)), reasons)
 
 

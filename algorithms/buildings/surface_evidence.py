@@ -45,8 +45,8 @@ def decide_in_images(
     is_candidate = is_surface & ~is_green
     share = evidence.share_around(is_candidate)
     is_building = is_candidate & (share >= min_share)
-    found = {Reason.GREEN: is_green, Reason.SURFACE: is_building, Reason.AMID_OTHERS: is_candidate}
-    reasons = np.select(list(found.values()), list(found), Reason.ROUGH).astype(np.uint8)
+    applies = {Reason.GREEN: is_green, Reason.SURFACE: is_building, Reason.AMID_OTHERS: is_candidate}
+    reasons = np.select(list(applies.values()), list(applies), Reason.ROUGH).astype(np.uint8)
     # Buildings have more than 0.5, also where ``min_share`` is 0.
     confidence = np.where(is_building, 0.5 + 0.5 * np.maximum(share, 0.02), 0.5 * share)
     return Decisions(confidence, reasons)
@@ -72,7 +72,7 @@ def green_clusters(
     Parameters
     ----------
     colors : three ndarrays of shape (n,), or None
-        Red, green and blue. Where one is missing, or where rough and smooth clusters are as green, none is green.
+        Red, green and blue. Where one is missing, or where rough and smooth clusters are equally green, none is.
     evidence : ClusterEvidence
         The clusters among the points.
     is_surface : ndarray of shape (m,), bool

@@ -20,7 +20,7 @@ from .units import Units, crs_records, units_of, wkt_of
 # Origins are multiples of this (m): coordinates from there keep their digits, and neighboring clouds have the same one.
 _ORIGIN_STEP = 1000.0
 
-# Scale of new clouds (m): more precise than any scanner.
+# Scale of new clouds (units of the file): more precise than any scanner.
 _NEW_SCALE = 0.001
 
 # Steps of the scale by which the sum of large coordinates may miss a half.
@@ -218,13 +218,13 @@ class Cloud:
         wanted = name.strip().lower()
         if wanted in known:
             return known[wanted][1]()
-        there = ", ".join(map(shown, self.dimension_names))
-        raise ValueError(f"The cloud has no dimension {name!r}; it has {there}.")
+        names = ", ".join(map(shown, self.dimension_names))
+        raise ValueError(f"The cloud has no dimension {name!r}; it has {names}.")
 
     @property
     def dimension_names(self) -> list[str]:
         """Names of all dimensions as users see them, see :meth:`named`."""
-        return list(dict.fromkeys(shown for shown, _ in self._known().values()))
+        return list(dict.fromkeys(title for title, _ in self._known().values()))
 
     def _known(self) -> dict[str, tuple[str, Callable[[], np.ndarray]]]:
         """Return for every name of a dimension, in lower case, how it is shown and what gives its values."""
@@ -261,9 +261,9 @@ class Cloud:
 
     def from_map(self, coordinates: np.ndarray) -> np.ndarray:
         """Return coordinates (m, 2 or 3) of the file's CRS as float64 local meters; the inverse of :meth:`to_map`."""
-        there = np.asarray(coordinates, float)
-        axes = there.shape[-1]
-        return there * self.units.factors[:axes] - self.origin[:axes]
+        of_file = np.asarray(coordinates, float)
+        axes = of_file.shape[-1]
+        return of_file * self.units.factors[:axes] - self.origin[:axes]
 
     def records(self, for_copc: bool = False) -> PointRecords:
         """Return what makes the output's records."""

@@ -302,8 +302,8 @@ def _linear_units(keys: dict[int, Any], crs_units: Optional[Resolver]) -> Units:
         return Units(horizontal, vertical)
     code = keys.get(_PROJECTED, 0)
     named = 0 < code < _USER_DEFINED
-    unlooked = f"The file gives EPSG:{code} and no unit; its coordinates are taken as meters."
-    return Units(horizontal, vertical, unlooked if named else NO_CRS)
+    without_unit = f"The file gives EPSG:{code} and no unit; its coordinates are taken as meters."
+    return Units(horizontal, vertical, without_unit if named else NO_CRS)
 
 
 def _looked_up(code: int, crs_units: Optional[Resolver]) -> Optional[tuple[float, float, bool]]:

@@ -199,7 +199,7 @@ def _open_sides(mesh: Triangulation) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def _mended(part: Triangulation, rows: np.ndarray) -> Optional[Triangulation]:
-    """Return a triangulation with holes filled, whose positions are ``rows``; None where rounding left a seam open."""
+    """Return a triangulation whose holes, between the positions ``rows``, are filled; None where a seam stays open."""
     patch = _by_qhull(part.plan[rows] - part.plan[rows[0]])
     facets = rows[patch.facets].astype(np.int32)
     sides = _open_sides(Triangulation(part.plan, facets, np.full_like(facets, -1)))[2]

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-# Ends of the sides of a cell, south, east, north and west: its corners, counterclockwise from the south-west.
-_SIDES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-
 
 def level_lines(field: np.ndarray) -> list[np.ndarray]:
     """Return the rings along which a field is zero, positive values to the left.

@@ -119,9 +119,9 @@ class Subdivision:
             _LEAST_REACH * snap, 0.5 * (last - first)
         ):
             return
-        # A new vertex moves the others along the loop.
-        found = [(loop[i], loop[j], across[i], across[j]) for i, j in crossings]
-        one, other = (u if u == v else self._vertex_on(u, v, from_u, from_v) for u, v, from_u, from_v in found)
+        # Taken before the first vertex is inserted, which shifts positions in the loop.
+        crossed = [(loop[i], loop[j], across[i], across[j]) for i, j in crossings]
+        one, other = (u if u == v else self._vertex_on(u, v, from_u, from_v) for u, v, from_u, from_v in crossed)
         self._split(cell, one, other, line)
 
     def _vertex_on(self, u: int, v: int, from_u: float, from_v: float) -> int:

@@ -108,7 +108,7 @@ class TiledTin:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Write the elevations at those of the positions ``left`` whose triangles between the nodes ``rows`` are right.
 
-        Returns nodes that the others need, at the start with those around them, and these other positions.
+        Returns the nodes that the other positions need, with those around them if it ``is_start``, and these positions.
         """
         if not len(rows):
             rows = self._nearest(positions[left])

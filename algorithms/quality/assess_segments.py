@@ -215,7 +215,7 @@ def _values(found: np.ndarray, true: np.ndarray, matches: Matches) -> dict[str, 
 
 def _page(xyz: np.ndarray, found: np.ndarray, true: np.ndarray, matches: Matches, values: dict[str, float]) -> str:
     """Return the page of the report."""
-    total, made = int(values["reference_segments"]), int(values["segments"])
+    total, n_segments = int(values["reference_segments"]), int(values["segments"])
     meanings = {
         "correct": ("Correct", "have a counterpart with which they share most points of both."),
         "over": ("Over-segmented", "are cut up into several segments."),
@@ -230,12 +230,16 @@ def _page(xyz: np.ndarray, found: np.ndarray, true: np.ndarray, matches: Matches
         )
         for name, (title, meaning) in meanings.items()
     ]
-    rows.append(Row("Noise", f"{values['noise']:,.0f}", f"Of {made:,} segments, these have no part in the reference."))
+    rows.append(
+        Row("Noise", f"{values['noise']:,.0f}", f"Of {n_segments:,} segments, these have no part in the reference.")
+    )
     outcomes = _outcomes(found, true, matches)
     outcome = np.full(len(xyz), REST, np.uint8)
     outcome[outcomes["noise"]] = FALSE
     outcome[(true > 0) & ~outcomes["correct"]] = MISS
     outcome[outcomes["correct"]] = HIT
     legend = ("no segment", "in correct segments", "in segments that are not found as they are", "in noise segments")
-    lead = f"{made:,} segments were compared with {total:,} of the reference: {values['correct']:,.0f} are correct."
+    lead = (
+        f"{n_segments:,} segments were compared with {total:,} of the reference: {values['correct']:,.0f} are correct."
+    )
     return build_page("Quality of the segments", lead, {"Segments": rows}, draw_map(xyz, outcome, legend))

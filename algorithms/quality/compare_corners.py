@@ -192,12 +192,14 @@ def compare_corners(
 class _Link:
     """Which buildings are the same: ``old[k]`` and ``new[k]``, in this order; and how much of each is covered."""
 
+    #: old, new, (k,), int64: buildings of the old map and footprints
     old: np.ndarray
     new: np.ndarray
+    #: old_covered, new_covered: Share (0 to 1) of each building of the old map, and of each footprint
     old_covered: np.ndarray
     new_covered: np.ndarray
-    is_found: np.ndarray
-    is_new: np.ndarray
+    is_found: np.ndarray  #: bool: which buildings of the old map footprints cover
+    is_new: np.ndarray  #: bool: which footprints are not in the old map
 
 
 def _linked(old: BuildingMap, new: BuildingMap, min_overlap: float, shift: np.ndarray, monitor: Monitor) -> _Link:
@@ -212,7 +214,7 @@ def _linked(old: BuildingMap, new: BuildingMap, min_overlap: float, shift: np.nd
 
 
 def _shift(old: Corners, new: Corners, link: _Link, reach: float) -> np.ndarray:
-    """Return by how much (2,), m, the new map is off the old one: the median of what the corners of both say."""
+    """Return by how much (2,), m, the new map is off the old one: the median displacement of corners."""
     shift = np.zeros(2)
     for _ in range(_MOST_ROUNDS):
         one, other, _ = nearest_corners(old, new, (link.old, link.new), shift, reach)
@@ -355,13 +357,15 @@ def _shift_rows(moved: np.ndarray) -> list[Row]:
     """Return the systematic part of the displacements and the rest."""
     undefined = float("nan")
     dx, dy = moved.mean(axis=0).tolist() if len(moved) else (undefined, undefined)
-    left = float(np.sqrt(((moved - [dx, dy]) ** 2).sum(axis=1).mean())) if len(moved) else undefined
+    remaining = float(np.sqrt(((moved - [dx, dy]) ** 2).sum(axis=1).mean())) if len(moved) else undefined
     return [
         Row("Eastward", _meters(dx), "Mean of the displacements to the east; negative is to the west."),
         Row("Northward", _meters(dy), "Mean of the displacements to the north; negative is to the south."),
         Row("Together", _meters(float(np.hypot(dx, dy))), "Length of the mean shift."),
         Row(
-            "Without it", _meters(left), "Root mean square of the distances that were left if the shift were taken off."
+            "Without it",
+            _meters(remaining),
+            "Root mean square of the distances that were left if the shift were taken off.",
         ),
     ]
 

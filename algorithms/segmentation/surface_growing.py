@@ -15,7 +15,7 @@ from .best_pairs import common_deviation, merge_best_pairs
 from .least_squares_planes import Planes, planes_of
 from .local_planes import CHUNK_NEIGHBORS, LEAST_POINTS, Criteria, LocalPlanes, fit_planes, store_planes
 
-# Points of a chunk.
+# Points that are worked on at once, between two reports of progress.
 _CHUNK = 20_000
 
 # Neighbors by which seeds are connected first: most of the others then are of the same surface already.
@@ -70,11 +70,11 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
 
 def _beside(planes: LocalPlanes, rows: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return those of the points ``rows`` (m,) that have one of the ``others`` among their neighbors."""
-    is_one, is_beside = np.zeros(len(planes.xyz), bool), np.empty(len(rows), bool)
-    is_one[others] = True
+    is_other, is_beside = np.zeros(len(planes.xyz), bool), np.empty(len(rows), bool)
+    is_other[others] = True
 
     def work(some: np.ndarray) -> None:
-        is_beside[some] = is_one[planes.neighbors[rows[some]]].any(axis=1)
+        is_beside[some] = is_other[planes.neighbors[rows[some]]].any(axis=1)
 
     in_chunks(work, np.arange(len(rows)), _CHUNK, Monitor())
     return rows[is_beside]

@@ -41,14 +41,14 @@ class _Rules:
     inside: float = 0.15
     inner: float = 0.9  #: Distance from the axis, as a share of the radius, up to which points are inside
     slices: int = 10  #: Slices along the axis: the roof in a tank lies in one or two
-    #: Least points beyond each end of the arc where the surface goes on, of those that it would have if none lay within
-    #: the tolerance: that takes half of them
+    #: Least number of points beyond each end of the arc where the surface goes on, as a share of those on an equally
+    #: long part of the arc. About half of them lie within the tolerance and are not counted.
     goes_on: float = 0.25
     stray: float = 0.02  #: Share of the points that lie at either end of the arc by chance
-    seen: float = 0.3  #: Least share of the cells of a sector with points, of one that does not only hold stray ones
+    seen: float = 0.3  #: Least share of the cells of a sector with points: sectors with fewer hold stray points only
     length: float = 1.5  #: Least length (diameters): shorter pieces cannot be distinguished from elbows
     short: float = 0.3  #: Least length (diameters) of wide ones: shorter pieces cannot be distinguished from spheres
-    long_enough: float = 1.0  #: Length (m) that is enough for any diameter: of a tank less may be seen
+    long_enough: float = 1.0  #: Length (m) that is enough unless ``short`` asks for more: of tanks less may be seen
 
 
 _RULES = _Rules()
@@ -74,7 +74,7 @@ class Evidence:
     def is_round(self, cylinder: Cylinder, own: Points, near: Points) -> bool:
         """Return whether points (k) look like those of a cylinder among all points (m) near it."""
         along, distance, away = cylinder.local(own.xyz)
-        at, reach, beside = cylinder.local(near.xyz)
+        near_along, near_distance, near_away = cylinder.local(near.xyz)
         angle = np.degrees(np.arccos(min(float(np.median(_facing(away, own.normals))), 1.0)))
         if angle > _RULES.median_angle + _RULES.uneven_angle * self.spacing / cylinder.radius:
             return False
@@ -82,10 +82,13 @@ class Evidence:
         if angle > _RULES.median_angle and rough > 1 + _RULES.confidence / np.sqrt(2 * len(along)):
             return False
         count = _in_slices(along, along)
-        facing = (np.abs(reach - cylinder.radius) <= 2 * self.tolerance) & (_facing(beside, near.normals) >= FACING)
-        if len(along) < _RULES.close * _in_slices(at[facing], along).sum():
+        facing = (np.abs(near_distance - cylinder.radius) <= 2 * self.tolerance) & (
+            _facing(near_away, near.normals) >= FACING
+        )
+        if len(along) < _RULES.close * _in_slices(near_along[facing], along).sum():
             return False
-        inside = _in_slices(at[reach < _RULES.inner * cylinder.radius - 2 * self.tolerance], along)
+        is_inside = near_distance < _RULES.inner * cylinder.radius - 2 * self.tolerance
+        inside = _in_slices(near_along[is_inside], along)
         if np.median(inside / np.maximum(count, 1)) > _RULES.inside:
             return False
         most = float(np.hypot(_RULES.bent * self.noise, _RULES.as_built * cylinder.radius))

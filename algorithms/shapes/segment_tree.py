@@ -24,8 +24,8 @@ _LEAST_VOXEL = 0.02
 # Gaps that paths cross with nothing set (voxels).
 _GAP_VOXELS = 8.0
 
-# Largest median deviation of the distances of the points of a piece from their median (of that): those of a circle
-# around the line. Stems at breast height are recognized by the same share.
+# Largest median absolute deviation of the distances of points from the line, as a share of the median distance, of a
+# piece whose cross section is a circle. Stems at breast height are recognized by the same share.
 _ROUND = 0.2
 
 # Largest measured radius (of that estimated): wider ones are leaves. Simulated branches have 1.4.
@@ -214,7 +214,7 @@ def _measured(
     ``stems`` are the positions (s, 3) of stems at breast height, their radii (s,), m, and the side of a voxel (m).
     """
     feet, radii, voxel_size = stems
-    of_tree: dict[int, float] = {}
+    taper_of: dict[int, float] = {}
     branch = np.where(of_point >= 0, of_slice[of_point], -1)
     parts = split_groups(branch, len(branches))
     label = np.zeros(len(xyz), np.int32)
@@ -237,8 +237,8 @@ def _measured(
         stem = int(np.argmin(np.linalg.norm(feet[:, None] - line, axis=2).min(axis=1)))
         if one.order == 0:
             breast = float(along[np.argmin(np.linalg.norm(line - feet[stem], axis=1))])
-            of_tree[one.tree] = float(radii[stem]) / max(length - breast, _PIECE)
-        taper = of_tree[one.tree]
+            taper_of[one.tree] = float(radii[stem]) / max(length - breast, _PIECE)
+        taper = taper_of[one.tree]
         cone = taper * (length - (ends[1:] + ends[:-1]) / 2)
         is_round = _are_round(distance, piece, reach) & (reach >= voxel_size / 2) & (reach <= _WIDEST * cone)
         radius = np.where(is_round, reach, np.minimum(reach, cone))

@@ -14,7 +14,7 @@ import numpy as np
 from ..stage import LayerFeatures
 from .array_files import write_arrays
 
-# Arrays of a result that are kept by the names of dimensions.
+# Fields of a result with arrays by name: of dimensions, rasters, layers, steps or values.
 _KINDS = (
     "dimensions",
     "used",
@@ -29,7 +29,7 @@ _KINDS = (
     "values",
 )
 
-# Kinds whose size grows with the points of a block; they are not read where all blocks are in memory at once.
+# Those whose size grows with the points or the cells of a block, which are not read where all blocks are in memory.
 _LARGE = ("dimensions", "inside", "beside", "rasters")
 
 
@@ -48,7 +48,7 @@ class BlockResult:
     used: dict[str, np.ndarray] = field(default_factory=dict)
     #: dict of str to (k,), int64: for each of them how many points of the block have it
     counts: dict[str, np.ndarray] = field(default_factory=dict)
-    #: dict of str to (1,), int64: for each numbered dimension the largest number that is used in the next two
+    #: dict of str to (1,), int64: for each numbered dimension the largest number in ``inside`` and ``beside``
     most: dict[str, np.ndarray] = field(default_factory=dict)
     #: inside, beside, dict of str to (m, 3), int64: for each numbered dimension file, position and number of records
     #: that lie just inside and just outside the edges
@@ -66,7 +66,7 @@ class BlockResult:
     pieces: dict[str, np.ndarray] = field(default_factory=dict)
     #: By class of the items of text files: name in the block and record of each item that belongs to these features
     items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
-    seconds: dict[str, np.ndarray] = field(default_factory=dict)  #: dict of str to (): how long each step took
+    seconds: dict[str, np.ndarray] = field(default_factory=dict)  #: dict of str to (): how long each step took, s
     #: dict of str to (): values of automatic tunables, and other values that steps found, by their names in the
     #: chain
     values: dict[str, np.ndarray] = field(default_factory=dict)
@@ -90,7 +90,7 @@ class BlockResult:
 
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:
-        """Return what :meth:`write` wrote; without the points, arrays that grow with them are left out."""
+        """Return what :meth:`write` wrote, but for items; without the points, large arrays are left out, too."""
         # The file is closed here: numpy leaves it open if it can't read it.
         with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}

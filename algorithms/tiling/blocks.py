@@ -175,7 +175,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     positions = _positions(task.survey, window)
     made = run_pipeline(pipeline, window.cloud, monitor, kept=(), samplings=task.samplings, **task.tunables)
     seconds = monitor.seconds()
-    point, stays = _left(window, made)
+    point, stays = _result_points(window, made)
     values = _written(pipeline, made, point, task.survey.origin)
     core = _inside(positions, task.block.box)
     result = BlockResult(
@@ -199,8 +199,8 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     return result, cuts
 
 
-def _left(window: Window, made: Results) -> tuple[np.ndarray, np.ndarray]:
-    """Return for each record of a window which point of the result it is, 0 where none, and whether it is one (n,)."""
+def _result_points(window: Window, made: Results) -> tuple[np.ndarray, np.ndarray]:
+    """Return for each record of a window its point in the result (n,), 0 without one, and whether it has one (n,)."""
     if made.selected is None:
         return window.point, np.ones(len(window.point), bool)
     became = np.full(len(window.cloud), -1, np.int64)
@@ -253,7 +253,10 @@ def _names(ids: Any) -> np.ndarray:
 
 
 def _cropped(surface: RasterSurface, box: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cells of a raster whose middles lie in a box (2, 2), local m, and their lattice."""
+    """Return the cells of a raster whose middles lie in a box (2, 2), local m, and their lattice.
+
+    See :class:`.BlockResult` for both.
+    """
     size, (n_rows, n_columns) = surface.cell_size, surface.values.shape
     first = np.rint(np.array([surface.west, surface.north - n_rows * size]) / size)
     # Cells that the box begins and ends with; a middle on its lower edge belongs to it.

@@ -59,8 +59,8 @@ def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
 
     def drawn(scale: float) -> list[list[np.ndarray]]:
         how = Drawing(spacing, scale * spacing, area, area)
-        found = [one.rings for block in blocks for one in draw_block(block, {1: shares}, {1: directions}, {}, how)]
-        return without_nested(sorted(found, key=lambda part: -sum(map(signed_area, part))))
+        polygons = [one.rings for block in blocks for one in draw_block(block, {1: shares}, {1: directions}, {}, how)]
+        return without_nested(sorted(polygons, key=lambda part: -sum(map(signed_area, part))))
 
     parts = drawn(1.0)
     return RoofOutline(parts, drawn) if parts else None
