@@ -189,16 +189,16 @@ def _default_text(tunable: Tunable, default: object) -> str:
 
 def outputs(stage: Stage) -> list:
     """Return what a stage makes, one HTML text per output."""
-    made = [f"<b>OUTPUT</b>: {_cloud_text(stage)}"] if stage.makes_cloud else []
-    made += [_layer_text(layer, layer.name.upper()) for layer in stage.layers]
-    made += [_raster_text(raster, raster.name.upper()) for raster in stage.rasters]
-    made += [_file_text(file, file.name.upper()) for file in stage.files]
+    texts = [f"<b>OUTPUT</b>: {_cloud_text(stage)}"] if stage.makes_cloud else []
+    texts += [_layer_text(layer, layer.name.upper()) for layer in stage.layers]
+    texts += [_raster_text(raster, raster.name.upper()) for raster in stage.rasters]
+    texts += [_file_text(file, file.name.upper()) for file in stage.files]
     if stage.measures:
-        made.append(_report_text(stage, "REPORT"))
+        texts.append(_report_text(stage, "REPORT"))
     used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_optional and t.type in (int, float)]
     if used:
-        made.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
-    return made
+        texts.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
+    return texts
 
 
 def _cloud_text(stage: Stage) -> str:

@@ -8,7 +8,7 @@ from .stage import Param
 
 
 class PaperThresholds(NamedTuple):
-    """A column of table 2 of the paper of 2019: T_Dxy (m), T_Dh (m) and points/m², of which T_Np and N are 4 m²."""
+    """A column of table 2 of the paper of 2019: T_Dxy (m), T_Dh (m), and the points/m² from which T_Np and N follow."""
 
     plan_distance: float
     height_distance: float

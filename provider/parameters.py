@@ -33,7 +33,7 @@ def used_name(tunable: Tunable) -> str:
 
 
 def label(tunable: Tunable) -> str:
-    """Return the label with its unit, and for automatic numbers how to ask for it."""
+    """Return the label with its unit, and where it may be empty what that means."""
     facts = [tunable.param.unit] if tunable.param.unit else []
     if tunable.is_optional:
         facts.append(f"{tr('empty')} = {tr(tunable.param.unset)}")

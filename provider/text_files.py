@@ -17,9 +17,9 @@ from .texts import tr
 def file_parameter(file: TextFile) -> QgsProcessingParameterFileDestination:
     """Return the parameter of a text file; its dialog has a filter for each format."""
     filters = ";;".join(f"{called} (*{' *'.join(endings)})" for called, endings in file.formats.items())
-    made = QgsProcessingParameterFileDestination(file.name.upper(), tr(file.title), filters, optional=True)
+    definition = QgsProcessingParameterFileDestination(file.name.upper(), tr(file.title), filters, optional=True)
     formats = " / ".join(file.formats)
-    return with_help(made, tr("A text file: {}, as its name ends.").format(formats))
+    return with_help(definition, tr("A text file: {}, as its name ends.").format(formats))
 
 
 def write_text(

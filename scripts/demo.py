@@ -28,7 +28,7 @@ def main(arguments: list[str]) -> None:
     cloud, footprints, picture = DEMO / "buildings.copc.laz", DEMO / "footprints.gpkg", DEMO / "buildings.png"
     run(f"Finding the buildings of {tile.name}", "detectbuildings", INPUT=tile, OUTPUT=cloud, FOOTPRINTS=footprints)
     rates = assessed(cloud, tile)
-    print("\n" + spoken([sys.executable, ROOT / "scripts/picture.py", cloud, footprints, picture]).strip())
+    print("\n" + output_of([sys.executable, ROOT / "scripts/picture.py", cloud, footprints, picture]).strip())
     print(f"  classified cloud  {cloud}\n  footprints        {footprints}\n  picture           {picture}")
     if not rates:
         print("The tile has no buildings of its own (class 6), so there is nothing to compare the result with.")
@@ -59,18 +59,18 @@ def assessed(cloud: Path, reference: Path) -> dict[str, float]:
 
 
 def run(doing: str, algorithm: str, **parameters: Any) -> dict[str, Any]:
-    """Run one of the plugin's algorithms and return its results; end with its own words when it fails."""
+    """Run one of the plugin's algorithms and return its results; end with its error message when it fails."""
     print(f"{doing} … ", end="", flush=True)
     start = time.monotonic()
     command = ["qgis_process", "--json", "run", f"lidarbuildings:{algorithm}", "--"]
     command += [f"{name}={value}" for name, value in parameters.items()]
-    results = json.loads(spoken(command))["results"]
+    results = json.loads(output_of(command))["results"]
     print(f"{time.monotonic() - start:.0f} s")
     return results
 
 
-def spoken(command: list) -> str:
-    """Run a command and return what it said; end with its complaint when it fails."""
+def output_of(command: list) -> str:
+    """Run a command and return its output; end with its error message when it fails."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"failed.\n{done.stderr.strip()}")

@@ -15,14 +15,14 @@ from .extra_bytes import DESCRIPTOR_SIZE, fields_of, payload_of
 from .laspy_library import need_laspy
 from .point_formats import FORMATS, WITH_WAVEFORMS, Layout
 
-# Where a header has its size, offset to the points, number of VLRs, point format, record length and 32-bit number of
-# points.
+# Position (bytes) in a header of its own size, offset to the points, number of VLRs, point format, record length and
+# 32-bit number of points.
 _SIZES_AT, _START_SIZES = 94, struct.Struct("<HIIBHI")
-# Where it has the minor version, the number of VLRs, and the 32-bit numbers of points.
+# Positions in it of the minor version, the number of VLRs, and the 32-bit numbers of points.
 _MINOR_AT, _VLRS_AT, _OLD_COUNTS_AT = 25, 100, 107
-# Where it has the system that made the points, and the date.
+# Bytes of the system that recorded the points, and of the date.
 _SYSTEM, _DATE = slice(26, 58), slice(90, 94)
-# Numbers of points by return, which are counted anew; laspy 2.5 has 32 bits for each.
+# Bytes of the numbers of points by return, which are counted anew; laspy 2.5 has 32 bits for each.
 _OLD_RETURNS, _RETURNS = slice(111, 131), slice(255, 375)
 # Reserved bytes, user id, record id, length and description before the payload of a VLR and of an EVLR.
 _VLR = struct.Struct("<2s16sHH32s")
@@ -111,6 +111,7 @@ class Header:
     count: int = 0
     scale: np.ndarray = field(default_factory=lambda: np.full(3, 0.001))
     offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    #: low, high, (3,): bounds in coordinates of the file
     low: np.ndarray = field(default_factory=lambda: np.zeros(3))
     high: np.ndarray = field(default_factory=lambda: np.zeros(3))
     waveforms_at: int = 0  #: Position of the waveforms in the file, 0 without any
@@ -152,19 +153,19 @@ class Header:
     def las(self) -> Any:
         """Return a new LasHeader of laspy, which has the VLRs as bytes of no known meaning and bounds in steps."""
         lowest = _FIRST_MINOR.get(self.layout.point_format, 4)
-        made = need_laspy().LasHeader(version=f"1.{max(self.minor, lowest)}", point_format=self.layout.las)
-        made.vlrs.clear()
-        made.file_source_id, made.uuid = self.source_id, UUID(bytes_le=self.guid)
-        made.global_encoding.value, made.generating_software = self.encoding, self.software
-        made.partial_reset()
-        made.scales, made.offsets = np.ones(3), np.zeros(3)
-        made.start_of_waveform_data_packet_record = self.waveforms_at
-        made.are_points_compressed, made.extra_header_bytes = self.is_compressed, self.user_bytes
+        las_header = need_laspy().LasHeader(version=f"1.{max(self.minor, lowest)}", point_format=self.layout.las)
+        las_header.vlrs.clear()
+        las_header.file_source_id, las_header.uuid = self.source_id, UUID(bytes_le=self.guid)
+        las_header.global_encoding.value, las_header.generating_software = self.encoding, self.software
+        las_header.partial_reset()
+        las_header.scales, las_header.offsets = np.ones(3), np.zeros(3)
+        las_header.start_of_waveform_data_packet_record = self.waveforms_at
+        las_header.are_points_compressed, las_header.extra_header_bytes = self.is_compressed, self.user_bytes
         with io.BytesIO() as records:
             for record in self.vlrs:
                 record.write(records, extended=False)
-            made.extra_vlr_bytes = records.getvalue() + self.gap
-        return made
+            las_header.extra_vlr_bytes = records.getvalue() + self.gap
+        return las_header
 
     def count_in(self, las: Any, points: np.ndarray) -> None:
         """Count ``points`` into laspy's header ``las``, in a third of the time of its own ``grow``."""

@@ -16,7 +16,8 @@ from .header import Header, read_header, truncated
 from .laspy_library import explained, need_laspy
 from .laz import POINTS_PER_CHUNK, has_variable_chunks, open_chunks, open_laz, writing_backend
 
-# A multiple of the LAZ chunk, so that every call decompresses whole chunks, in well under a second.
+# Points that are read or written at once. A multiple of the LAZ chunk, so that every call decompresses whole chunks, in
+# well under a second.
 AT_ONCE = 10 * POINTS_PER_CHUNK
 
 # Points that are all alike come to 5,500 bytes per compressed byte in chunks of the usual size; nothing sound has more.
@@ -34,7 +35,7 @@ def open_header(path: Path) -> Header:
     ValueError
         If there are no points, or more are promised than the file can hold.
     """
-    header = _held_header(path)
+    header = _checked_header(path)
     if header.count == 0:
         raise ValueError(f"{path.name} has no points; choose another file.")
     return header
@@ -52,7 +53,7 @@ def open_headers(paths: list[Path], monitor: Optional[Monitor] = None) -> tuple[
     """
     if len(paths) == 1:
         return paths, [open_header(paths[0])]
-    headers = [_held_header(path) for path in paths]
+    headers = [_checked_header(path) for path in paths]
     empty = [path for path, header in zip(paths, headers) if header.count == 0]
     if len(empty) == len(paths):
         raise ValueError(f"None of the {len(paths)} tiles, {paths[0].name} and others, has points; choose others.")
@@ -63,7 +64,7 @@ def open_headers(paths: list[Path], monitor: Optional[Monitor] = None) -> tuple[
     return [path for path, _ in found], [header for _, header in found]
 
 
-def _held_header(path: Path) -> Header:
+def _checked_header(path: Path) -> Header:
     """Return the header of a file after its number of points was compared with the size of the file."""
     header = read_header(path)
     left = path.stat().st_size - header.points_at
@@ -176,13 +177,13 @@ def _indexed(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> I
 
 
 def _portions(wanted: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
-    """Return chunks (m,) that are wanted in portions that lie one behind the other and have few enough points."""
+    """Return the wanted chunks (m,) in portions: consecutive in the file, with about ``AT_ONCE`` points at most."""
     if not len(wanted):
         return []
     before = np.cumsum(points[wanted]) - points[wanted]
-    # Neighbors in the file go on counting alike; so do chunks of the same portion of the work.
-    follows = wanted - np.arange(len(wanted))
-    starts = np.union1d(run_starts(follows), run_starts(before // AT_ONCE))
+    # The same for chunks that follow each other in the file.
+    run = wanted - np.arange(len(wanted))
+    starts = np.union1d(run_starts(run), run_starts(before // AT_ONCE))
     return np.split(wanted, starts[1:])
 
 
@@ -257,7 +258,7 @@ def write_points(
     if backend is las.LazBackend.Laszip:
         # laszip put its record before the other VLRs itself.
         stream.flush()
-        made = read_header(Path(stream.name)).vlrs[0]
-        writer.header.vlrs.append(las.vlrs.known.LasZipVlr(made.data))
+        laszip_record = read_header(Path(stream.name)).vlrs[0]
+        writer.header.vlrs.append(las.vlrs.known.LasZipVlr(laszip_record.data))
     header.finish(stream, writer.header)
     monitor.progress(1.0)

@@ -40,7 +40,7 @@ class PlanSegments:
         return np.column_stack([y, -x])
 
     def across(self, step: int) -> np.ndarray:
-        """Return how far (k,), m, the segment before (-1) or after (1) each one of its ring goes across it."""
+        """Return how far (k,), m, the segment before (-1) or after (1) each one in its ring extends square to it."""
         beside = np.arange(len(self)) + step
         for owner in np.unique(self.owner):
             own = np.flatnonzero(self.owner == owner)

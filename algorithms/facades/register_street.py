@@ -135,25 +135,25 @@ def register_street(
         )
     segment_id, _ = extract_facades(reference_xyz, reference_classification, monitor=monitor.part(0, 0.5))
     facades, openings = extract_openings(reference_xyz, segment_id, min_size=min_size, monitor=monitor.part(0.5, 0.9))
-    found = register(facade_segments(facades), outline_segments(footprints), reference_xyz, xyz[is_ground], max_shift)
-    if found is None:
+    result = register(facade_segments(facades), outline_segments(footprints), reference_xyz, xyz[is_ground], max_shift)
+    if result is None:
         monitor.warn(
             "No facade lies on a footprint, so the street scan is not moved; raise the maximum shift, or check that "
             "both clouds show the same buildings."
         )
-        found = Registration(np.zeros(3), float("nan"), float("nan"), 0, 0, 0)
+        result = Registration(np.zeros(3), float("nan"), float("nan"), 0, 0, 0)
     else:
-        monitor.inform(_sentence(found))
+        monitor.inform(_sentence(result))
     monitor.progress(1.0)
-    return _moved(facades, found.shift), _moved(openings, found.shift), _report(found)
+    return _moved(facades, result.shift), _moved(openings, result.shift), _report(result)
 
 
-def _sentence(found: Registration) -> str:
-    """Return what was found, in a sentence."""
-    x, y, z = found.shift
+def _sentence(result: Registration) -> str:
+    """Return the shift and its residual in a sentence."""
+    x, y, z = result.shift
     return (
         f"The street scan is moved by {x:.2f} m eastward, {y:.2f} m northward and {z:.2f} m upward; "
-        f"{found.walls} walls and {found.ends} ends are then off the outlines by {found.residual:.2f} m (rms)."
+        f"{result.walls} walls and {result.ends} ends are then off the outlines by {result.residual:.2f} m (rms)."
     )
 
 
@@ -165,12 +165,12 @@ def _moved(features: LayerFeatures, shift: np.ndarray) -> LayerFeatures:
     return LayerFeatures([[ring + shift for ring in rings] for rings in features.geometries], columns)
 
 
-def _report(found: Registration) -> Report:
+def _report(result: Registration) -> Report:
     """Return the measures and their page."""
-    lengths = (*found.shift.tolist(), found.residual, found.overhang)
-    counts = (found.walls, found.ends, found.ground)
+    lengths = (*result.shift.tolist(), result.residual, result.overhang)
+    counts = (result.walls, result.ends, result.ground)
     values = dict(zip((measure.name for measure in _MEASURES), (*lengths, *counts)))
     shown = [*("undefined" if np.isnan(value) else f"{value:.3f} m" for value in lengths), *map(str, counts)]
     rows = [Row(measure.title, text, _MEANINGS[measure.name]) for measure, text in zip(_MEASURES, shown)]
-    lead = _sentence(found) if found.walls else "No facade lies on a footprint; the street scan is not moved."
+    lead = _sentence(result) if result.walls else "No facade lies on a footprint; the street scan is not moved."
     return Report(values, build_page("Registration of a street scan", lead, {"Shift": rows}, ""))

@@ -15,7 +15,7 @@ from .water_bodies import REACH, water_levels
 # Points of these classes may be water, by their height.
 _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, PointClass.GROUND, PointClass.WATER)
 
-# Points on a level surface lie within this many standard deviations of its level, all but one of 400 points.
+# Points on a level surface lie within this many standard deviations of its level, all but one of 370 points.
 _DEVIATIONS = 3.0
 
 

@@ -10,31 +10,32 @@ from ..geometry.delaunay import triangulate
 from ..geometry.groups import split_groups
 from .roof_planes import RoofPlanes
 
-# Points of two planes are beside each other where a triangle joins them whose side is at most this long (spacings, m).
+# Points of two planes are beside each other where a triangle joins them whose side is at most this long (spacings, or m
+# if that is more).
 _BESIDE_SPACINGS, _BESIDE = 6.0, 2.0
 
 # Planes whose slopes differ by less than this (rise per meter) have no intersection that the points could place.
 _LEAST_TURN = 0.05
 
-# A contact of two planes is at their intersection where this is no farther off than that (spacings, m).
+# Distance (spacings, or m if that is more) up to which a contact of two planes is at their intersection.
 _AT_LINE_SPACINGS, _AT_LINE = 2.0, 0.5
 
 # Contacts that make a line.
 _LEAST_CONTACTS = 3
 
-# How far lines reach beyond their contacts (spacings, m): a cell is cut from side to side anyway.
+# How far lines reach beyond their contacts (spacings, or m if that is more): a cell is cut from side to side anyway.
 _BEYOND_SPACINGS, _BEYOND = 2.0, 0.5
 
 # Lines that turn by less than this (rad) and lie no farther apart (m) are the same.
 _SAME_TURN, _SAME_OFFSET = 0.04, 0.10
 
-# Points no farther than this from a step (m, spacings) locate it.
+# Points no farther than this from a step (spacings, or m if that is more) locate it.
 _NEAR, _NEAR_SPACINGS = 0.6, 2.0
 
 # Walls at least this share of the longest one long give main directions.
 _LONG = 0.5
 
-# Main directions are preferred by this share of the contacts.
+# Factor by which contacts count more along the main directions, and along and across the slopes of the two planes.
 _PREFERENCE = 1.15
 
 
@@ -102,8 +103,8 @@ def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.nda
     side = np.concatenate([mesh.facets[:, [0, 1]], mesh.facets[:, [1, 2]], mesh.facets[:, [2, 0]]])
     side = np.unique(np.sort(side, axis=1), axis=0)
     side = side[label[side[:, 0]] != label[side[:, 1]]]
-    long = np.hypot(*(xy[side[:, 0]] - xy[side[:, 1]]).T)
-    side = side[long <= max(_BESIDE, _BESIDE_SPACINGS * spacing)]
+    length = np.hypot(*(xy[side[:, 0]] - xy[side[:, 1]]).T)
+    side = side[length <= max(_BESIDE, _BESIDE_SPACINGS * spacing)]
     pair = np.sort(label[side], axis=1)
     return pair[:, 0], pair[:, 1], xy[side].mean(axis=1)
 
@@ -134,13 +135,14 @@ class _Border:
 
     def steps(self, main: np.ndarray) -> list[Piece]:
         """Return lines along the contacts where one plane is above the other."""
-        left = self.positions[~self.at_line]
+        remaining = self.positions[~self.at_line]
         directions, weight = self._directions(main)
         normals = np.column_stack([-directions[:, 1], directions[:, 0]])
         found: list[Piece] = []
+        # Width (m) of the strip whose contacts are of one step.
         width = max(0.3, self.spacing)
-        while len(left) >= _LEAST_CONTACTS:
-            offset = normals @ left.T
+        while len(remaining) >= _LEAST_CONTACTS:
+            offset = normals @ remaining.T
             order = np.sort(offset, axis=1)
             # Rows far apart make one ascending array of all directions.
             apart = (np.ptp(order) + width + 1.0) * np.arange(len(order))[:, None]
@@ -152,9 +154,9 @@ class _Border:
             if chosen.sum() < _LEAST_CONTACTS:
                 break
             direction, normal = directions[best], normals[best]
-            position = normal * self._between(normal, direction, left[chosen])
-            found.append(self._piece(position, direction, left[chosen]))
-            left = left[~chosen]
+            position = normal * self._between(normal, direction, remaining[chosen])
+            found.append(self._piece(position, direction, remaining[chosen]))
+            remaining = remaining[~chosen]
         return found
 
     def _between(self, normal: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> float:

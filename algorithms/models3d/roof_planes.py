@@ -14,7 +14,8 @@ from ..segmentation.least_squares_planes import planes_of
 # Points of the neighborhood whose plane shows which way a roof faces: two rings around a point.
 _NEIGHBORS = 12
 
-# Points of a plane face the same way to this (°); normals of a dozen points with 3 cm of noise vary by less than half.
+# Largest angle (°) between the normal of a point and that of its plane; normals of a dozen points with 3 cm of noise
+# vary by less than half.
 _FACING = 25.0
 
 # Share of a plane's points that a round of growth must add before the plane is fitted anew.
@@ -130,7 +131,10 @@ class _Growth:
         self.facing = float(np.cos(np.deg2rad(_FACING)))
 
     def all_planes(self, off_plane: np.ndarray, min_points: int) -> np.ndarray:
-        """Return the plane of each point (n,), -1 for none; seeds in the order of their deviation ``off_plane``."""
+        """Return the plane of each point (n,), -1 for none.
+
+        Seeds are tried in the order of ``off_plane`` (n,), m²: the variance of their neighborhood off its plane.
+        """
         label = np.full(len(self.xyz), -1)
         usable = (off_plane < self.tolerance**2) & (self.normal[:, 2] >= self.least_upward)
         tried, count = ~usable, 0

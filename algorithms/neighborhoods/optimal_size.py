@@ -10,7 +10,7 @@ import numpy as np
 from .covariance import PAIRS, Nearest, Shapes, full_matrices, nearest_offsets
 from .nearest_blocks import EQUAL_SQUARES, reach_of_ties
 
-# Numbers in each array over all scales: as large as lets a handful of them stay in the second-level cache.
+# Most values of an array over all scales in one batch: a handful of such arrays fit into the second-level cache.
 _CACHED = 16_000
 
 # Entropies closer than this are equal but for rounding; of equal ones the smallest neighborhood is taken.
@@ -45,14 +45,14 @@ class Optimal:
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the best neighborhoods of the points ``rows``."""
         # One neighbor more than the largest scale shows whether the tie at its end is complete.
-        made, is_cut = self._among(columns, tree, rows, self.high + 1, extents)
+        best, is_cut = self._among(columns, tree, rows, self.high + 1, extents)
         cut = np.flatnonzero(is_cut)
         if len(cut):
             mended, _ = self._among(columns, tree, rows[cut], reach_of_ties(self.high), extents)
-            for whole, part in zip(vars(made).values(), vars(mended).values()):
+            for whole, part in zip(vars(best).values(), vars(mended).values()):
                 if len(whole):
                     whole[cut] = part
-        return made
+        return best
 
     def _among(
         self, columns: np.ndarray, tree: Any, rows: np.ndarray, count: int, extents: bool
@@ -71,9 +71,9 @@ class Optimal:
         return Shapes(*shapes), (ends == count) & (count < columns.shape[1])
 
     def _best(self, offsets: list, extents: bool) -> tuple:
-        """Return the :class:`Shapes` of the best of the offsets (m, k) in x, y and z, nearest first, as a row.
+        """Return the fields of the best :class:`Shapes`, and the end (m,) of the tie at the largest scale, in points.
 
-        The last column has the end (m,) of the tie at the largest scale, in points.
+        ``offsets`` are those (m, k) in x, y and z, m, nearest first.
         """
         x, y, z = offsets = [np.ascontiguousarray(offset.T) for offset in offsets]
         most = min(self.high, len(x))
@@ -82,12 +82,13 @@ class Optimal:
         covariances = nested_covariances(offsets, scales, ties)
         best = _first_least(eigenentropies(covariances))
         every = np.arange(x.shape[1])
-        made, counts, end = covariances[:, best, every].T, scales[best], ties.end(np.full(len(every), most))
+        best_covariances, counts, end = covariances[:, best, every].T, scales[best], ties.end(np.full(len(every), most))
         if not extents:
-            return made, counts, np.empty(0), np.empty(0), end
+            return best_covariances, counts, np.empty(0), np.empty(0), end
         last = ties.end(counts) - 1
         ranges = np.maximum.accumulate(z) - np.minimum.accumulate(z)
-        return made, counts, ranges[last, every], np.sqrt(np.maximum.accumulate(x * x + y * y)[last, every]), end
+        widths = np.sqrt(np.maximum.accumulate(x * x + y * y)[last, every])
+        return best_covariances, counts, ranges[last, every], widths, end
 
 
 class Ties:

@@ -11,7 +11,8 @@ import numpy as np
 
 from ..stage import Monitor, Param, stage
 
-# A matrix with numbers of four decimals or more is within this of a rotation; it is then taken as the nearest one.
+# Largest deviation of a matrix times its transpose from the identity: that of a rotation with four decimals. The
+# nearest rotation is taken.
 _RIGID = 2e-4
 
 # The user is warned of points that the nearest rotation puts farther (m) from where the matrix itself would.
@@ -20,7 +21,7 @@ _LEAST_WARNED = 0.001
 # Clouds whose boxes are farther apart (m) are likely not of one site, or one of them is not where it should be.
 _APART = 1.0
 
-# A file of numbers is never longer (bytes).
+# A file of numbers is never longer (characters).
 _LONGEST_FILE = 10_000
 
 
@@ -226,14 +227,14 @@ def _nearest_rotation(name: str, matrix: np.ndarray) -> np.ndarray:
 
 def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor) -> np.ndarray:
     """Return a cloud (n, 3) in its new position, and log how far it was moved."""
-    made = transform(xyz)
+    moved = transform(xyz)
     middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
     shift = float(np.linalg.norm(transform(middle) - middle))
-    counts = {
+    measures = {
         f"rotation_of_cloud_{number}_in_degrees": transform.angle,
         f"shift_of_the_middle_of_cloud_{number}_in_meters": shift,
     }
-    monitor.resolved(**counts)
+    monitor.resolved(**measures)
     farthest = np.abs(xyz).max(axis=0)
     off = float(np.linalg.norm(np.abs(transform.rotation - transform.given) @ farthest))
     if off > _LEAST_WARNED:
@@ -241,7 +242,7 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
             f"The matrix of cloud {number} has too few decimals for its coordinates: the nearest rotation puts points "
             f"up to {off:.3g} m elsewhere."
         )
-    return made
+    return moved
 
 
 def _warn_of_gaps(clouds: list[np.ndarray], monitor: Monitor) -> None:

@@ -206,17 +206,18 @@ def rates(predicted: np.ndarray, true: np.ndarray) -> dict[str, float]:
     """Return completeness, correctness, F and quality (percent, NaN of nothing), and what they are counted from."""
     hits, misses, false = (int(mask.sum()) for mask in (predicted & true, ~predicted & true, predicted & ~true))
     return {
-        "completeness": _share(hits, hits + misses),
-        "correctness": _share(hits, hits + false),
-        "f": _share(2 * hits, 2 * hits + misses + false),
-        "quality": _share(hits, hits + misses + false),
+        "completeness": _percentage(hits, hits + misses),
+        "correctness": _percentage(hits, hits + false),
+        "f": _percentage(2 * hits, 2 * hits + misses + false),
+        "quality": _percentage(hits, hits + misses + false),
         "hits": hits,
         "misses": misses,
         "false": false,
     }
 
 
-def _share(part: float, whole: float) -> float:
+def _percentage(part: float, whole: float) -> float:
+    """Return a part in percent of the whole, NaN of nothing."""
     return 100.0 * part / whole if whole else float("nan")
 
 
@@ -248,11 +249,11 @@ def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
     """Return the share of the objects of each side that the other one covers by half, and their numbers."""
     found, true = int(reference.agreed.sum()), int(reference.is_large.sum())
     correct, predicted = int(result.agreed.sum()), int(result.is_large.sum())
-    completeness, correctness = _share(found, true), _share(correct, predicted)
+    completeness, correctness = _percentage(found, true), _percentage(correct, predicted)
     return {
         "objects_completeness": completeness,
         "objects_correctness": correctness,
-        "objects_f": _share(2 * completeness * correctness / 100, completeness + correctness),
+        "objects_f": _percentage(2 * completeness * correctness / 100, completeness + correctness),
         "objects_true": true,
         "objects_predicted": predicted,
         "objects_misses": true - found,

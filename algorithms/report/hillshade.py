@@ -10,7 +10,7 @@ from .page import svg_image
 # Cells along the longest side of a map: as many as pages have pixels for it.
 CELLS = 900
 
-# Azimuth and altitude of the light (°), as in most hillshades.
+# Azimuth and altitude of the light (radians), as in most hillshades.
 _AZIMUTH, _ALTITUDE = np.deg2rad(315.0), np.deg2rad(45.0)
 
 # Colors that a hillshade has.

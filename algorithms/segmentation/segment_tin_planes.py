@@ -16,7 +16,8 @@ from ..stage import Param, stage
 from .best_pairs import common_deviation, merge_best_pairs
 from .least_squares_planes import Planes
 
-# Edges that are longer lie across gaps, in point spacings: of evenly spread points one edge in a thousand is longer.
+# Longest edge (point spacings) of a triangle that does not lie across a gap: of evenly spread points one
+# edge in a thousand is longer.
 _EDGE_SPACINGS = 4.0
 
 # Distance of the two parts from their common plane (standard deviations of points): that of a triangle has the full

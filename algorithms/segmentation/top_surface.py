@@ -65,7 +65,10 @@ class TopSurface:
         self.height = np.where(is_near, self.height[tuple(nearest)], 0.0)
 
     def on_top(self, xyz: np.ndarray) -> np.ndarray:
-        """Return which of the points (n,) are of the surface: a slope of 45° falls by the side of a cell within it."""
+        """Return which points (n,), given as to the constructor, are of the surface.
+
+        They lie at most the side of a cell below the highest point of their cell, as a slope of 45° does.
+        """
         return xyz[:, 2] >= self.elevation[self.cell] - self.size
 
 

@@ -74,28 +74,28 @@ def joined(found: list[Found], xyz: np.ndarray, noise: float, spacing: float, ma
     """
     if max_gap <= 0 or len(found) < 2:
         return found
-    left: dict[int, Found] = dict(enumerate(found))
+    remaining: dict[int, Found] = dict(enumerate(found))
     beside = _neighbors(found, max_gap)
     pairs = [(one, other) for one, others in beside.items() for other in others if one < other]
-    waiting = [(gap, *pair) for pair in pairs if (gap := _gap(*(left[one] for one in pair))) <= max_gap]
+    waiting = [(gap, *pair) for pair in pairs if (gap := _gap(*(remaining[one] for one in pair))) <= max_gap]
     heapq.heapify(waiting)
     number = len(found)
     while waiting:
         _, one, other = heapq.heappop(waiting)
-        if one not in left or other not in left:
+        if one not in remaining or other not in remaining:
             continue
-        whole = _as_one(left[one], left[other], xyz, noise, spacing)
+        whole = _as_one(remaining[one], remaining[other], xyz, noise, spacing)
         if whole is None:
             continue
         beside[number] = (beside[one] | beside[other]) - {one, other}
         for near in beside[number]:
             beside[near].add(number)
-            if near in left and (gap := _gap(left[near], whole)) <= max_gap:
+            if near in remaining and (gap := _gap(remaining[near], whole)) <= max_gap:
                 heapq.heappush(waiting, (gap, near, number))
-        del left[one], left[other]
-        left[number] = whole
+        del remaining[one], remaining[other]
+        remaining[number] = whole
         number += 1
-    return list(left.values())
+    return list(remaining.values())
 
 
 def _neighbors(found: list[Found], max_gap: float) -> dict[int, set[int]]:
@@ -126,8 +126,8 @@ def _gap(one: Found, other: Found) -> float:
     if not _are_alike(one, other):
         return np.inf
     gaps = []
-    for piece, of_other in ((one, other), (other, one)):
-        offset = of_other.ends - piece.ends[0]
+    for piece, other_piece in ((one, other), (other, one)):
+        offset = other_piece.ends - piece.ends[0]
         along = offset @ piece.cylinder.axis
         beside = np.sqrt(np.maximum((offset**2).sum(axis=1) - along**2, 0))
         if beside.min() > _BESIDE * piece.cylinder.radius:
@@ -157,6 +157,7 @@ def _as_one(one: Found, other: Found, xyz: np.ndarray, noise: float, spacing: fl
     for piece in (one, other):
         distance = cylinder.local(xyz[piece.points])[1] - cylinder.radius
         more = float((distance**2).mean()) - piece.rms**2
+        # Twice what five unknowns explain.
         by_chance = 2 * 5 * piece.rms**2 / len(piece.points)
         if more > (_MOST_APART * noise) ** 2 + by_chance:
             return None

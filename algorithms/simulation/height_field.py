@@ -15,7 +15,8 @@ from .solids import Solid
 # Side of a cell, m: finer than the points of a drone's cloud lie apart.
 CELL = 0.1
 
-# Unevenness of the ground (gardens, kerbs, ruts): lengths (m), and their shares of the whole.
+# Unevenness of the ground (gardens, kerbs, ruts): wavelengths (m), and the share of each in the standard deviation.
+# The squares of these add up to about one.
 _UNEVEN = ((2.5, 0.25), (8.0, 0.97))
 
 # Lumps of crowns: their width and height (m).
@@ -29,7 +30,7 @@ class HeightField:
     #: ground, top, (rows, columns): elevation of the ground and of the visible surface, m
     ground: np.ndarray
     top: np.ndarray
-    #: classification, object_id, (rows, columns): what it is
+    #: classification, object_id, (rows, columns): class and object of the visible surface
     classification: np.ndarray
     object_id: np.ndarray
 

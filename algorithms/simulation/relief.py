@@ -105,6 +105,7 @@ class Relief:
         """Height (m) of steep steps, whose treads fall slightly, so that the mean slope stays the same."""
         if not self.terrace_height:
             return 0.0
+        # Per meter, the waves of the hills rise by at most 0.04 of the height of these.
         riser = self.terrace_height / (min(1.0, _STEEPEST - self.gradient - 0.04 * self.hills))
         at = np.mod(rise, _TERRACE_LENGTH)
         return self.terrace_height * np.minimum(at / riser, (_TERRACE_LENGTH - at) / (_TERRACE_LENGTH - riser))

@@ -19,7 +19,7 @@ from .village_layout import MAX_HOMES, Village, VillagePlan, build_village
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
 
-# Where matching fails, nothing is found within this distance (m); these areas are looked for in cells of that size.
+# Radius (m) of the holes where matching fails; their centers are drawn from the points in cells of that size.
 _HOLE = 0.5
 
 _CREATED = ("xyz", "classification", "return_number", "number_of_returns", "red", "green", "blue", "segment_id")
@@ -228,10 +228,10 @@ _LEAVES = (70, 96, 48)
 # Brightness of cars.
 _CARS = (150, 152, 158)
 
-# Brightness of walls, one each.
+# Brightness of walls; each house has one of these.
 _WALLS = np.array([(226, 218, 200), (212, 190, 140), (190, 186, 180), (205, 160, 130)])
 
-# Brightness of roofs, one each.
+# Brightness of roofs; each house has one of these.
 _ROOFS = np.array([(150, 70, 50), (110, 60, 50), (95, 95, 100), (130, 105, 90)])
 
 

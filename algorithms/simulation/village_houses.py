@@ -24,7 +24,10 @@ class Home(Site):
         self.roof_id = scene.new_id()
 
     def slab(self, rect: Rect, tops: np.ndarray, under: np.ndarray) -> Solid:
-        """Return a piece of roof, between its top planes and ``under``, a plane below the first one."""
+        """Return a piece of roof, between its ``tops`` (k, 3) and ``under`` (3,), which lies below the first of them.
+
+        Planes are z = a x + b y + c, by a, b and c.
+        """
         a, b, c = under
         lowest = float((rect.corners() @ [a, b]).min() + c)
         return Solid(rect, tops, lowest, PointClass.BUILDING, self.roof_id, under)

@@ -61,5 +61,7 @@ def _check_coordinates(name: str, array: np.ndarray) -> None:
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name} must be of shape (n, 3), got {array.shape}.")
     if array.dtype.kind == "f" and not np.isfinite(array).all():
-        bad = int((~np.isfinite(array).all(axis=1)).sum())
-        raise ValueError(f"{bad} of {len(array)} points have coordinates that are not finite; remove them first.")
+        n_not_finite = int((~np.isfinite(array).all(axis=1)).sum())
+        raise ValueError(
+            f"{n_not_finite} of {len(array)} points have coordinates that are not finite; remove them first."
+        )

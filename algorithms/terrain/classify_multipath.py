@@ -19,7 +19,8 @@ from .tin_densification import JoinRules, grow
 # Least side (m) of the cells whose ground points make the surface, as of the ground filter.
 _LEAST_CELL = 1.0
 
-# Distance (m) in plan from such a group within which points are looked at again: the surface that it drew down.
+# Distance (m) in plan from a group of multipath points within which points are classified again: it drew the surface
+# down there.
 _REACH = 10.0
 
 
@@ -94,23 +95,23 @@ def classify_multipath(
     usable = in_plan_order(xyz, usable_points(xyz, classification), sampling.spacing)
     points, classes = xyz[usable], classification[usable].copy()
     is_last = last_returns(return_number, number_of_returns, usable)
-    scale = max(_LEAST_CELL, sampling.spacing)
+    cell_size = max(_LEAST_CELL, sampling.spacing)
     is_ground = (classes == PointClass.GROUND) & is_last
-    lowest = lowest_points(points[is_ground], scale)
+    lowest = lowest_points(points[is_ground], cell_size)
     seeds = np.flatnonzero(is_ground)[lowest.points(lowest.index >= 0)]
     least = sampling.height_resolution
-    rules = JoinRules(GROUND.angle, None, GROUND.bend * sampling.spacing, 2 * scale, least)
+    rules = JoinRules(GROUND.angle, None, GROUND.bend * sampling.spacing, 2 * cell_size, least)
     surface, _, _ = grow(points, seeds, is_ground, rules, monitor.part(0, 0.5))
     low = false_pits(points, surface.is_node, surface.above(), is_last, sampling.spacing, monitor.part(0.5, 0.7))
     if len(low):
         # The surface that such a group drew down is examined again.
-        is_ground, _ = sweep(surface.without(low, monitor.part(0.7, 0.9)), None, scale, sampling)
+        is_ground, _ = sweep(surface.without(low, monitor.part(0.7, 0.9)), None, cell_size, sampling)
         near = np.isfinite(spatial.cKDTree(points[low, :2]).query(points[:, :2], distance_upper_bound=_REACH)[0])
         undecided = near & np.isin(classes, (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, PointClass.GROUND))
         classes[undecided] = np.where(is_ground[undecided], PointClass.GROUND, PointClass.UNCLASSIFIED)
         classes[low] = PointClass.LOW_NOISE
     monitor.resolved(low_noise=len(low))
     monitor.progress(1.0)
-    made = classification.astype(np.uint8)
-    made[usable] = classes
-    return made
+    result = classification.astype(np.uint8)
+    result[usable] = classes
+    return result

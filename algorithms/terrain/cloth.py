@@ -259,12 +259,12 @@ class Cloth:
 
     def _draw(self, front: _Front) -> None:
         """Draw the particles of a front and their neighbors together, neighbor after neighbor."""
-        state, here = self._state, self._order.own(front)
-        own, off, part = (room[: here.stop - here.start] for room in (self._own, self._off, self._part))
-        movable, draw = state.movable[here], state.draw[here]
-        own[:] = state.height[here]
+        state, where = self._state, self._order.own(front)
+        own, off, part = (array[: where.stop - where.start] for array in (self._own, self._off, self._part))
+        movable, draw = state.movable[where], state.draw[where]
+        own[:] = state.height[where]
         for shift in self._shifts[front.phase][front.first_diagonal % _STEP_LAG]:
-            beside = slice(here.start + shift, here.stop + shift)
+            beside = slice(where.start + shift, where.stop + shift)
             other = state.height[beside]
             np.subtract(other, own, off)
             np.multiply(state.draw[beside], movable, part)
@@ -273,7 +273,7 @@ class Cloth:
             np.multiply(off, state.movable[beside], off)
             np.multiply(off, draw, off)
             np.subtract(other, off, other)
-        state.height[here] = own
+        state.height[where] = own
 
     def _land_and_fall(self, front: _Front, motion: np.ndarray) -> None:
         """Let particles land, note how far they moved in their steps, and fall on, unless they made the last one."""

@@ -41,9 +41,9 @@ def join_numbers(
 ) -> list[dict[str, np.ndarray]]:
     """Return for each block and numbered dimension what its numbers become: an array that they are positions in.
 
-    A segment of one block and a segment of another are one if a record just outside the first block has the number of
-    the first there and of the second in its own block. Numbers go from 1 without gaps, in the order of the blocks;
-    0 stays 0, and a number that no point of any block has becomes 0.
+    Segments of two blocks are one if they have a record in common that lies just outside one of the blocks: both
+    worked on it, and each gave it the number of its own segment. Numbers go from 1 without gaps, in the order of the
+    blocks; 0 stays 0, and a number that no point of any block has becomes 0.
 
     Parameters
     ----------

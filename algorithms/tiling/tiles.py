@@ -64,7 +64,7 @@ def write_tile(task: TileTask) -> Optional[Path]:
         return None
     monitor = StoppableMonitor(task.stop)
     cloud = _points_of(task, position, monitor)
-    stays, values, worked_on = _found(task, position, len(cloud))
+    stays, values, worked_on = _results_of_blocks(task, position, len(cloud))
     if worked_on < len(cloud):
         raise ValueError(points_outside(task.source, len(cloud) - worked_on))
     rows = np.flatnonzero(stays)
@@ -81,7 +81,9 @@ def write_tile(task: TileTask) -> Optional[Path]:
     return task.target
 
 
-def _found(task: TileTask, position: Optional[np.ndarray], count: int) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
+def _results_of_blocks(
+    task: TileTask, position: Optional[np.ndarray], count: int
+) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
     """Return which points (n,) of a tile stay, what blocks wrote for them, and how many of them blocks have."""
     stays = np.ones(count, bool)
     values: dict[str, np.ndarray] = {}
@@ -98,14 +100,14 @@ def _found(task: TileTask, position: Optional[np.ndarray], count: int) -> tuple[
         with np.load(numbers, allow_pickle=False) as final:
             for name, of_block in result.dimensions.items():
                 number = REFERRING.get(name, name)
-                found = of_block[rows]
+                own_values = of_block[rows]
                 if number in final.files:
-                    # What no block keeps has no number.
-                    found = final[number][np.where(found < len(final[number]), found, 0)]
+                    # Numbers beyond the final ones are of segments that no block keeps: they become 0.
+                    own_values = final[number][np.where(own_values < len(final[number]), own_values, 0)]
                 if name not in values:
                     # A block that lacks a dimension of an earlier run leaves it undefined.
-                    values[name] = np.full((count, *found.shape[1:]), DIMENSIONS[name].undefined, found.dtype)
-                values[name][own] = found
+                    values[name] = np.full((count, *own_values.shape[1:]), DIMENSIONS[name].undefined, own_values.dtype)
+                values[name][own] = own_values
     return stays, values, worked_on
 
 
