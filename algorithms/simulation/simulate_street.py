@@ -179,11 +179,14 @@ def simulate_street(
     True
     """
     settings = LineScan(line_rate, angular_step, max_range, range_noise, seed)
-    remedy = "shorten it, lower the line rate, or take a larger speed or angular step"
-    refuse_many_pulses(pulses_of(length, speed, settings), f"A street of {length:g} m", remedy)
+    if view == "vehicle":
+        remedy = "shorten it, lower the line rate, or take a larger speed or angular step"
+        refuse_many_pulses(pulses_of(length, speed, settings), f"A street of {length:g} m", remedy)
     plan = StreetPlan(length, width, slope, clutter, stoops, unevenness, houses, seed)
     scene, truth, street = build_street(plan)
     if view == "airplane":
+        site = f"The site of {scene.size:g} m with {density:g} pulses per m²"
+        refuse_many_pulses(density * scene.size**2, site, "shorten the street or lower the pulse density")
         made = scan(scene, Survey(density, range_noise=range_noise, seed=seed), monitor)
     else:
         made = _drive(scene, street, speed).scanned(scene, settings, monitor)

@@ -112,3 +112,5 @@ def test_the_same_seed_gives_the_same_street_and_another_another():
 def test_too_many_pulses_are_refused():
     with pytest.raises(ValueError, match=r"has \d+ million pulses, more than 50 million; shorten it"):
         simulate_street(length=2000.0, speed=0.5)
+    with pytest.raises(ValueError, match=r"has \d+ million pulses, more than 50 million; shorten the street or lower"):
+        simulate_street(length=2000.0, view="airplane", density=100.0)
