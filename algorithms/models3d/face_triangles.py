@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 
 import numpy as np
@@ -102,14 +103,10 @@ def _is_ear(ring: list[int], i: int, positions: dict) -> bool:
 def _bridged(ring: list[int], hole: list[int], positions: dict) -> list[int]:
     """Return one ring of a ring and a hole in it, joined along a line that crosses neither."""
     start = max(range(len(hole)), key=lambda i: positions[hole[i]])
-    order = sorted(range(len(ring)), key=lambda i: _distance(positions[ring[i]], positions[hole[start]]))
+    order = sorted(range(len(ring)), key=lambda i: math.dist(positions[ring[i]], positions[hole[start]]))
     # Only a hole that touches the ring is seen from none of its vertices, or one that rounding put there.
     i = next((i for i in order if _sees(ring, i, hole, positions[hole[start]], positions)), order[0])
     return [*ring[: i + 1], *hole[start:], *hole[: start + 1], *ring[i:]]
-
-
-def _distance(a, b) -> float:
-    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
 
 
 def _sees(ring: list[int], i: int, hole: list[int], position, positions: dict) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.delaunay import triangulate
-from ..geometry.groups import split_groups
+from ..geometry.groups import members, split_groups
 from .roof_planes import RoofPlanes
 
 # Points of two planes are beside each other where a triangle joins them whose side is at most this long (spacings, or m
@@ -75,12 +75,9 @@ def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: f
     points = split_groups(planes.label, len(planes))
     points = [xyz[rows, :2] for rows in points]
     meeting, stepping = [], []
-    order = np.lexsort((other, one))
-    one, other, middle = one[order], other[order], middle[order]
-    starts = np.flatnonzero(np.r_[True, (one[1:] != one[:-1]) | (other[1:] != other[:-1])]) if len(one) else []
-    for begin, end in zip(starts, [*starts[1:], len(one)]):
-        pair = int(one[begin]), int(other[begin])
-        border = _Border(planes, pair, middle[begin:end], [points[plane] for plane in pair], spacing)
+    for number, rows in members(one * len(planes) + other + 1).items():
+        pair = divmod(number - 1, len(planes))
+        border = _Border(planes, pair, middle[rows], [points[plane] for plane in pair], spacing)
         meeting += border.intersection()
         stepping += border.steps(main)
     return _without_doubles(sorted(meeting, key=lambda p: -p.weight) + sorted(stepping, key=lambda p: -p.weight))
@@ -181,15 +178,12 @@ class _Border:
 
     def _directions(self, main: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return directions (k, 2) that steps may have, and how much they are preferred (k,)."""
-        found, weight = list(main), [_PREFERENCE] * len(main)
-        for slope in self.slopes:
-            size = np.hypot(*slope)
-            if size > _LEAST_TURN:
-                found += [slope / size, np.array([-slope[1], slope[0]]) / size]
-                weight += [_PREFERENCE, _PREFERENCE]
-        found += [np.array([np.cos(a), np.sin(a)]) for a in np.deg2rad(np.arange(0, 180, 15))]
-        weight += [1.0] * 12
-        return np.array(found), np.array(weight)
+        slopes = self.slopes[np.hypot(*self.slopes.T) > _LEAST_TURN]
+        slopes = slopes / np.hypot(*slopes.T)[:, None]
+        preferred = np.concatenate([main, slopes, np.column_stack([-slopes[:, 1], slopes[:, 0]])])
+        fan = np.deg2rad(np.arange(0, 180, 15))
+        found = np.concatenate([preferred, np.column_stack([np.cos(fan), np.sin(fan)])])
+        return found, np.repeat([_PREFERENCE, 1.0], [len(preferred), len(fan)])
 
     def _piece(self, position: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> Piece:
         along = (contacts - position) @ direction

@@ -12,22 +12,17 @@ from .solids import WALL, Solid
 
 WINDOW, DOOR = "window", "door"
 
+# Wall and opening face the same way within this angle (cosine: 15°).
+_SAME_WAY = 0.966
 
-@dataclass(frozen=True)
-class _Rules:
-    """When an opening is one of a wall."""
+# Distance (m) of the middle of an opening from the plane of its wall, at most.
+_OFF = 0.5
 
-    # Wall and opening face the same way within this angle (cosine: 15°).
-    same_way: float = 0.966
-    # Distance (m) of the middle of an opening from the plane of its wall, at most.
-    off: float = 0.5
-    # Distance (m) that stays between an opening and the edge of its wall: thinner strips make no sound triangles.
-    margin: float = 0.03
-    # An opening is cut to its wall if at least this share of its area remains: most of it lies in that wall.
-    kept: float = 0.5
+# Distance (m) that stays between an opening and the edge of its wall: thinner strips make no sound triangles.
+_MARGIN = 0.03
 
-
-_RULES = _Rules()
+# An opening is cut to its wall if at least this share of its area remains: most of it lies in that wall.
+_KEPT = 0.5
 
 
 @dataclass(frozen=True)
@@ -95,9 +90,9 @@ def _best_wall(walls: list[_Wall], opening: Opening) -> tuple:
     off = [abs(float((middle - wall.origin) @ wall.normal)) for wall in walls]
     for number in np.argsort(off):
         wall = walls[number]
-        if off[number] > _RULES.off:
+        if off[number] > _OFF:
             break
-        if normal @ wall.normal >= _RULES.same_way:
+        if normal @ wall.normal >= _SAME_WAY:
             flat = _cut_back(wall.rings, wall.flat(opening.ring))
             if flat is not None:
                 return wall, flat
@@ -107,10 +102,10 @@ def _best_wall(walls: list[_Wall], opening: Opening) -> tuple:
 def _cut_back(rings: list[np.ndarray], flat: np.ndarray):
     """Return the open ring (m, 2) of an opening within the rings of a wall; None if it doesn't lie in it."""
     outer = rings[0]
-    low, high = outer.min(axis=0) + _RULES.margin, outer.max(axis=0) - _RULES.margin
+    low, high = outer.min(axis=0) + _MARGIN, outer.max(axis=0) - _MARGIN
     inner = np.clip(flat, low, high)
     kept = np.ptp(inner, axis=0).prod() / max(np.ptp(flat, axis=0).prod(), 1e-9)
-    if kept < _RULES.kept or not are_inside(inner, outer).all():
+    if kept < _KEPT or not are_inside(inner, outer).all():
         return None
     closed = np.concatenate([inner[::-1], inner[-1:]])
     return inner if is_valid([outer, *rings[1:], closed]) else None

@@ -129,7 +129,8 @@ class _Builder:
         pairs = []
         for (a, b), i in owner.items():
             j = owner.get((b, a))
-            if j is not None and j > i and self._is_upright(a, b) and self._are_in_line(walls[i], walls[j]):
+            is_upright = self.levels.positions[a][:2] == self.levels.positions[b][:2]
+            if j is not None and j > i and is_upright and self._are_in_line(walls[i], walls[j]):
                 pairs.append((i, j))
         members: dict[int, list[int]] = defaultdict(list)
         for i, group in enumerate(groups_of(pairs, len(walls))):
@@ -153,12 +154,9 @@ class _Builder:
 
     def _are_in_line(self, one: _Wall, other: _Wall) -> bool:
         """Return whether two walls face the same way in one line."""
-        (ax, ay), (bx, by) = (self._direction(wall) for wall in (one, other))
+        plan = self.levels.plan
+        (ax, ay), (bx, by) = (np.subtract(plan[wall.end], plan[wall.start]).tolist() for wall in (one, other))
         return ax * bx + ay * by > 0 and self._is_straight([one, other])
-
-    def _direction(self, wall: _Wall) -> tuple[float, float]:
-        (x0, y0), (x1, y1) = self.levels.plan[wall.start], self.levels.plan[wall.end]
-        return x1 - x0, y1 - y0
 
     def _is_straight(self, walls: list[_Wall]) -> bool:
         """Return whether the ends of walls lie in one line."""
@@ -169,9 +167,6 @@ class _Builder:
         x, y = x1 - x0, y1 - y0
         most = _STRAIGHT * max(math.hypot(x, y), 1e-9)
         return all(abs((px - x0) * y - (py - y0) * x) <= most for px, py in xy)
-
-    def _is_upright(self, a: int, b: int) -> bool:
-        return self.levels.positions[a][:2] == self.levels.positions[b][:2]
 
     def _polygons(self, rings: list[Ring], upward: bool) -> list[list[Ring]]:
         """Return the polygons that rings make, each exterior first; exteriors are clockwise unless ``upward``."""

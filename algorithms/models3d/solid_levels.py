@@ -239,11 +239,10 @@ class Levels:
         """Return the vertices where more than two walls would meet in an edge."""
         # Four changes between up and down need four cells.
         some = [v for v, planes in self.around.items() if len(planes) > 1 and len(self._spokes[v]) >= _CROWD]
-        return [vertex for vertex in some if self._is_crowded(vertex)]
+        return [vertex for vertex in some if turns_around(self._heights_around(vertex)) >= _CROWD]
 
-    def _is_crowded(self, vertex: int) -> bool:
-        planes = [self.label[cell] for cell in self.cells_around(vertex)]
-        return turns_around([self.height(vertex, plane) for plane in planes]) >= _CROWD
+    def _heights_around(self, vertex: int) -> list[float]:
+        return [self.height(vertex, self.label[cell]) for cell in self.cells_around(vertex)]
 
     def cells_around(self, vertex: int) -> list[int]:
         """Return the cells around a vertex within the rectangle, counterclockwise."""
