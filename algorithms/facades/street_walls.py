@@ -129,7 +129,7 @@ def _closes(after: dict[int, int], one: int, other: int) -> bool:
 def _pieces(chains: list[np.ndarray], rings: list[_Ring]) -> list[list[_Piece]]:
     """Return the parts of chains that lie along each ring, in their order along it."""
     pieces: list[list[_Piece]] = [[] for _ in rings]
-    for chain in chains:
+    for chain in chains if rings else []:
         samples, is_corner = _sampled(chain)
         found = [ring.nearest(samples) for ring in rings]
         distance = np.array([off for off, _ in found])

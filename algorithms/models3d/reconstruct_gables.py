@@ -32,7 +32,7 @@ _OPPOSITE = 15.0
 _EDGE = 0.02
 
 # Where no ground is near the corners of a house, it is looked for this much (m) farther from their middle than the
-# range of their coordinates.
+# house extends along an axis.
 _AROUND = 10.0
 
 # The faces of a house by their vertices, from 1 as in the paper, counterclockwise seen from outside.
@@ -179,7 +179,8 @@ class _Ground:
         """Return the elevation (m) around corners (m, 2): the median of the ground, or that of the lowest points."""
         near = np.unique(np.concatenate(self.tree.query_ball_point(corners, 2.0)).astype(np.int64))
         if not len(near):
-            near = np.array(self.tree.query_ball_point(corners.mean(axis=0), _AROUND + np.ptp(corners)), int)
+            extent = float(np.ptp(corners, axis=0).max())
+            near = np.array(self.tree.query_ball_point(corners.mean(axis=0), _AROUND + extent), int)
         return float(np.quantile(self.points[near, 2], self.quantile)) if len(near) else None
 
 

@@ -342,14 +342,16 @@ def _missing(xyz: np.ndarray, on_model: np.ndarray, tolerance: float, min_points
 
 
 def _volume(faces: list[_Face], points: _RoofPoints) -> float:
-    """Return the volume (m³) of the prisms under faces."""
+    """Return the volume (m³) of the prisms under faces, whichever way their rings run."""
     corners = np.concatenate([ring for face in faces for ring in face.rings])
     base = points.lowest(corners[:, :2].min(axis=0), corners[:, :2].max(axis=0))
     total = 0.0
     for face in faces:
-        for ring in face.rings:
+        for number, ring in enumerate(face.rings):
             position = ring[:, :2] - ring[0, :2]
             cross = position[:-1, 0] * position[1:, 1] - position[1:, 0] * position[:-1, 1]
+            # The exterior comes first; all others are holes.
+            cross = cross if (cross.sum() > 0) == (number == 0) else -cross
             # Triangles from the first corner; a plane's mean over each is that of its corners.
             height = (face.height(ring[:-1, :2]) + face.height(ring[1:, :2]) + face.height(ring[:1, :2])) / 3 - base
             total += float((0.5 * cross * height).sum())

@@ -141,3 +141,12 @@ def test_layers_without_heights_are_reported_and_the_footprints_stay():
     assert monitor.warnings[0] == "No facade is an upright polygon with heights, so all walls are those of footprints."
     assert set(walls.columns["source"]) == {"air"}
     assert len(buildings) == len(outlines())
+
+
+def test_facades_without_footprints_are_refused_in_a_sentence(block):
+    _, layers, _ = block
+    air, _ = seen_from("airplane")
+    with pytest.raises(ValueError, match="None of the 0 footprints has an area"):
+        reconstruct_block(
+            air["xyz"], air["classification"], LayerFeatures([], {}), layers["facades"], layers["openings"]
+        )

@@ -104,6 +104,23 @@ def test_without_ground_the_lowest_points_around_are_the_ground(rng):
     assert found.columns["z7"][0] == pytest.approx(GROUND, abs=0.1)
 
 
+def test_ground_far_from_the_corners_is_that_around_the_house_wherever_it_lies(rng):
+    """On a slope of 10 % the ground 60 m uphill is 6 m higher: it must not count, also far from the origin."""
+    xyz, classes, plane = house(rng)
+    x, y = xyz[:, :2].T
+    is_ground = classes == PointClass.GROUND
+    xyz[is_ground, 2] += 0.1 * x[is_ground]
+    uphill = rng.uniform((20, -40), (80, 40), (4000, 2))
+    xyz = np.concatenate([xyz, np.column_stack([uphill, GROUND + 0.1 * uphill[:, 0]])])
+    classes = np.concatenate([classes, np.full(len(uphill), PointClass.GROUND, np.uint8)])
+    plane = np.concatenate([plane, np.zeros(len(uphill), np.int32)])
+    # Nothing within 2 m of the corners.
+    kept = (classes != PointClass.GROUND) | (np.abs(xyz[:, 0] - 6) > 8.5) | (np.abs(xyz[:, 1]) > 6.5)
+    xyz, classes, plane = xyz[kept], classes[kept], plane[kept]
+    for shift in (np.zeros(3), np.array([0.0, 5000.0, 0.0])):
+        assert gables_of(xyz + shift, classes, plane).columns["z7"] == pytest.approx([1.6] * 7, abs=0.6)
+
+
 def test_valleys_single_planes_and_level_roofs_are_no_gables(rng):
     xyz, classes, plane = house(rng)
     valley = xyz.copy()

@@ -37,6 +37,16 @@ def test_distances_are_those_of_the_noise():
     assert report.values["on_model"] == pytest.approx(100, abs=0.5)
 
 
+def test_volumes_do_not_depend_on_the_way_that_rings_run():
+    hole = np.array([[2, 1, 4.8], [4, 1, 4.8], [4, 2, 5.6], [2, 2, 5.6], [2, 1, 4.8]])
+    faces = gable()
+    both = [[faces[0][0], hole], faces[1]]
+    turned = [[ring[::-1] for ring in faces[0]] + [hole], [faces[1][0][::-1]]]
+    expected = 12 * 8 * 5.6 - 2 * 5.2
+    for given in (both, turned):
+        assert assessed(faces=given)[1]["volume"] == pytest.approx([expected], rel=0.01)
+
+
 def test_a_model_that_lies_too_high_is_reported_by_how_much():
     faces, _, report, _ = assessed(faces=gable(0.5), noise=0.0)
     assert faces["mean"][:2] == pytest.approx([-0.5, -0.5], abs=1e-6)
