@@ -22,7 +22,7 @@ _LAZRS, _LAZRS_IN_TURN, _LASZIP = "LazrsParallel", "Lazrs", "Laszip"
 _POINTWISE, _CHUNKED = 1, 2
 # The number of points of a chunk in a LASzip record whose chunks have different numbers, each in the chunk table.
 _VARIABLE_CHUNKS = 2**32 - 1
-# Where the record has the number of points of a chunk, and its items.
+# Byte of the LASzip record at which the number of points of a chunk stands, and that at which the items begin.
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
 # Type, size in bytes and version of an item of the record.
 _ITEM = struct.Struct("<HHH")
@@ -85,7 +85,10 @@ class _Laz:
         return position
 
     def check_number(self, table_at: int, per_chunk: int) -> None:
-        """Hold the number of chunks against the bytes before the table: each starts with one whole record."""
+        """Hold the number of chunks against the bytes before the table, and the number of points against the chunks.
+
+        Each chunk starts with one whole record.
+        """
         self.stream.seek(table_at)
         _, n_chunks = self._unpacked(_TABLE_START)
         room = table_at - self._chunks_at
@@ -147,7 +150,7 @@ class _Laz:
 
 
 class _OneChunk(io.RawIOBase):
-    """The points of a LAZ file of before 2011 as lazrs reads them: one chunk without a table."""
+    """The points of a LAZ file of before 2011, which has no chunks, as lazrs reads them: one chunk and its table."""
 
     def __init__(self, stream: BinaryIO, header: Header, record: bytes) -> None:
         super().__init__()
@@ -197,7 +200,7 @@ def _items(record: bytes) -> list[tuple]:
 
 
 def _fit(items: list[tuple], point_format: int, size: int) -> bool:
-    """Whether items are those of records of ``size`` bytes of a point format: lazrs takes memory for any others."""
+    """Whether items are those of records of ``size`` bytes of a point format; lazrs may allocate GBs for others."""
     is_old = point_format < _FIRST_LAYERED_FORMAT
     types = list(_TYPES[point_format])
     extra = size - sum(_SIZES[kind] for kind in types)

@@ -132,8 +132,8 @@ def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor)
 def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
     """Yield (position of the first point, records) of the parts of a file that may have points in a box (2, 2) in plan.
 
-    Of a COPC file these are the chunks whose nodes touch the box, of any other file with points there all points. The
-    array is used again.
+    Of a COPC file, where lazrs is installed, these are the chunks whose nodes touch the box. Of any other file they are
+    all points if its bounds touch the box, none if not. The array is used again.
 
     Parameters
     ----------

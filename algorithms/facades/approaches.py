@@ -25,9 +25,9 @@ class _Rules:
     below: float = 0.4
     # Share of the columns of an opening that decides: most of them.
     most: float = 0.5
-    # Width of a column (m): a step has several points in it from 50 points per m² on.
+    # Width of a column (m): a step that is 0.3 m deep has two points in it from 50 points per m² on.
     column: float = 0.15
-    # The foot of a wall of which nothing is seen before it is this quantile of the heights of its points.
+    # Where nothing is seen before a wall, its foot is this quantile of the heights of its points.
     foot: float = 0.01
 
 
@@ -37,7 +37,8 @@ _RULES = _Rules()
 class Approach:
     """The surroundings of a wall: positions (n, 2), m, along and up, of its points and of those before it.
 
-    Those before it are from :data:`FROM_WALL` to :data:`BEFORE` (m) before it.
+    Those before it are up to :data:`BEFORE` (m) before it, and at least :data:`FROM_WALL` (m): more where the points of
+    the wall itself scatter farther.
     """
 
     def __init__(self, wall: np.ndarray, before: np.ndarray) -> None:
@@ -46,8 +47,9 @@ class Approach:
     def leads_to(self, box: np.ndarray) -> bool:
         """Return whether a person can walk up to an opening with a box (2, 2), m, and through it.
 
-        The highest surface up to a step above the sill is, in most columns of the opening, at most a step below it. No
-        wall is seen further down. Where nothing is seen before the wall, the foot of the wall is taken instead.
+        The highest surface up to a step above the sill is at most a step below it, in most columns in which one is
+        seen. In most columns no wall is seen further down. Where nothing is seen before most columns, the foot of the
+        wall is taken instead.
         """
         low, high = box[:, 1]
         if high - low < _RULES.least_height:
@@ -69,7 +71,7 @@ def _between(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
 
 
 def _highest(positions: np.ndarray, box: np.ndarray, limit: float) -> np.ndarray:
-    """Return the highest position up to a limit (m) in each column of a box, -inf where there are no points."""
+    """Return the greatest height (m) up to a limit in each column of a box, -inf where there are no points."""
     left, right = box[:, 0]
     count = max(1, int((right - left) / _RULES.column))
     top = np.full(count, -np.inf)

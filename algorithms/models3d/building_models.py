@@ -27,7 +27,7 @@ _EXPLAINED = 1.5
 
 @dataclass(frozen=True)
 class Settings:
-    """How buildings are modelled: lengths in m, slopes in °, ``percentile`` of the heights of flat tops."""
+    """How buildings are modelled: lengths in m, area in m², slopes in °, ``percentile`` of the heights of flat tops."""
 
     spacing: float
     tolerance: float
@@ -220,14 +220,14 @@ def _above_model(top: _Top, partition: Partition) -> tuple[np.ndarray, np.ndarra
     return np.where(label >= 0, above, np.nan), label
 
 
-def _off(top: _Top, above: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the heights (k,), m, above the model of those of some points (n,), bool, that are on top."""
-    some = above[rows]
-    return distances(some[are_on_roof(some, top.is_low[rows])])
+def _off(top: _Top, above: np.ndarray, is_wanted: np.ndarray) -> np.ndarray:
+    """Return the heights (k,), m, above the model, cut off, of the wanted points (n,), bool, that are on top."""
+    wanted = above[is_wanted]
+    return distances(wanted[are_on_roof(wanted, top.is_low[is_wanted])])
 
 
 def _worse(model: BuildingModel, level: str, top: _Top, above: np.ndarray) -> str:
-    """Return why a level is no improvement, "" where it is one; keep its deviation in the model."""
+    """Return why a level is worse than the simpler ones, "" where it is not; keep its deviation in the model."""
     off = np.minimum(np.abs(above[np.isfinite(above) & top.is_roof & ~top.is_low]), FARTHEST)
     if not len(off):
         return "no points lie over it"
@@ -261,7 +261,7 @@ def _enter(
 
 
 def _covered(top: _Top) -> float:
-    """Return the share of the footprint that has points: of the cells of two spacings whose middles it holds."""
+    """Return the share of the footprint that has points: of its cells, two point spacings wide, by their middles."""
     size = 2 * top.settings.spacing
     low, high = (np.floor(end / size).astype(int) for end in (top.rings[0].min(axis=0), top.rings[0].max(axis=0)))
     cells = low + np.indices(high - low + 1).reshape(2, -1).T

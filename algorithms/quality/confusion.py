@@ -27,7 +27,7 @@ def overall_accuracy(matrix: np.ndarray) -> float:
 
 
 def cohens_kappa(matrix: np.ndarray) -> float:
-    """Return the agreement (percent) beyond that by chance; NaN where chance alone explains all of it.
+    """Return the agreement (percent) beyond that by chance; NaN without items, and where chance explains all of it.
 
     References
     ----------

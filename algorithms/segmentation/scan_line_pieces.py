@@ -125,7 +125,7 @@ def _near_on_lines(points: np.ndarray, line: np.ndarray, near: NearPoints) -> np
     # Most points are near the next one: such runs are joined, not their points.
     run = np.concatenate([[0], np.cumsum(breaks)])
     ones, others = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    # Compared with as many points of its line as show a surface, a point passes over a few outliers.
+    # Each point is compared with several that follow it, as many as show a surface: a few outliers divide no piece.
     for step in range(2, min(LEAST_NEIGHBORS, len(points) - 1) + 1):
         first = np.flatnonzero((run[step:] != run[:-step]) & (line[step:] == line[:-step]))
         first = first[near.hold(points[first], points[first + step])]

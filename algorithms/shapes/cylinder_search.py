@@ -33,14 +33,14 @@ _LEAST_BINS = 5
 _MOST_IN_BIN = 1 / 16
 
 # Least second eigenvalue of the mean product of the normals of a window: (4°)². Normals of planes, which are good to
-# 3°, have less; a cylinder of which 72° are seen has 0.13, and 0.0065 if it is a twentieth of the points of a window.
+# 3°, have less; a cylinder of which 72° are seen has 0.12, and 0.006 if it is a twentieth of the points of a window.
 _LEAST_SPREAD = 0.005
 
 # Cylinders of one level may be thinner than its least radius and wider than its largest by this factor, so that those
 # between two levels are found in one of them.
 _WIDER = 1.1
 
-# Radii that are tried in one level of radii: steps of 9 %, which the first fit bridges.
+# Radii that are tried in one level, an octave at most: steps of up to 10 %, which the first fit bridges.
 _RADII = 8
 
 # Side of the bins for centers of circles (least radius of the level), as fine as the steps of the radius.
@@ -52,10 +52,10 @@ _FIRST_FITS = (0.15, 0.06)
 # Rounds of the first fits: the points change after each, so that they need not converge.
 _FIRST_ROUNDS = 2
 
-# Fewest points of a seed, and of a window in which one is searched for: three times the unknowns of a cylinder.
+# Fewest points of a seed, and of a window in which one is searched for: three times the five unknowns and one more.
 LEAST_POINTS = 16
 
-# Most seeds of one window, which is as wide as two of the widest cylinders.
+# Most seeds of one window, which is as wide as two of the thinnest cylinders of its level or one of the widest.
 _MOST_IN_WINDOW = 4
 
 # Length (radii) by which a seed is first extended at both ends: the direction of its axis is good for that long.
@@ -64,7 +64,7 @@ _FIRST_STEP = 6.0
 # Widest gap along a cylinder (radii): the shadow of another pipe.
 _GAP_RADII = 2.0
 
-# Widest gap along a cylinder (point spacings): chance leaves no wider one.
+# Widest gap along a cylinder (spacings of the thinned points): chance leaves no wider one.
 _GAP_SPACINGS = 6.0
 
 # Least height of the arc that is seen above its chord (standard deviations of the noise): a flatter one is a plane.
@@ -200,7 +200,7 @@ class CylinderSearch:
             if not LEAST_OF_LEVEL * low <= cylinder.radius <= MOST_OF_LEVEL * high:
                 return None
         if not low / _WIDER <= cylinder.radius <= high * _WIDER:
-            # It belongs to another level, of which the windows have longer seeds; each window here would grow it again.
+            # It belongs to another level, in whose windows it is searched for; each window here would grow it again.
             return None
         return (cylinder, points) if self._is_round(rows, points, cylinder) else None
 
@@ -214,7 +214,7 @@ class CylinderSearch:
         return self.evidence.is_round(cylinder, own, all_near)
 
     def _axis(self, normals: np.ndarray, bins: np.ndarray) -> Optional[np.ndarray]:
-        """Return the normal of the great circle along which normals (k, 3) in bins (k,) fill most of the sphere."""
+        """Return the normal of the great circle near most normals (k, 3), in bins (k,); None if they fill too few."""
         every = np.bincount(bins, minlength=len(self.directions))
         occupied = np.flatnonzero(every)
         count = every[occupied]
@@ -270,8 +270,8 @@ class CylinderSearch:
         """Return the cylinder that a seed grows to along its axis, None where its points do not fit a cylinder."""
         along = cylinder.local(self.xyz[seed])[0]
         ends = cylinder.center + np.outer([along.min(), along.max()], cylinder.axis)
-        thinned = max(self.spacing, THINNING * cylinder.radius)
-        gap = max(_GAP_RADII * cylinder.radius, _GAP_SPACINGS * thinned)
+        thinned_spacing = max(self.spacing, THINNING * cylinder.radius)
+        gap = max(_GAP_RADII * cylinder.radius, _GAP_SPACINGS * thinned_spacing)
         step = _FIRST_STEP * cylinder.radius
         while True:
             near = self._near(rows, ends, cylinder, step)
@@ -284,7 +284,7 @@ class CylinderSearch:
             grown = fitted.center + np.outer([along.min(), along.max()], fitted.axis)
             longer = np.linalg.norm(grown[1] - grown[0]) - np.linalg.norm(ends[1] - ends[0])
             cylinder, ends = fitted, grown
-            if longer < thinned:
+            if longer < thinned_spacing:
                 break
             # The longer it is, the better its direction is known.
             step = 2 * step if longer >= step else step

@@ -14,13 +14,13 @@ from .solids import Rect
 from .street_fronts import KINDS, Front, Line, Truth, between
 from .town_layout import park_car
 
-# Least and greatest width of houses (m).
+# Least and greatest width of houses (m), before all widths are scaled to fill the street.
 _WIDTHS = (8.0, 12.0)
 
-# Least and greatest height of the eaves of a side (m).
+# Least and greatest height of the eaves that is drawn for a side (m); each of its houses adds to it.
 _EAVES = (7.0, 11.0)
 
-# Greatest difference of the eaves of one side (m): less than a storey.
+# Most that a house adds to the height of the eaves of its side (m): less than a storey.
 _DIFFERENCE = 0.8
 
 # Least and greatest pitch of gable roofs (°).
@@ -82,7 +82,7 @@ def build_street(plan: StreetPlan) -> tuple[Scene, Truth, Rect]:
 def _build_side(
     scene: Scene, truth: Truth, street: Rect, side: int, plan: StreetPlan, chance: tuple[np.random.Generator, ...]
 ) -> None:
-    """Put houses side by side, each with another kind of front."""
+    """Put fronts side by side, each of another kind than the one before, and houses behind them if the plan has any."""
     rng, of_fronts = chance
     # Seen along the line, the street is on the right: on the left of the street the line runs forward.
     start = np.array(street.at(-side * street.length / 2, side * street.width / 2))
@@ -115,7 +115,7 @@ def _put_clutter(scene: Scene, street: Rect, side: int, rng: np.random.Generator
     for along in np.arange(-street.length / 2 + 4.0, street.length / 2 - 3.0, 6.5):
         if rng.random() < 0.6:
             park_car(scene, street.part(float(along), side * (half - _CARS), 4.3, 1.8))
-    # A tree each 15 m, up to 2 m off its place and 5 to 7 m high, and a pole halfway to the next one.
+    # A tree each 15 m, up to 2 m off its place and 5 to 7 m high, and a pole 7 m beyond its place.
     for along in np.arange(-street.length / 2 + 6.0, street.length / 2 - 2.0, 15.0):
         x, y = street.at(along + rng.uniform(-2, 2), side * (half - _TREES))
         foot = (float(x), float(y), float(scene.relief.plane(x, y)))

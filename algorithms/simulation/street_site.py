@@ -1,4 +1,4 @@
-"""A made-up site for a drone: a street between facades, with parked cars, lamps and trees."""
+"""A made-up site for a drone: a street with houses on one side and at an end, parked cars, lamps and trees."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ _TREE_HEIGHTS = (6.0, 11.0)
 def build_site(trees: int, slope: float, seed: int) -> Scene:
     """Make up a site with a number of ``trees`` on a plane of a ``slope`` (°), the same for the same arguments.
 
-    The seed is that of trees, balconies and the direction of the slope.
+    The seed is that of cars, trees, balconies and the direction of the slope.
     """
     rng = np.random.default_rng([seed, 2])
     angle = float(rng.uniform(0.0, 2 * np.pi))
@@ -95,10 +95,10 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
 
 
 def _tree_positions(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:
-    """Return positions (m from the middle): first in front of the houses, then in a row, then behind it.
+    """Return positions (m from the middle): first in front of the houses, then row by row to the south.
 
     Rows are 6 m apart, and trees up to 0.8 m off their places.
     """
-    behind = [(x, _ROW_OF_TREES - 6.0 * line) for line in range(4) for x in (-6.0, 6.0, 0.0, -12.0, 12.0)]
-    positions = [*_TREES_IN_FRONT, *behind][:count]
+    in_rows = [(x, _ROW_OF_TREES - 6.0 * line) for line in range(4) for x in (-6.0, 6.0, 0.0, -12.0, 12.0)]
+    positions = [*_TREES_IN_FRONT, *in_rows][:count]
     return [(float(x + rng.uniform(-0.8, 0.8)), float(y + rng.uniform(-0.8, 0.8))) for x, y in positions]

@@ -85,7 +85,7 @@ def _plots(scene: Scene) -> list[Rect]:
 
 
 def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator) -> None:
-    """Put cars on drives and streets, hedges between plots, bushes against walls."""
+    """Put cars on drives, hedges between plots, bushes against walls."""
     for plot in plots:
         car = plot.part(plot.length / 2 - 2.0, -plot.width / 2 + rng.uniform(2.5, 8.0), 4.3, 1.8, np.pi / 2)
         if rng.random() < 0.4 and not scene.near_building(car.corners(), 0.4).any():
