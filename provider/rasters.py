@@ -48,7 +48,7 @@ def check_raster(path: Path) -> None:
 def write_mosaic(raster: Raster, mosaic: RasterMosaic, place: Place, path: Path, monitor: Monitor) -> None:
     """Write a raster of any size, part by part; memory does not grow with it.
 
-    Parameters and errors are those of :func:`write_raster`.
+    ``mosaic`` has the values in parts; the other parameters and the errors are those of :func:`write_raster`.
     """
     check_raster(path)
     progress = _Progress(monitor)
@@ -150,7 +150,7 @@ def _in_memory(raster: Raster, surface: RasterSurface, place: Place) -> gdal.Dat
 
 
 def _filled(values: np.ndarray) -> bytes:
-    """Return cells as they are written."""
+    """Return cells as they are written: little-endian float32, ``NO_DATA`` where they are not finite."""
     return np.where(np.isfinite(values), values, np.float32(NO_DATA)).astype("<f4").tobytes()
 
 

@@ -86,7 +86,10 @@ class RoofExtent:
         return self._to_edges(wide)
 
     def _to_edges(self, core: np.ndarray) -> np.ndarray:
-        """Return roofs with the points beside them within reach that have at least half of their height."""
+        """Return roofs (rows, columns) with the cells beside them that have at least half of their height.
+
+        These are at most ``MATCHING.rounded`` m away.
+        """
         if not core.any():
             return core
         nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)

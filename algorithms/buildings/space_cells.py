@@ -1,4 +1,4 @@
-"""Cubes in space that hold the points of a few neighbors, and sums over each cube and the 26 around it."""
+"""Cubic cells in space with the points in each, and sums over each cell and the 26 around it."""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ class _Node:
 
 
 def wkt_of(header: Header) -> str:
-    """Return the WKT that the file holds, else "EPSG:code" from its GeoKeys, else ""."""
+    """Return WKT, or "EPSG:code" from GeoKeys, "" without either; of both, that which the header's WKT bit names."""
     wkt = _stored_wkt(header)
     keys = _geokeys(header)
     # The bit says which of the two counts; files that have only the other one are common.
@@ -154,7 +154,7 @@ def units_of(header: Header, crs_units: Optional[Resolver] = None) -> Units:
     Returns
     -------
     Units
-        Meters where the file names no unit, with a warning. Heights have the
+        Meters where the file names no unit, with a warning unless WKT gives a projected system. Heights have the
         horizontal unit where nothing is said of theirs.
 
     Raises

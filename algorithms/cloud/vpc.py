@@ -1,4 +1,4 @@
-"""Virtual point clouds: a STAC collection in JSON that names the tiles of one cloud."""
+"""Virtual point clouds: a STAC item collection in JSON that names the tiles of one cloud."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from .units import crs_identity, wkt_of
 
 # Bit of the header's encoding that says how GPS time is counted.
 _GPS_TIME_BIT = 1
+# Role by which a STAC item marks the assets that are its point clouds.
 _DATA_ROLE = "data"
 # Memory that the content of a virtual point cloud may take (bytes): enough for 4,000 tiles with the statistics of all
 # their dimensions, of 20 kB each.
@@ -28,6 +29,7 @@ _MOST_MEMORY = 450_000_000
 # Memory that one value of JSON takes at most beside its characters (bytes): that of a text beyond ASCII. The values are
 # bounded by the number of the four signs that may precede one, some of which may be characters of texts.
 _BYTES_PER_VALUE = 90
+# STAC extensions that define the properties "pc:…" and "proj:…".
 _EXTENSIONS = (
     "https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json",
     "https://stac-extensions.github.io/projection/v1.1.0/schema.json",
@@ -175,9 +177,9 @@ def _href(tile: Path, folder: Path) -> str:
 def read_tiles(paths: list[Path], monitor: Monitor, box: Optional[np.ndarray] = None) -> tuple[Header, np.ndarray]:
     """Return all tiles as one cloud, tile after tile: its header and its records.
 
-    The merged cloud has the finest scale of the tiles, all their dimensions and
-    the records (VLRs) of all, the first tile's first. With a ``box`` (2, 2) in the coordinates of the tiles it has only
-    the points within, and tiles are read only where their headers meet it.
+    The merged cloud has the finest scale of the tiles, all their dimensions and all their VLRs, the first tile's first.
+    With a ``box`` (2, 2), least and greatest easting and northing in the coordinates of the tiles, it has only the
+    points within, and tiles are read only where their headers meet it.
 
     Raises
     ------

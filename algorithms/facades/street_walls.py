@@ -22,7 +22,7 @@ class _Rules:
     corner: float = 0.3
     # Walls and edges run the same way within this angle (sine: 20°).
     same_way: float = 0.34
-    # An edge at most this far (m) before a wall is the outline of its eaves, and moves onto the wall.
+    # An edge at most this far (m) before or behind a wall shows the same wall, such as by its eaves, and moves onto it.
     eaves: float = 0.5
     # Walls of one footprint with less than this along it between them (m) are joined: a tree or a car hides as much.
     gap: float = 3.0
@@ -32,7 +32,7 @@ class _Rules:
     shared: float = 0.3
     # Distance (m) of the positions at which walls are compared with footprints: less than an outline is off.
     sample: float = 0.25
-    # Shortest wall (m) that is taken: shorter ones are of porches and pillars.
+    # Shortest row of walls (m) that is taken: shorter ones are of porches and pillars.
     shortest: float = 1.0
 
 

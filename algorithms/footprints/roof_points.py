@@ -14,12 +14,12 @@ from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
 from .soft_shares import REACH
 
-# Height (m) above a point from which another one of the building, steeply above it, shows that it is no part of the
-# roof: roofs are less rough.
+# A point of a building is no part of the roof if another one lies steeply above it by more than this height (m): roofs
+# are less rough.
 _STEP = 0.4
 
-# Height (m) of a roof above adjacent non-building points, and above points that were only attached to the building,
-# however steeply: bushes under eaves.
+# Least height (m) of a roof above adjacent non-building points, and above points that were only attached to the
+# building, however steeply: bushes under eaves.
 _BELOW = 1.0
 
 # Slope (tangent) up to which a higher point is of the same steep roof: 72°. Such a roof rises by as many spacings from
@@ -87,7 +87,7 @@ def _numbers(grid: Grid, xyz: np.ndarray, cluster: np.ndarray) -> np.ndarray:
 
 
 def thinned(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the highest points (k,) of each cluster in each cell of half a square spacing, ascending.
+    """Return the rows (k,), ascending, of the highest points of each cluster in each cell of half a square spacing.
 
     Walls, and strips that overlap, have many points in little area: one for each cell shows where roofs are as evenly
     as a roof alone does. Cells begin at multiples of their size.
@@ -111,7 +111,7 @@ def edge_weights(top: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarr
 def find_non_building_points(
     xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, spacing: float
 ) -> np.ndarray:
-    """Return the points (m,) beside roofs and clearly below them that are no building: there the roof has ended.
+    """Return the rows (m,) of non-building points beside roofs and clearly below them: there the roof has ended.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ def classify_water(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
-        ASPRS classes with ground (2), which ground filters take water for.
+        ASPRS classes with ground (2); ground filters classify water as ground, too.
     return_number : ndarray of shape (n,), uint8, optional
         Only first returns are counted as pulses; without it all points are.
 
@@ -72,7 +72,7 @@ def classify_water(
     -----
     Gaps up to 20 m wide belong to the cloud. Shadows of buildings are gaps, too, but the ground in them is as high as
     beside them; roofs are no ground. A point is on water if its height differs from that of the nearest lowest point of
-    the water body by at most three standard deviations of the noise. It must be at most three cells from it.
+    the water body by at most three standard deviations of the noise, and it lies at most three cells from the body.
 
     References
     ----------

@@ -14,7 +14,8 @@ from .roof_planes import RoofPlanes
 # if that is more).
 _BESIDE_SPACINGS, _BESIDE = 6.0, 2.0
 
-# Planes whose slopes differ by less than this (rise per meter) have no intersection that the points could place.
+# Planes whose slopes differ by less than this (rise per meter) have no intersection that the points could place. Planes
+# less steep than this have no direction of slope along or across which steps run.
 _LEAST_TURN = 0.05
 
 # Distance (spacings, or m if that is more) up to which a contact of two planes is at their intersection.
@@ -57,8 +58,8 @@ def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: f
         Points (m).
     planes : RoofPlanes
         Their planes.
-    rings : list of ndarray
-        The footprint, whose walls give the main directions.
+    rings : list of ndarray of shape (k, 2)
+        Closed rings of the footprint (m), whose walls give the main directions.
     spacing : float
         Mean distance between neighboring points (m).
 
@@ -93,7 +94,10 @@ def main_directions(rings: list) -> np.ndarray:
 
 
 def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the two planes (m,), (m,) of neighbors that lie on two, the smaller number first, and their middles."""
+    """Return where neighboring points (n, 2) lie on different planes.
+
+    These are the numbers (m,), (m,) of the two planes, the smaller one first, and the middles (m, 2) of the points.
+    """
     if np.linalg.matrix_rank(xy - xy.mean(axis=0)) < 2:
         return np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2))
     mesh = triangulate(xy)

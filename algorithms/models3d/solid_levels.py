@@ -105,7 +105,7 @@ class Levels:
         if np.hypot(*step) <= _MEET:
             self._move(vertex, tuple(step.tolist()))
 
-    def _nearest_point(self, planes: list[int], plan: tuple[float, float]) -> tuple[float, float]:
+    def _step_to_one_height(self, planes: list[int], plan: tuple[float, float]) -> tuple[float, float]:
         """Return the step (m) from a position to where planes are nearest to having one height."""
         rows = np.array([self.coefficients[plane] for plane in planes])
         height = rows @ [*plan, 1.0]
@@ -140,7 +140,7 @@ class Levels:
                 return False
         elif BASE not in planes:
             x, y = self.plan[kept]
-            step = self._nearest_point(sorted(planes), (x, y))
+            step = self._step_to_one_height(sorted(planes), (x, y))
             options += [self.plan[gone], (x + step[0], y + step[1])]
         most = max(len(self._groups(self.plan[one], self.around[one])) for one in (kept, gone))
         return any(

@@ -10,7 +10,7 @@ import numpy as np
 from .covariance import PAIRS, Nearest, Shapes, full_matrices, nearest_offsets
 from .nearest_blocks import EQUAL_SQUARES, reach_of_ties
 
-# Most values of an array over all scales in one batch: a handful of such arrays fit into the second-level cache.
+# Most values of an array over all neighbors in one batch: a handful of such arrays fit into the second-level cache.
 _CACHED = 16_000
 
 # Entropies closer than this are equal but for rounding; of equal ones the smallest neighborhood is taken.
@@ -19,7 +19,8 @@ _EQUAL = 1e-9
 # Replaces zero in logarithms, as 0 ln 0 is 0.
 _LEAST = 1e-300
 
-# Beyond this share of the largest eigenvalue the others are what rounding leaves of a line's width.
+# Where the largest eigenvalue is more than this share of the sum, the points are a line: the closed form leaves the two
+# other eigenvalues little but rounding.
 _LINE = 1 - 1e-4
 
 

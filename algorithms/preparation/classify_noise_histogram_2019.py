@@ -143,7 +143,10 @@ def classify_noise_histogram_2019(
 def _bodies(
     grid: Grid, cell: np.ndarray, level: np.ndarray, min_frequency: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return all occupied cells, ascending, and the lowest and highest level of the main body in each."""
+    """Return all occupied cells, ascending, and the lowest and highest level of the main body in each.
+
+    Without any full bin no cells are returned.
+    """
     cells, low, high = _full_range(own_histogram(cell, level), min_frequency)
     is_poor = high < 0
     if is_poor.any():
@@ -153,7 +156,10 @@ def _bodies(
 
 
 def _full_range(histogram: Histogram, min_frequency: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the cells, ascending, and their lowest and highest level with ``min_frequency`` points; -1 without."""
+    """Return the cells, ascending, and their lowest and highest level with ``min_frequency`` points.
+
+    The highest one is -1 in cells without such a level.
+    """
     cells, which = np.unique(histogram.cell, return_inverse=True)
     is_full = histogram.count >= min_frequency
     low, high = np.full(len(cells), np.iinfo(np.int64).max), np.full(len(cells), -1)

@@ -65,7 +65,7 @@ _MEASURES = (
     Measure("iou", "Median IoU of the buildings found one to one"),
     Measure("hausdorff", "Median Hausdorff distance of these", "m"),
     Measure("corners", "Corners of the buildings that have footprints"),
-    Measure("footprint_corners", "Corners of the footprints"),
+    Measure("footprint_corners", "Corners of the footprints that belong to buildings"),
     Measure("matched", "Corners matched"),
     Measure("corner_distance", "Median distance of matched corners", "m"),
     Measure("shift_east", "Median shift of the footprints eastward", "m"),
@@ -392,7 +392,9 @@ def _outline_rows(values: dict[str, float]) -> list[Row]:
 def _corner_rows(values: dict[str, float]) -> list[Row]:
     return [
         Row(
-            "Corners", f"{values['footprint_corners']:,}", f"Of the footprints; {values['corners']:,} in the reference."
+            "Corners",
+            f"{values['footprint_corners']:,}",
+            f"Of the footprints that belong to buildings; {values['corners']:,} of these buildings.",
         ),
         Row("Matched", f"{values['matched']:,}", "Corners that both layers have."),
         Row("Distance", _meters(values["corner_distance"]), "Median distance between matched corners."),

@@ -283,7 +283,7 @@ def _faces(roofs: LayerFeatures, monitor: Monitor) -> dict[str, list[_Face]]:
 
 
 class _RoofPoints:
-    """The points on roofs (n, 3) in the order of their eastings, and the lowest points of buildings and ground."""
+    """The building points ``xyz`` (n, 3) by easting, which are low (n,), and the lowest of buildings and ground."""
 
     def __init__(self, xyz: np.ndarray, classification: np.ndarray, spacing: float) -> None:
         building = xyz[classification == PointClass.BUILDING]
@@ -295,7 +295,7 @@ class _RoofPoints:
         self._low = low[np.argsort(low[:, 0], kind="stable")]
 
     def over(self, rings: list) -> np.ndarray:
-        """Return which points lie over rings."""
+        """Return the building points (k,), rows of ``xyz``, that lie within rings in plan."""
         (west, south), (east, north) = rings[0][:, :2].min(axis=0), rings[0][:, :2].max(axis=0)
         x, y = self.xyz[:, 0], self.xyz[:, 1]
         rows = np.arange(np.searchsorted(x, west), np.searchsorted(x, east, side="right"))

@@ -291,7 +291,7 @@ def _slope_bin(distance_bin: float, window_size: float) -> float:
 
 
 def _surfaces(xyz: np.ndarray, plane: np.ndarray, max_gap: float, min_points: float, monitor: Monitor) -> np.ndarray:
-    """Return the surface (k,), from 1, that each point of a plane (k,), -1 for none, is on; 0 for small ones."""
+    """Return the surface (k,) of each point, from 1, by its plane (k,), -1 for none; 0 without, and on small ones."""
     label = np.zeros(len(plane), np.int64)
     n_planes = int(plane.max(initial=-1)) + 1
     for number, part in enumerate(split_groups(plane, n_planes)):

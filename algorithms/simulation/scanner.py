@@ -244,7 +244,8 @@ def _met(world: World, kind: str, beams: Beams, strip: _Strip) -> tuple[np.ndarr
     low, high = world.boxes(kind)
     corners = np.stack([low, high])
     planes = world.relief.plane(corners[:, None, :, 0], corners[None, :, :, 1]).reshape(4, -1)
-    # Heights over the plane, and what the scanner, as a point of view, makes of them on the plane.
+    # Lowest and highest height (m) of each box over the plane, and the northings (m) at which rays from the scanner
+    # past its edges at these heights meet the plane.
     lift = np.stack([low[:, 2] - planes.max(axis=0), high[:, 2] - planes.min(axis=0)])
     shadow = strip.y + (corners[:, None, :, 1] - strip.y) * _HEIGHT / (_HEIGHT - lift[None])
     shadow = shadow.reshape(4, -1)
@@ -337,7 +338,7 @@ def _recorded(
 
 def brightness(echoes: Echoes, count: Union[int, np.ndarray], rng: np.random.Generator) -> np.ndarray:
     """Return the intensity (n,), uint16, by material; the pulse's energy is shared by its ``count`` returns."""
-    # Every roof has its own brightness, by up to 30 %: steps of the golden ratio spread the numbers of objects evenly.
+    # Every object has its own brightness, by up to 30 %: steps of the golden ratio spread their numbers evenly.
     bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
     intensity = _WHITE * bright / count * (1 + _SPECKLE * rng.standard_normal(len(echoes)))
     return np.clip(intensity, 1, 65_535).astype(np.uint16)

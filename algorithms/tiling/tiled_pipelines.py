@@ -159,7 +159,8 @@ def tiled_pipeline_help(tiled: TiledPipeline) -> str:
         "cloud over all of them."
     )
     numbers = (
-        "<b>TILES, BLOCKS, POINTS, FAILURES</b>: how many tiles were written, blocks and points worked on, failed."
+        "<b>TILES, BLOCKS, POINTS, FAILURES</b>: how many tiles were written, how many blocks and points were worked "
+        "on, and how many blocks and tiles failed."
     )
     of_composite = pipeline_help(tiled.pipeline, [tiles, *made, numbers])
     parts = [paragraphs(tiled.summary), paragraphs(_DESCRIPTION), settings_help(SETTINGS), of_composite]

@@ -1660,7 +1660,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;REPORT&lt;/b&gt;: a page with Buildings in the reference, Footprints, Buildings found one to one, Buildings merged with others, Buildings split, Buildings missed, Footprints invented, Buildings found, merged or split (%), Footprints that are in the reference (%), Median IoU of the buildings found one to one, Median Hausdorff distance of these (m), Corners of the buildings that have footprints, Corners of the footprints, Corners matched, Median distance of matched corners (m), Median shift of the footprints eastward (m), Median shift of the footprints northward (m), Median squareness of the footprints, Median squareness of the reference; each is an output of its own too.</source>
+        <source>&lt;b&gt;REPORT&lt;/b&gt;: a page with Buildings in the reference, Footprints, Buildings found one to one, Buildings merged with others, Buildings split, Buildings missed, Footprints invented, Buildings found, merged or split (%), Footprints that are in the reference (%), Median IoU of the buildings found one to one, Median Hausdorff distance of these (m), Corners of the buildings that have footprints, Corners of the footprints that belong to buildings, Corners matched, Median distance of matched corners (m), Median shift of the footprints eastward (m), Median shift of the footprints northward (m), Median squareness of the footprints, Median squareness of the reference; each is an output of its own too.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2008,7 +2008,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;TILES, BLOCKS, POINTS, FAILURES&lt;/b&gt;: how many tiles were written, blocks and points worked on, failed.</source>
+        <source>&lt;b&gt;TILES, BLOCKS, POINTS, FAILURES&lt;/b&gt;: how many tiles were written, how many blocks and points were worked on, and how many blocks and tiles failed.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4540,7 +4540,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Corners of the footprints</source>
+        <source>Corners of the footprints that belong to buildings</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5180,7 +5180,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Gaps up to 20 m wide belong to the cloud. Shadows of buildings are gaps, too, but the ground in them is as high as beside them; roofs are no ground. A point is on water if its height differs from that of the nearest lowest point of the water body by at most three standard deviations of the noise. It must be at most three cells from it.</source>
+        <source>Gaps up to 20 m wide belong to the cloud. Shadows of buildings are gaps, too, but the ground in them is as high as beside them; roofs are no ground. A point is on water if its height differs from that of the nearest lowest point of the water body by at most three standard deviations of the noise, and it lies at most three cells from the body.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
