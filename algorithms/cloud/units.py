@@ -28,7 +28,7 @@ _LENGTHS = {
     9003: 1200 / 3937,  # US survey foot
     9005: 0.3047972654,  # Clarke's foot
     9036: 1000.0,  # Kilometer
-    9037: 0.9143984146160287,  # Clarke's yard
+    9037: 3 * 0.3047972654,  # Clarke's yard
     9096: 0.9144,  # International yard
 }
 # GeoTIFF's value "user-defined": the key holds no EPSG code.

@@ -97,6 +97,8 @@ def geokeys(*pairs, doubles=()):
         (geokeys((1024, 1), (3072, 2264), (3076, 9003)), SURVEY_FOOT, SURVEY_FOOT),
         (geokeys((1024, 1), (3072, 26910), (3076, 9001), (4096, 5703), (4099, 9003)), 1, SURVEY_FOOT),
         (geokeys((1024, 1), (3076, 9003), (4099, 9001)), SURVEY_FOOT, 1),
+        # Clarke's foot and yard, as the EPSG registry has them; the yard of Sears (9040) is 7 ppm longer.
+        (geokeys((1024, 1), (3076, 9037), (4099, 9005)), 0.9143917962, 0.3047972654),
         (geokeys((1024, 1), (3072, 32767), (3076, 32767), (3077, "double"), doubles=(0.9144,)), 0.9144, 0.9144),
         (geokeys((1024, 1), (2048, 4269), (3072, 32767), (3076, 9001)), 1, 1),
     ],
