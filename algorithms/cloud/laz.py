@@ -22,7 +22,7 @@ _LAZRS, _LAZRS_IN_TURN, _LASZIP = "LazrsParallel", "Lazrs", "Laszip"
 _POINTWISE, _CHUNKED = 1, 2
 # The number of points of a chunk in a LASzip record whose chunks have different numbers, each in the chunk table.
 _VARIABLE_CHUNKS = 2**32 - 1
-# Byte of the LASzip record at which the number of points of a chunk stands, and that at which the items begin.
+# Byte of the LASzip record at which the number of points of a chunk lies, and that at which the items begin.
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
 # Type, size in bytes and version of an item of the record.
 _ITEM = struct.Struct("<HHH")

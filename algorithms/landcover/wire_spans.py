@@ -39,7 +39,7 @@ class _Rules:
     beyond: float = 5.0  #: A span goes on where its parabola meets points within this distance (m) of its ends
     below: float = 2.0  #: Height (m) under the wire in which crowns and roofs have points
     #: Largest share of the length of a span, counted in parts of 1 m, that has points that far below or buildings
-    #: beside it: masts and plants stand under wires
+    #: beside it: masts and plants have points there
     most_below: float = 0.25
     #: Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings
     beside: float = 1.0

@@ -151,7 +151,7 @@ class _Top:
 
 
 def _partition(top: _Top, level: str) -> tuple[Optional[Partition], str]:
-    """Return the partition of the roof at a level of detail, or None and why there is none."""
+    """Return the partition of the roof at a level of detail, or None with the reason."""
     if level == "1.2":
         return _single_top(top)
     roof = top.roof
