@@ -262,6 +262,9 @@ def _result(
         return create_cloud({name: values for name, values in made.dimensions.items() if values is not None})
     if not clouds:
         return None
+    left_out = sum(int((~points).sum()) for points in used if points is not None)
+    if left_out and (stage.merges or stage.selects):
+        monitor.inform(f"{left_out:,} withheld points are left out.")
     if stage.merges:
         seen = [cloud if points is None else cloud.take(np.flatnonzero(points)) for cloud, points in zip(clouds, used)]
         cloud, points = merge_records(seen, made.dimensions.pop("xyz", None), monitor), None
@@ -269,11 +272,24 @@ def _result(
         cloud, points = _selected(stage, clouds[0], made.selected), None
     else:
         cloud, points = clouds[0], used[0]
-    _clear(cloud, [name for name, values in made.dimensions.items() if values is not None], monitor)
+    written = [name for name, values in made.dimensions.items() if values is not None]
+    _warn_of_foreign(cloud, written, monitor)
+    _clear(cloud, written, monitor)
     for name, values in made.dimensions.items():
         if values is not None:
             cloud.set(name, _of_all_points(cloud, name, values, points))
     return cloud
+
+
+def _warn_of_foreign(cloud: Cloud, written: Collection[str], monitor: Monitor) -> None:
+    """Warn of dimensions that another program stored under names of this one, and that are written over or cleared."""
+    lost = [one for one in DIMENSIONS.values() if one.name in written or one.of in written]
+    names = [name for one in lost for name in cloud.foreign(one.name)]
+    if names:
+        monitor.warn(
+            f"The cloud had {', '.join(names)} of another program; the new cloud has this program's values there. "
+            "The input keeps the others."
+        )
 
 
 def _clear(cloud: Cloud, written: Collection[str], monitor: Monitor) -> None:

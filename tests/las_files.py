@@ -29,8 +29,9 @@ def evlr(user, number, data, text=""):
 def made_las(
     point_format=6, minor=4, n=100, records=None, extra=0, vlrs=(), evlrs=(), encoding=0, gap=b"",
     scale=(0.01, 0.01, 0.001), offset=(600_000.0, 5_000_000.0, 0.0), user_bytes=b"", waveforms=False, count=None,
+    bounds=None,
 ):  # fmt: skip
-    """Return a LAS file as bytes; ``waveforms`` says that the EVLRs hold them."""
+    """Return a LAS file as bytes; ``waveforms`` says that the EVLRs hold them, ``bounds`` (xmax, xmin, …) may lie."""
     size = RECORD_SIZES[point_format] + extra
     if records is None:
         records = random_records(point_format, size, n)
@@ -46,12 +47,20 @@ def made_las(
         123, 2019, header_size, points_at, len(vlrs), point_format, size, min(count, 2**32 - 1) if old else 0,
         *[0] * 5,
     )  # fmt: skip
-    raw += struct.pack("<3d3d6d", *scale, *offset, *[0.0] * 6)
+    raw += struct.pack("<3d3d6d", *scale, *offset, *(true_bounds(records, scale, offset) if bounds is None else bounds))
     if minor >= 3:
         raw += struct.pack("<Q", evlrs_at if waveforms else 0)
     if minor >= 4:
         raw += struct.pack("<QIQ15Q", evlrs_at if evlrs else 0, len(evlrs), count, *[0] * 15)
     return raw + user_bytes + b"".join(vlrs) + gap + records.tobytes() + b"".join(evlrs)
+
+
+def true_bounds(records, scale, offset):
+    """Return xmax, xmin, ymax, ymin, zmax, zmin of records, zeros without any."""
+    if not len(records):
+        return [0.0] * 6
+    coordinates = np.ascontiguousarray(records[:, :12]).view("<i4") * np.array(scale) + np.array(offset)
+    return np.column_stack([coordinates.max(axis=0), coordinates.min(axis=0)]).ravel().tolist()
 
 
 def random_records(point_format, size, n, seed=1):

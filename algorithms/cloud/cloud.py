@@ -11,9 +11,9 @@ from weakref import ReferenceType, ref
 import numpy as np
 
 from .dimensions import DIMENSIONS, Dimension
-from .header import LARGEST_STEP, Header
+from .header import LARGEST_STEP, LAX, Header
 from .point_formats import OF_COPC, Layout
-from .point_records import PointRecords, find_extra, unit_factor
+from .point_records import PointRecords, find_extra, is_written_as, unit_factor
 from .printable import shown
 from .units import Units, crs_records, units_of, wkt_of
 
@@ -82,6 +82,15 @@ class Cloud:
             return name in self.header.layout.names
         return all(find_extra(self.header.layout, dimension, i) is not None for i in range(len(dimension.disk)))
 
+    def foreign(self, name: str) -> list[str]:
+        """Return by what names another program stored a dimension, as its type or description shows; often none."""
+        dimension, extras = _dimension(name), self.header.layout.extras
+        if dimension.standard or name in self._changes:
+            return []
+        found = [(disk, find_extra(self.header.layout, dimension, i)) for i, disk in enumerate(dimension.disk)]
+        stored = [(disk, extras[at]) for disk, at in found if at is not None]
+        return [field.name for disk, field in stored if not is_written_as(field, disk, dimension)]
+
     def get(self, name: str) -> np.ndarray:
         """Return a dimension by its Python name, (n,) or (n, 3), in the dtype and unit of ``dimensions.py``.
 
@@ -148,7 +157,7 @@ class Cloud:
         dimension = _dimension(name)
         fitting = _fitting(dimension, np.asarray(values), len(self))
         if name == "xyz":
-            self.points = self._moved(fitting)
+            self.points, self.header = self._moved(fitting), self.header.without(LAX)
             return
         if dimension.standard and name not in self.header.layout.names:
             raise ValueError(f"{dimension.disk[0]} can't be set in point format {self.header.layout.point_format}.")
@@ -178,7 +187,7 @@ class Cloud:
         """
         # Many times as fast as points[index], which goes through the fields of every record.
         points = self.points.take(index)
-        taken = Cloud(replace(self.header, count=len(index)), points, self.units, self.files)
+        taken = Cloud(replace(self.header.without(LAX), count=len(index)), points, self.units, self.files)
         taken.wkt, taken.origin = self.wkt, self.origin
         taken._changes = {name: values[index] for name, values in self._changes.items()}
         return taken

@@ -15,6 +15,7 @@ from .header import (
     COPC_INFO,
     EVLR,
     LASZIP,
+    OF_OLD_POINTS,
     WAVEFORMS,
     WAVEFORMS_INSIDE,
     WAVEFORMS_OUTSIDE,
@@ -38,8 +39,6 @@ _TOP_BITS = 6
 _DEEPEST = _BITS - _GRID_LEVELS
 # Seed of the random choice of the points that a level shows.
 _SEED = 0
-# The index of LAStools counts points in the order of the old file.
-_LAX = (b"LAStools", 30)
 
 
 @dataclass(frozen=True)
@@ -167,7 +166,7 @@ def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 def copc_header(header: Header) -> Header:
     """Return ``header`` in the form of COPC: LAS 1.4, the info record first, no waveforms, no LAStools index."""
-    kept = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS, _LAX)
+    kept = header.without(*OF_OLD_POINTS, WAVEFORMS)
     encoding = kept.encoding & ~(WAVEFORMS_INSIDE | WAVEFORMS_OUTSIDE) | (WKT_BIT if has_wkt(kept) else 0)
     info = Vlr(*COPC_INFO, bytes(INFO.size), description=b"COPC info")
     return replace(kept, minor=4, user_bytes=b"", gap=b"", waveforms_at=0, encoding=encoding, vlrs=[info, *kept.vlrs])

@@ -48,6 +48,11 @@ class ExtraField:
         return _parsed(self.raw or bytes(DESCRIPTOR_SIZE))
 
     @property
+    def description(self) -> str:
+        """What the file says of it."""
+        return (self.raw or bytes(DESCRIPTOR_SIZE))[_TEXTS[1]].split(b"\0")[0].decode("utf-8", "replace")
+
+    @property
     def is_scalar(self) -> bool:
         """Whether a record holds one number of it (not bytes without meaning, not a vector)."""
         return self.dtype.kind in "iuf" and self.dtype.shape == ()

@@ -14,7 +14,7 @@ from ..stage import Monitor
 from .cloud import Cloud
 from .copc import copc_header, write_copc
 from .copc_sidecar import VIEW_SOFTWARE, check_copc_beside, copc_path, seal
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
+from .header import OF_OLD_CHUNKS, OF_OLD_POINTS, Header
 from .laspy_library import need_lazrs
 from .laz import writing_backend
 from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
@@ -71,7 +71,7 @@ def read_cloud(
             points = (
                 read_points(files[0], header, monitor) if box is None else points_within(files[0], header, box, monitor)
             )
-            header = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY)
+            header = header.without(*(OF_OLD_CHUNKS if box is None else OF_OLD_POINTS))
         else:
             for other in headers[1:]:
                 units_of(other, crs_units)

@@ -57,6 +57,11 @@ LASZIP = (b"laszip encoded", 22204)
 EXTRA_BYTES = (b"LASF_Spec", 4)
 WAVEFORMS = (b"LASF_Spec", 65535)
 COPC_INFO, COPC_HIERARCHY = (b"copc", 1), (b"copc", 1000)
+# LAStools' index of the points by their positions in the file.
+LAX = (b"LAStools", 30)
+# Records that are wrong where points are compressed anew, and where they are others or in another order.
+OF_OLD_CHUNKS = (LASZIP, COPC_INFO, COPC_HIERARCHY)
+OF_OLD_POINTS = (*OF_OLD_CHUNKS, LAX)
 
 
 @dataclass
@@ -114,6 +119,7 @@ class Header:
     #: low, high, (3,): bounds in coordinates of the file
     low: np.ndarray = field(default_factory=lambda: np.zeros(3))
     high: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    is_measured: bool = False  #: Whether the bounds are measured, as those in the file can't be of its points
     waveforms_at: int = 0  #: Position of the waveforms in the file, 0 without any
     points_at: int = 0  #: Position of the points in the file
     vlrs: list[Vlr] = field(default_factory=list)
@@ -126,7 +132,11 @@ class Header:
 
     def find(self, key: tuple[bytes, int]) -> Optional[Vlr]:
         """Return the first VLR or EVLR of that user and record id, or None."""
-        return next((record for record in (*self.vlrs, *self.evlrs) if record.key == key), None)
+        return next(iter(self.find_all(key)), None)
+
+    def find_all(self, key: tuple[bytes, int]) -> list[Vlr]:
+        """Return all VLRs and EVLRs of that user and record id, in the order of the file."""
+        return [record for record in (*self.vlrs, *self.evlrs) if record.key == key]
 
     def without(self, *keys: tuple[bytes, int]) -> Header:
         """Return a header that lacks the VLRs and EVLRs of these user and record ids."""
@@ -134,10 +144,11 @@ class Header:
         return replace(self, vlrs=vlrs, evlrs=[record for record in self.evlrs if record.key not in keys])
 
     def with_layout(self, layout: Layout) -> Header:
-        """Return the header for records of ``layout``, its Extra Bytes VLR included and in its old place."""
+        """Return the header for records of ``layout``, with one Extra Bytes VLR in the place of the first there is."""
         payload = payload_of(layout.extras)
-        old = self.find(EXTRA_BYTES)
-        if payload == (old.data if old else b""):
+        found = self.find_all(EXTRA_BYTES)
+        old = found[0] if found else None
+        if len(found) < 2 and payload == (old.data if old else b""):
             return replace(self, layout=layout)
         if len(payload) > _LARGEST_VLR:
             raise ValueError(
@@ -147,8 +158,9 @@ class Header:
         new = Vlr(*EXTRA_BYTES, payload, description=b"Extra bytes")
         if old not in self.vlrs:
             return replace(self.without(EXTRA_BYTES), layout=layout, vlrs=[*self.vlrs, new])
-        same = [replace(new, description=old.description, reserved=old.reserved) if r is old else r for r in self.vlrs]
-        return replace(self, layout=layout, vlrs=same)
+        new = replace(new, description=old.description, reserved=old.reserved)
+        vlrs = [new if record is old else record for record in self.vlrs if record is old or record.key != EXTRA_BYTES]
+        return replace(self.without(EXTRA_BYTES), layout=layout, vlrs=vlrs)
 
     def las(self) -> Any:
         """Return a new LasHeader of laspy, which has the VLRs as bytes of no known meaning and bounds in steps."""
@@ -261,7 +273,8 @@ class _Reader:
         self._check_scale(header)
         self._read_records(header, las)
         header.layout = self._layout(header)
-        return header
+        # Several lists of extra bytes are one, which others read as a whole.
+        return header.with_layout(header.layout) if len(header.find_all(EXTRA_BYTES)) > 1 else header
 
     def _check(self) -> None:
         if self.major != 1 or self.minor not in SIZES:
@@ -347,6 +360,7 @@ class _Reader:
         return record
 
     def _layout(self, header: Header) -> Layout:
-        described = header.find(EXTRA_BYTES)
+        lists = [record.data or b"" for record in header.find_all(EXTRA_BYTES)]
+        described = b"".join(one[: len(one) // DESCRIPTOR_SIZE * DESCRIPTOR_SIZE] for one in lists)
         extra = self.length - Layout(self.point_format).dtype.itemsize
-        return Layout(self.point_format, fields_of((described.data or b"") if described else b"", extra))
+        return Layout(self.point_format, fields_of(described, extra))

@@ -20,8 +20,9 @@ POINTS_PER_CHUNK = 50_000
 _LAZRS, _LAZRS_IN_TURN, _LASZIP = "LazrsParallel", "Lazrs", "Laszip"
 # How points are compressed: all in one go, as before 2011, or in chunks.
 _POINTWISE, _CHUNKED = 1, 2
-# The number of points of a chunk in a LASzip record whose chunks have different numbers, each in the chunk table.
-_VARIABLE_CHUNKS = 2**32 - 1
+# The number of points of a chunk in a LASzip record whose chunks have different numbers, each in the chunk table; many
+# writers of COPC leave 0 there, which LASzip takes for the same.
+_VARIABLE_CHUNKS, _UNSTATED_CHUNKS = 2**32 - 1, 0
 # Byte of the LASzip record at which the number of points of a chunk lies, and that at which the items begin.
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
 # Type, size in bytes and version of an item of the record.
@@ -32,8 +33,9 @@ _TABLE_POSITION, _TABLE_START = struct.Struct("<q"), struct.Struct("<II")
 _READ_AT_ONCE = 2**20
 # Layers that points of formats 6 to 10 are stored in, by the type of their item; extra bytes (type 14) have one a byte.
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
-# Versions of the items of points in layers, and of all others.
+# Versions of the items of points in layers, and of all others; lazrs lacks the newest.
 _LAYERED_VERSIONS, _PLAIN_VERSIONS = (3, 4), (1, 2)
+_NOT_IN_LAZRS = 4
 # Types of the items of each point format, and of extra bytes behind those of formats 0 to 5 and 6 to 10.
 _TYPES = {
     0: (6,), 1: (6, 7), 2: (6, 8), 3: (6, 7, 8), 4: (6, 7, 9), 5: (6, 7, 8, 9),
@@ -55,7 +57,7 @@ class _Laz:
     stream: BinaryIO
 
     def record(self) -> bytes:
-        """Return the LASzip record, its items held against the header's records."""
+        """Return the LASzip record, as :func:`_plain_record` gives it, its items held against the header's records."""
         found = self.header.find(LASZIP)
         if found is None or found.data is None or len(found.data) < _ITEMS_AT:
             raise truncated(self.path, "its LASzip record is missing")
@@ -69,7 +71,19 @@ class _Laz:
             raise truncated(
                 self.path, f"its LASzip record does not describe point format {self.header.layout.point_format}"
             )
-        return found.data
+        self._check_versions(_items(found.data))
+        return _plain_record(found.data)
+
+    def _check_versions(self, items: list[tuple]) -> None:
+        """Refuse versions of items that no package here reads: they are no damage."""
+        known = _PLAIN_VERSIONS if self.header.layout.is_old else _LAYERED_VERSIONS
+        unread = [version for _, _, version in items if version not in known or not _reads_version(version)]
+        if unread:
+            raise ValueError(
+                f"{self.path.name} is compressed with version {unread[0]} of LASzip's items for point format "
+                f"{self.header.layout.point_format}, which the installed packages can't read; save it as .las with the "
+                "program that made it" + (" or install laszip." if unread[0] in known else ".")
+            )
 
     def table_at(self) -> int:
         """Return the position of the chunk table."""
@@ -80,7 +94,7 @@ class _Laz:
             # A writer that could not go back leaves the position in the last 8 bytes.
             self.stream.seek(total - _TABLE_POSITION.size)
             (position,) = self._unpacked(_TABLE_POSITION)
-        if not self._chunks_at <= position < total:
+        if not self.chunks_at <= position < total:
             raise truncated(self.path, f"its chunk table should be at byte {position} of {total}")
         return position
 
@@ -91,7 +105,7 @@ class _Laz:
         """
         self.stream.seek(table_at)
         _, n_chunks = self._unpacked(_TABLE_START)
-        room = table_at - self._chunks_at
+        room = table_at - self.chunks_at
         if n_chunks * self.header.layout.dtype.itemsize > room:
             raise truncated(self.path, f"{n_chunks} chunks don't fit into {room} bytes")
         held = n_chunks * (per_chunk if per_chunk != _VARIABLE_CHUNKS else self.header.count)
@@ -108,7 +122,7 @@ class _Laz:
         with explained(self.path):
             chunks = lazrs.read_chunk_table(self.stream, lazrs.LazVlr(record))
         points, sizes = zip(*chunks)
-        room = table_at - self._chunks_at
+        room = table_at - self.chunks_at
         if sum(sizes) > room:
             raise truncated(self.path, f"its chunks of {sum(sizes)} bytes don't fit into {room} bytes")
         if _chunk_size(record) == _VARIABLE_CHUNKS and sum(points) != self.header.count:
@@ -116,7 +130,7 @@ class _Laz:
         if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
             n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
             self._check_layers(np.array(sizes), n_layers)
-        ends = self._chunks_at + np.cumsum(sizes, dtype=np.int64)
+        ends = self.chunks_at + np.cumsum(sizes, dtype=np.int64)
         return np.column_stack([ends - sizes, sizes, points]).astype(np.int64)
 
     def check_pointwise(self) -> None:
@@ -128,7 +142,7 @@ class _Laz:
         """Hold the sizes of the layers, which are allocated before they are read, against those of their chunks."""
         # A chunk begins with one whole record, its number of points and the size of each layer, 4 bytes each.
         head = self.header.layout.dtype.itemsize + 4
-        for start, size in zip(self._chunks_at + np.cumsum(sizes) - sizes, sizes):
+        for start, size in zip(self.chunks_at + np.cumsum(sizes) - sizes, sizes):
             self.stream.seek(int(start) + head)
             sizes_read = self.stream.read(n_layers * 4)
             if size and len(sizes_read) < n_layers * 4:
@@ -138,7 +152,7 @@ class _Laz:
                 raise truncated(self.path, f"a chunk of {size} bytes has layers of {layers.sum(dtype=np.int64)} bytes")
 
     @property
-    def _chunks_at(self) -> int:
+    def chunks_at(self) -> int:
         """Where the first chunk starts: behind the position of the chunk table."""
         return self.header.points_at + _TABLE_POSITION.size
 
@@ -188,6 +202,18 @@ class _OneChunk(io.RawIOBase):
         return self._table[self._at - self._table_at :][:size]
 
 
+def _plain_record(record: bytes) -> bytes:
+    """Return a LASzip record with "variable" where its number of points of a chunk means nothing else."""
+    if record[0] != _POINTWISE and _chunk_size(record) != _UNSTATED_CHUNKS:
+        return record
+    return _with_chunk_size(record, _VARIABLE_CHUNKS)
+
+
+def _with_chunk_size(record: bytes, size: int) -> bytes:
+    """Return a LASzip record with another number of points of a chunk."""
+    return record[:_CHUNK_SIZE_AT] + struct.pack("<I", size) + record[_CHUNK_SIZE_AT + 4 :]
+
+
 def _chunk_size(record: bytes) -> int:
     """Return the number of points of a chunk that a LASzip record states."""
     return struct.unpack_from("<I", record, _CHUNK_SIZE_AT)[0]
@@ -205,8 +231,17 @@ def _fit(items: list[tuple], point_format: int, size: int) -> bool:
     types = list(_TYPES[point_format])
     extra = size - sum(_SIZES[kind] for kind in types)
     expected = [(kind, _SIZES[kind]) for kind in types] + ([(_EXTRA_TYPES[not is_old], extra)] if extra else [])
-    versions = _PLAIN_VERSIONS if is_old else _LAYERED_VERSIONS
-    return [item[:2] for item in items] == expected and all(version in versions for _, _, version in items)
+    return [item[:2] for item in items] == expected
+
+
+def _reads_version(version: int) -> bool:
+    """Whether an installed package reads a known version of the items."""
+    return has_backend(_LASZIP) or version != _NOT_IN_LAZRS
+
+
+def _is_for_lazrs(record: bytes) -> bool:
+    """Whether lazrs is installed and reads a record's versions of the items."""
+    return has_backend(_LAZRS) and all(version != _NOT_IN_LAZRS for _, _, version in _items(record))
 
 
 def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarray], Any]:
@@ -219,7 +254,8 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
     """
     laz = _Laz(path, header, stream)
     record = laz.record()
-    backend, stream_at = _backend(_LAZRS, _LASZIP), header.points_at
+    backend = _backend(*((_LAZRS, _LASZIP) if _is_for_lazrs(record) else (_LASZIP, _LAZRS)))
+    stream_at = header.points_at
     if record[0] == _POINTWISE:
         laz.check_pointwise()
         if has_backend(_LAZRS_IN_TURN):
@@ -234,8 +270,7 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
             laz.check_chunks(table_at, record)
     if _chunk_size(record) != _VARIABLE_CHUNKS:
         # lazrs reserves the memory of a whole chunk: no chunk has more points than there are.
-        size = struct.pack("<I", min(header.count, _chunk_size(record)))
-        record = record[:_CHUNK_SIZE_AT] + size + record[_CHUNK_SIZE_AT + len(size) :]
+        record = _with_chunk_size(record, min(header.count, _chunk_size(record)))
     las = header.las()
     las.vlrs.append(need_laspy().vlrs.known.LasZipVlr(record))
     stream.seek(stream_at)
@@ -275,12 +310,35 @@ def open_chunks(path: Path, header: Header, stream: BinaryIO) -> tuple[np.ndarra
     return chunks, read
 
 
+def first_records(path: Path, header: Header, stream: BinaryIO) -> list[int]:
+    """Return where the records lie that chunks begin with, which are not compressed; without lazrs just the first.
+
+    Raises
+    ------
+    ValueError
+        If the file is shorter than its header states.
+    """
+    laz = _Laz(path, header, stream)
+    record = laz.record()
+    if record[0] == _POINTWISE:
+        return [header.points_at]
+    table_at = laz.table_at()
+    laz.check_number(table_at, _chunk_size(record))
+    if not has_backend(_LAZRS):
+        return [laz.chunks_at]
+    starts, sizes, _ = laz.check_chunks(table_at, record).T
+    long_enough = starts[sizes >= header.layout.dtype.itemsize]
+    if not len(long_enough):
+        raise truncated(path, "its chunks are too short for a point")
+    return long_enough.tolist()
+
+
 def has_variable_chunks(header: Header) -> bool:
-    """Whether chunks of a LAZ file may differ in their numbers of points, and lazrs, to read some, is installed."""
-    record = header.find(LASZIP)
-    if record is None or record.data is None or len(record.data) < _ITEMS_AT:
+    """Whether chunks of a LAZ file may differ in their numbers of points, and lazrs can read some of them."""
+    found = header.find(LASZIP)
+    if found is None or found.data is None or len(found.data) < _ITEMS_AT or found.data[0] == _POINTWISE:
         return False
-    return _chunk_size(record.data) == _VARIABLE_CHUNKS and has_backend(_LAZRS)
+    return _chunk_size(_plain_record(found.data)) == _VARIABLE_CHUNKS and _is_for_lazrs(found.data)
 
 
 def _backend(preferred: str, other: str) -> Any:

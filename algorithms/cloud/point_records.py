@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from typing import Callable, Optional, Union
 
@@ -124,6 +125,13 @@ def _overwritten(old: ExtraField, disk: str, dimension: Dimension) -> ExtraField
 def is_stored_as(field: ExtraField, disk: str, dimension: Dimension) -> bool:
     """Whether a field has the name, type and plain numbers that this program gives a component of ``dimension``."""
     return field.name == disk and field.dtype == np.dtype(dimension.dtype) and field.is_plain
+
+
+def is_written_as(field: ExtraField, disk: str, dimension: Dimension) -> bool:
+    """Whether a field is stored and described as this program does it for a component of ``dimension``."""
+    # Of the descriptions, only the first words are the same in all versions.
+    of_field, own = (re.split(r"\W", text, maxsplit=1)[0] for text in (field.description, dimension.description))
+    return is_stored_as(field, disk, dimension) and of_field == own
 
 
 def merged_layout(layouts: list[Layout]) -> Layout:

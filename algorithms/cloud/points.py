@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache
 from io import BufferedReader
 from pathlib import Path
 from typing import BinaryIO, Callable, Optional
@@ -14,7 +16,7 @@ from ..stage import Monitor
 from .copc_index import has_index, read_index
 from .header import Header, read_header, truncated
 from .laspy_library import explained, need_laspy
-from .laz import POINTS_PER_CHUNK, has_variable_chunks, open_chunks, open_laz, writing_backend
+from .laz import POINTS_PER_CHUNK, first_records, has_variable_chunks, open_chunks, open_laz, writing_backend
 
 # Points that are read or written at once. A multiple of the LAZ chunk, so that every call decompresses whole chunks, in
 # well under a second.
@@ -23,12 +25,21 @@ AT_ONCE = 10 * POINTS_PER_CHUNK
 # Points that are all alike come to 5,500 bytes per compressed byte in chunks of the usual size; nothing sound has more.
 _MOST_BYTES_PER_BYTE = 10_000
 
-# Files without points that a warning names.
+# Files that a warning names.
 _NAMED = 5
+
+# Points of a file, spread over it, that are held against the bounds in its header before anything is read.
+_PROBES = 16
+
+# Least share of the stated extent that points take on each axis, or all of them are measured: a bound that was never
+# set is 0, thousands of kilometers from the points.
+_LEAST_SHARE = 0.01
 
 
 def open_header(path: Path) -> Header:
     """Return the header of a file that has points, after its number of points was compared with the size of the file.
+
+    Bounds that can't be, as they are no numbers or points lie outside, are replaced by those of the points.
 
     Raises
     ------
@@ -44,34 +55,92 @@ def open_header(path: Path) -> Header:
 def open_headers(paths: list[Path], monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
     """Return those files of one cloud that have points, and their headers; the monitor is warned of the others.
 
-    Surveys are delivered with a tile for each cell of their lattice, also where nothing was measured.
+    Surveys are delivered with a tile for each cell of their lattice, also where nothing was measured. Headers have
+    bounds that can be, see :func:`open_header`; the monitor is warned of those that were measured.
 
     Raises
     ------
     ValueError
         If one of the files can't be read, or none has points.
     """
-    if len(paths) == 1:
-        return paths, [open_header(paths[0])]
-    headers = [_checked_header(path) for path in paths]
+    headers = [open_header(paths[0])] if len(paths) == 1 else [_checked_header(path) for path in paths]
     empty = [path for path, header in zip(paths, headers) if header.count == 0]
     if len(empty) == len(paths):
         raise ValueError(f"None of the {len(paths)} tiles, {paths[0].name} and others, has points; choose others.")
     if empty and monitor:
-        names = ", ".join(path.name for path in empty[:_NAMED]) + (", …" if len(empty) > _NAMED else "")
-        monitor.warn(f"{len(empty)} of {len(paths)} tiles have no points and are left out: {names}.")
+        monitor.warn(f"{len(empty)} of {len(paths)} tiles have no points and are left out: {_names(empty)}.")
+    measured = [path for path, header in zip(paths, headers) if header.is_measured]
+    if measured and monitor:
+        monitor.warn(
+            f"The bounds in the header of {_names(measured)} can't be those of the points; they were measured instead."
+        )
     found = [(path, header) for path, header in zip(paths, headers) if header.count]
     return [path for path, _ in found], [header for _, header in found]
 
 
+def _names(paths: list[Path]) -> str:
+    """Return the names of files for a warning, the first ones of many."""
+    return ", ".join(path.name for path in paths[:_NAMED]) + (", …" if len(paths) > _NAMED else "")
+
+
 def _checked_header(path: Path) -> Header:
-    """Return the header of a file after its number of points was compared with the size of the file."""
+    """Return the header of a file after its number of points and its bounds were held against what it holds."""
     header = read_header(path)
     left = path.stat().st_size - header.points_at
     most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize
     if header.count > most:
         raise truncated(path, f"it promises {header.count} points, but {left} bytes hold at most {most}")
-    return header
+    state = path.stat()
+    if header.count == 0 or (measured := _measured(path, state.st_size, state.st_mtime_ns)) is None:
+        return header
+    return replace(header, low=measured[0], high=measured[1], is_measured=True)
+
+
+@lru_cache(maxsize=1024)
+def _measured(path: Path, size: int, changed: int) -> Optional[tuple[np.ndarray, np.ndarray]]:  # noqa: ARG001
+    """Return the bounds (3,) of the points of a file, low and high; None where those in its header can be.
+
+    ``size`` and ``changed`` are the state of the file, for which the answer is kept.
+    """
+    header = read_header(path)
+    if _can_be(header, *_bounds(header, _probes(path, header))):
+        return None
+    found = [_bounds(header, points) for _, points in read_chunks(path, header, Monitor())]
+    low, high = np.min([low for low, _ in found], axis=0), np.max([high for _, high in found], axis=0)
+    return None if _can_be(header, low, high) else (low, high)
+
+
+def _can_be(header: Header, low: np.ndarray, high: np.ndarray) -> bool:
+    """Whether the bounds in a header can be those of a file whose points reach from ``low`` to ``high`` (3,)."""
+    if not np.isfinite([header.low, header.high]).all():
+        return False
+    # The bounds of some files are rounded.
+    holds = (header.low - header.scale <= low) & (header.high + header.scale >= high)
+    return bool((holds & (high - low >= _LEAST_SHARE * (header.high - header.low))).all())
+
+
+def _bounds(header: Header, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the least and the greatest coordinates (3,) of records (n,)."""
+    ends = np.array([[points[axis].min(), points[axis].max()] for axis in "XYZ"], float)
+    low, high = (ends * header.scale[:, None] + header.offset[:, None]).T
+    return low, high
+
+
+def _probes(path: Path, header: Header) -> np.ndarray:
+    """Return some records of a file, spread over it; of LAZ those that chunks begin with, which are not compressed."""
+    size = header.layout.dtype.itemsize
+    with path.open("rb") as stream:
+        starts: Sequence[int] = range(header.points_at, header.points_at + size * header.count, size)
+        if header.is_compressed:
+            starts = first_records(path, header, stream)
+        chosen = {number * (len(starts) - 1) // (_PROBES - 1) for number in range(_PROBES)}
+        raw = b""
+        for number in sorted(chosen):
+            stream.seek(starts[number])
+            raw += stream.read(size)
+    if len(raw) < size * len(chosen):
+        raise truncated(path, "it ends within its points")
+    return np.frombuffer(raw, header.layout.dtype)
 
 
 def check_points(path: Path, header: Header) -> None:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Callable, Optional
+from urllib.parse import unquote
 
 import numpy as np
 
 from ..stage import Monitor
-from .header import COPC_HIERARCHY, COPC_INFO, LARGEST_STEP, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
+from .header import LARGEST_STEP, OF_OLD_POINTS, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import convert, merged_layout
 from .points import open_header, points_within, read_chunks
@@ -29,6 +31,9 @@ _MOST_MEMORY = 450_000_000
 # Memory that one value of JSON takes at most beside its characters (bytes): that of a text beyond ASCII. The values are
 # bounded by the number of the four signs that may precede one, some of which may be characters of texts.
 _BYTES_PER_VALUE = 90
+# How a URI of a file begins, up to the path on this computer; and the slash before a drive of Windows in it.
+_FILE = re.compile("^file:(?://(?:localhost)?(?=/))?", re.IGNORECASE)
+_BEFORE_DRIVE = re.compile("^/(?=[A-Za-z]:/)")
 # STAC extensions that define the properties "pc:…" and "proj:…".
 _EXTENSIONS = (
     "https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json",
@@ -51,7 +56,8 @@ def tiles_of(path: Path) -> list[Path]:
     """
     raw = _content(path)
     try:
-        content = json.loads(raw.decode("utf-8"))
+        # Of bytes, the encoding is found out, by a byte order mark too.
+        content = json.loads(raw)
         hrefs = [href for feature in content["features"] for href in _hrefs(feature["assets"])]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ValueError(
@@ -94,16 +100,24 @@ def _hrefs(assets: dict) -> list[str]:
 
 
 def _tile(path: Path, href: str) -> Path:
-    tile = path.parent / href
-    if "://" in href:
+    names = _meanings(href)
+    # On Windows, merely looking for a file on another computer sends it the name and a hash of the password.
+    if any("://" in name or name.startswith("//") for name in names[1:]):
         why = "is not a local file; download it and"
-    elif kind_of(tile) not in (LAS, LAZ, COPC):
+    elif kind_of(Path(names[-1])) not in (LAS, LAZ, COPC):
         why = "is no LAS, LAZ or COPC file; leave it out and"
-    elif not os.path.isfile(tile):  # noqa: PTH113 - a name that the system can't even look up is missing, too
-        why = "is missing; put it back or"
     else:
-        return tile
+        for name in names:
+            if os.path.isfile(path.parent / name):  # noqa: PTH113 - a name that the system can't look up is missing, too
+                return path.parent / name
+        why = "is missing; put it back or"
     raise ValueError(f"{path.name} names the tile {shown(href)}, which {why} build {path.name} again.")
+
+
+def _meanings(href: str) -> list[str]:
+    """Return what an href may mean: a name as it is, as QGIS writes and reads it; a path of Windows; and a URI."""
+    path = _FILE.sub("", href.replace("\\", "/"))
+    return [href, *(_BEFORE_DRIVE.sub("", one) for one in (path, unquote(path).replace("\\", "/")))]
 
 
 def write_vpc(tiles: list[Path], path: Path, to_degrees: Optional[ToDegrees] = None) -> None:
@@ -184,8 +198,7 @@ def read_tiles(paths: list[Path], monitor: Monitor, box: Optional[np.ndarray] = 
     Raises
     ------
     ValueError
-        If tiles have different coordinate reference systems, bounds that are not finite, or span more than their
-        scale can store.
+        If tiles have different coordinate reference systems, or span more than their scale can store.
     """
     headers = [open_header(path) for path in paths]
     check_tiles(paths, headers)
@@ -239,17 +252,13 @@ def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Head
 
 
 def check_tiles(paths: list[Path], headers: list[Header]) -> None:
-    """Refuse tiles that can't be one cloud: of different reference systems, or with bounds that are not finite."""
+    """Refuse tiles that can't be one cloud, as they have different coordinate reference systems."""
     seen = [crs_identity(wkt_of(header)) for header in headers]
-    for path, header, one in zip(paths, headers, seen):
+    for path, one in zip(paths, seen):
         if one != seen[0]:
             raise ValueError(
                 f"The tiles {paths[0].name} and {path.name} have different coordinate reference systems "
                 f"({shown(seen[0], 40) or 'none'}, {shown(one, 40) or 'none'}); reproject them to one first."
-            )
-        if not np.isfinite([header.low, header.high]).all():
-            raise ValueError(
-                f"The tile {path.name} has bounds in its header that are not finite; repair its header first."
             )
 
 
@@ -271,7 +280,7 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
         monitor.warn(f"The {what} count GPS time in different ways; the values are kept as they are.")
     layout = merged_layout([header.layout for header in headers])
     scale, offset = _grid(headers, what)
-    reduced = [header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS) for header in headers]
+    reduced = [header.without(*OF_OLD_POINTS, WAVEFORMS) for header in headers]
     merged = replace(
         reduced[0],
         minor=max(header.minor for header in headers),

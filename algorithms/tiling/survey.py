@@ -13,7 +13,7 @@ import numpy as np
 
 from ..cloud.cloud import Cloud, origin_before
 from ..cloud.files import files_of, header_with_crs, readable
-from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
+from ..cloud.header import OF_OLD_POINTS, Header, read_header
 from ..cloud.outputs import check_not_read, kind_of, made_folder, os_errors_as_messages
 from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
 from ..cloud.units import Resolver, Units, units_of, wkt_of
@@ -255,7 +255,7 @@ def open_survey(
     sources = tuple(Source(file, one, _box(one, units)) for file, one in zip(files, headers))
     if extent is not None:
         sources = _within_extent(sources, extent * units.horizontal)
-    survey = Survey(sources, header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), units, wkt_of(named), extent=extent)
+    survey = Survey(sources, header.without(*OF_OLD_POINTS), units, wkt_of(named), extent=extent)
     return replace(survey, origin=origin_before(survey.box[0]))
 
 
@@ -308,8 +308,6 @@ def crs_of_survey(files: Iterable[Path]) -> str:
 def _box(header: Header, units: Units) -> np.ndarray:
     """Return the least and greatest easting and northing (2, 2), m, of the points of a file by its header."""
     box = np.array([header.low[:2], header.high[:2]]) * units.horizontal
-    if not np.isfinite(box).all():
-        raise ValueError("The bounds in the header of a file are not finite; repair its header first.")
     # Some files have rounded bounds: a margin of one step of the scale includes all points.
     step = header.scale[:2] * units.horizontal
     return box + np.array([-step, step])

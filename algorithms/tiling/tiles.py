@@ -11,7 +11,7 @@ import numpy as np
 from ..cloud.cloud import Cloud
 from ..cloud.dimensions import DIMENSIONS
 from ..cloud.files import header_with_crs, read_cloud, readable, write_cloud
-from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
+from ..cloud.header import OF_OLD_POINTS, Header
 from ..cloud.points import chunks_near, open_header
 from ..cloud.units import Units, wkt_of
 from ..stage import Monitor
@@ -123,7 +123,7 @@ def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor)
         for start, records in chunks_near(task.source, header, task.piece / task.units.horizontal, monitor):
             first, end = np.searchsorted(position, [start, start + len(records)])
             found.append(records[position[first:end] - start])
-    header = replace(header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), count=len(position))
+    header = replace(header.without(*OF_OLD_POINTS), count=len(position))
     return Cloud(_named(header, task.crs), np.concatenate(found), task.units, [task.source])
 
 

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud import vpc
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import check_readable, count_points, read_cloud, read_extent, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
@@ -156,6 +157,42 @@ def test_waveforms_and_gps_times_that_do_not_merge_are_reported(make_las, make_v
     monitor = Monitor()
     read_cloud(make_vpc("one.las", "two.las"), monitor)
     assert any("waveforms" in sentence for sentence in monitor.warnings)
+
+
+@pytest.mark.parametrize("mark", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize(
+    "href",
+    ["a b%2.las", "./a%20b%252.las", "here\\..\\a b%2.las", ".\\a%20b%252.las", "file:a%20b%252.las", "{}/a b%2.las",
+     "file://{}/a%20b%252.las", "file:{}/a%20b%252.las", "FILE://localhost{}/a%20b%252.las"],
+)  # fmt: skip
+def test_names_of_tiles_are_paths_or_uris(make_las, make_vpc, tmp_path, href, mark):
+    """STAC has URIs, QGIS and PDAL write names as they are, and Windows has its own slashes and byte order marks."""
+    make_las("a b%2.las", n=50)
+    (tmp_path / "here").mkdir()
+    path = make_vpc(href.format(tmp_path))
+    path.write_text(path.read_text(encoding="utf-8"), encoding=mark)
+    assert count_points(path) == 50
+
+
+def test_a_name_that_is_also_a_uri_is_taken_as_it_is(make_las, make_vpc):
+    make_las("a%20b.las", n=50)
+    make_las("a b.las", n=70)
+    assert count_points(make_vpc("a%20b.las")) == 50
+
+
+@pytest.mark.parametrize(
+    "href",
+    ["//host/share/a.las", r"\\host\share\a.las", "/\\host/share/a.las", "%2F%2Fhost/share/a.las", "file://host/share/a.las",
+     "file:////host/share/a.las", "file:%5C%5Chost/share/a.las", r"\\?\UNC\host\share\a.las", "smb://host/a.las"],
+)  # fmt: skip
+def test_no_tile_is_looked_for_on_another_computer(make_las, make_vpc, monkeypatch, href):
+    """Windows sends a hash of the password to a computer that is merely asked for a file."""
+    make_las("one.las")
+    looked_up = []
+    monkeypatch.setattr(vpc.os.path, "isfile", lambda path: looked_up.append(str(path)) or True)
+    with pytest.raises(ValueError, match="which is not a local file; download it"):
+        read_cloud(make_vpc(href))
+    assert looked_up == []
 
 
 @pytest.mark.parametrize(

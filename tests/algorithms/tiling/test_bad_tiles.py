@@ -305,12 +305,24 @@ def test_tiles_without_returns_are_worked_on(make_las, tmp_path):
     assert len(read_cloud(outcome.tiles[0])) == 60
 
 
-def test_points_outside_the_bounds_of_their_header_are_not_lost_in_silence(tmp_path):
-    # The second one reaches into a block outside the bounds in its header.
+def test_bounds_that_can_not_be_are_measured(tmp_path):
+    """The survey had no points in the tile, or lost those outside."""
     paths = [tile(tmp_path / "a.las", (0, 0), (20, 20)), tile(tmp_path / "b.las", (60, 0), (140, 20), seed=1)]
     raw = bytearray(paths[1].read_bytes())
     # The greatest easting.
     struct.pack_into("<d", raw, BOUNDS_AT, 600_070.0)
+    paths[1].write_bytes(raw)
+    outcome = run(paths, tmp_path / "out")
+    assert not outcome.failures
+    assert [len(read_cloud(one)) for one in outcome.tiles] == [len(read_cloud(one)) for one in paths]
+
+
+def test_points_outside_the_bounds_of_their_header_are_not_lost_in_silence(tmp_path):
+    paths = [tile(tmp_path / "a.las", (0, 0), (20, 20)), tile(tmp_path / "b.las", (60, 0), (140, 20), seed=1)]
+    raw, header = bytearray(paths[1].read_bytes()), read_cloud(paths[1]).header
+    # A single point in another block, which is none of those that are looked at.
+    far = round((600_400.0 - header.offset[0]) / header.scale[0])
+    struct.pack_into("<i", raw, header.points_at + header.layout.dtype.itemsize, far)
     paths[1].write_bytes(raw)
     outcome = run(paths, tmp_path / "out")
     assert [one.name for one in outcome.tiles] == ["a.las"]

@@ -1,0 +1,61 @@
+"""Files of other programs, each of which a reader here once took wrong, with the values that are right."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.tests.real.clouds import DATA
+
+CASES = DATA / "cases"
+EXTENT = np.array([[500_005, 5_000_005], [500_020, 5_000_040]])
+
+
+@pytest.fixture
+def case():
+    """Return the path of a case, or skip where there is none."""
+
+    def found(name):
+        if not (CASES / name).exists():
+            pytest.skip(f"no {name} in {CASES}")
+        return CASES / name
+
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [("copc_chunk_size_0.copc.laz", 30), ("copc_own.copc.laz", 2603), ("pointwise_version_1.laz", 11_781)],
+)
+def test_laz_of_other_programs_is_read(case, name, count):
+    cloud = read_cloud(case(name))
+    low, high = (bound * cloud.units.factors - cloud.origin for bound in (cloud.header.low, cloud.header.high))
+    assert len(cloud) == count
+    np.testing.assert_allclose(cloud.get("xyz").min(axis=0), low, atol=1e-6)
+    np.testing.assert_allclose(cloud.get("xyz").max(axis=0), high, atol=1e-6)
+
+
+def test_a_part_of_a_copc_whose_chunks_state_no_size(case):
+    assert len(read_cloud(case("copc_own.copc.laz"), box=EXTENT)) == 1011
+
+
+def test_bounds_of_zero_are_measured(case):
+    assert len(read_cloud(case("E_bbox0.las"), box=EXTENT)) == 1011
+
+
+def test_two_lists_of_extra_bytes_become_one(case, tmp_path, laspy):
+    cloud = read_cloud(case("two_extra_bytes_records.laz"))
+    cloud.set("cluster_id", np.arange(len(cloud)))
+    write_cloud(cloud, tmp_path / "a.las")
+    again = laspy.read(tmp_path / "a.las")
+    assert list(again.point_format.extra_dimension_names) == ["Deviation", "confidence", "ClusterID"]
+    for number, name in enumerate(("Deviation", "confidence")):
+        np.testing.assert_array_equal(again[name], cloud.points[f"extra{number}"])
+
+
+def test_withheld_points_are_counted(case):
+    monitor = Monitor()
+    run_stage(STAGES["filter_points"], read_cloud(case("D1_flags.las")), monitor=monitor)
+    assert "109 withheld points are left out." in monitor.infos
