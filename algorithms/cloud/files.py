@@ -20,7 +20,7 @@ from .laz import writing_backend
 from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS
 from .point_records import PointRecords
-from .points import check_points, open_headers, points_within, read_points, write_points
+from .points import check_count, check_points, open_headers, points_within, read_points, write_points
 from .units import Resolver, Units, crs_records, has_wkt, units_of, wkt_of
 from .vpc import read_tiles, tiles_of
 
@@ -306,6 +306,7 @@ def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> 
     if header.has_waveforms_outside:
         monitor.warn(_WAVEFORMS_APART)
     write_points(stream, header, lambda a, b: records.take(slice(a, b)), kind_of(path) == LAZ, monitor)
+    check_count(stream, path, len(cloud))
 
 
 def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[BinaryIO] = None) -> None:
@@ -321,6 +322,7 @@ def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[Bina
         header = replace(header, software=VIEW_SOFTWARE)
     with replacing(path) as stream:
         write_copc(stream, header, cloud.points, records.take, monitor)
+        check_count(stream, path, len(cloud))
         if shown is not None:
             seal(stream, shown)
 

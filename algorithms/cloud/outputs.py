@@ -5,13 +5,16 @@ from __future__ import annotations
 import errno
 import io
 import os
+import platform
+import re
 import shutil
 import tempfile
 import time
+import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO, Optional
+from typing import BinaryIO, Callable, Optional
 
 try:
     import fcntl
@@ -24,11 +27,14 @@ except ImportError:  # all others
 
 LAS, LAZ, COPC, VPC = ".las", ".laz", ".copc.laz", ".vpc"
 
-# Working folders, hidden beside the targets: their names, the file that a running program keeps open and locked in
-# each, and the folder in it for old files while new ones take their places.
+# Working folders, hidden beside the targets: their names, which say what computer made them, the file that a running
+# program keeps open and locked in each, and the folder in it for old files while new ones take their places.
 _PREFIX, _SUFFIX = ".lb-", ".part"
+_NAME = re.compile(r"\.lb-([0-9a-f]{8})-.+\.part")
 LOCK = "lock"
 _OLD = "old"
+# What the system says of a lock that another program holds; any other error is that of a disk without locks.
+_IS_HELD = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES, errno.EDEADLK)
 # A working folder younger than this (s) may belong to a run that has not locked it yet, which takes far less.
 _UNLOCKED = 2.0
 
@@ -132,7 +138,8 @@ class ResultFiles:
     def beside(self, target: Path, companions: Iterable[Path] = ()) -> Path:
         """Return where to write the file that becomes ``target``: under the same name, in a new folder.
 
-        Links are followed. Whatever else is written into that folder goes to the folder of the target too.
+        A link at the target is replaced, never followed: whoever may write into the folder could lead it to any file.
+        Whatever else is written into the working folder goes to the folder of the target too.
 
         Parameters
         ----------
@@ -146,11 +153,11 @@ class ResultFiles:
         ValueError
             If the folder can't be written, or the target is no ordinary file.
         """
-        final = _followed(target)
-        if final.exists() and not final.is_file():
-            raise ValueError(f"{target} is no ordinary file; give the name of a file.")
+        final = _in_real_folder(target)
         with os_errors_as_messages(target):
-            entry = _Entry(target, final, [_followed(path) for path in companions])
+            if final.exists() and not final.is_file():
+                raise ValueError(f"{target} is no ordinary file; give the name of a file.")
+            entry = _Entry(target, final, [_in_real_folder(path) for path in companions])
             self._entries.append(entry)
         return entry.folder / final.name
 
@@ -181,9 +188,9 @@ class ResultFiles:
             entry.discard()
 
 
-def _followed(path: Path) -> Path:
-    """Return the absolute path with all links followed; a link to itself stays one."""
-    return Path(os.path.realpath(path))
+def _in_real_folder(path: Path) -> Path:
+    """Return the absolute path with the links to its folder followed; a link at its end stays one."""
+    return Path(os.path.realpath(path.parent), path.name)
 
 
 class _WorkingFolder:
@@ -191,7 +198,7 @@ class _WorkingFolder:
 
     def __init__(self, parent: Path) -> None:
         _sweep(parent)
-        self.path = Path(tempfile.mkdtemp(_SUFFIX, _PREFIX, parent))
+        self.path = Path(tempfile.mkdtemp(_SUFFIX, f"{_PREFIX}{_computer()}-", parent))
         self._lock = (self.path / LOCK).open("wb")
         if fcntl is not None:
             # A file system without locks has none of its working folders swept either.
@@ -200,7 +207,8 @@ class _WorkingFolder:
 
     def remove(self) -> None:
         """Remove the folder, its lock last: a run that is killed here leaves what the next one recognizes."""
-        for path in self.path.iterdir():
+        # Of a folder that somebody has removed meanwhile nothing is left to remove.
+        for path in self.path.glob("*"):
             if path.is_dir():
                 shutil.rmtree(path, ignore_errors=True)
             elif path.name != LOCK:
@@ -227,15 +235,14 @@ class _Entry:
         aside = self.folder / _OLD
         aside.mkdir()
         for path in self.companions:
-            if path not in made and path.exists():
+            if path not in made and os.path.lexists(path):
                 path.replace(aside / path.name)
                 undo.callback((aside / path.name).replace, path)
         for path, new in made.items():
             if path.is_dir():
                 raise IsADirectoryError(errno.EISDIR, "a folder is in its place", str(path))
-            if path.exists():
-                shutil.copymode(path, new)
-                _keep(path, aside / path.name)
+            if os.path.lexists(path):
+                _keep(path, aside / path.name, new)
                 undo.callback((aside / path.name).replace, path)
             else:
                 undo.callback(_remove, path, new.stat().st_ino)
@@ -246,8 +253,15 @@ class _Entry:
         self._working.remove()
 
 
-def _keep(path: Path, aside: Path) -> None:
-    """Keep a file under a second name until it is replaced; its own name stays taken all the time if possible."""
+def _keep(path: Path, aside: Path, new: Path) -> None:
+    """Keep a file under a second name until the new one, which gets its permissions, replaces it.
+
+    Its own name stays taken all the time if possible. A link is kept as such: what it leads to is not touched.
+    """
+    if path.is_symlink():
+        path.replace(aside)
+        return
+    shutil.copymode(path, new)
     try:
         os.link(path, aside)
     except OSError:
@@ -256,7 +270,7 @@ def _keep(path: Path, aside: Path) -> None:
 
 def _remove(path: Path, inode: int) -> None:
     """Remove a file if it is still the one with this inode."""
-    if path.exists() and path.stat().st_ino == inode:
+    if os.path.lexists(path) and path.lstat().st_ino == inode:
         path.unlink()
 
 
@@ -267,14 +281,22 @@ def _sweep(folder: Path) -> None:
             shutil.rmtree(working, ignore_errors=True)
 
 
+def _computer() -> str:
+    """Return eight digits that identify this computer: locks of some network disks hold on one computer only."""
+    return f"{zlib.crc32(platform.node().encode()):08x}"
+
+
 def _is_abandoned(folder: Path) -> bool:
-    """Whether a working folder is empty, or no running program holds its lock."""
+    """Whether a working folder is empty, or of this computer and no running program of it holds its lock."""
     lock = folder / LOCK
     try:
         if folder.is_symlink() or time.time() - folder.stat().st_mtime < _UNLOCKED:
             return False
         if not any(folder.iterdir()):
             return True
+        of_computer = _NAME.fullmatch(folder.name)
+        if of_computer and of_computer[1] != _computer():
+            return False
         if fcntl is None:
             # Windows removes no file that a program has open.
             lock.unlink()
@@ -328,22 +350,28 @@ def made_folder(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def locked_folder(folder: Path) -> Iterator[bool]:
+def locked_folder(folder: Path, warn: Callable[[str], None] = lambda _: None) -> Iterator[bool]:
     """Yield whether no other running program has locked a folder, and lock it for as long as the block lasts.
 
-    The system releases the lock when the program ends, however it ends.
+    The system releases the lock when the program ends, however it ends. Where the file system has no locks, the folder
+    counts as free, and ``warn`` is given a sentence about that.
     """
     with (folder / LOCK).open("ab") as lock:
+        is_free = True
         try:
             if fcntl is not None:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             elif msvcrt is not None:
                 lock.seek(0)
                 msvcrt.locking(lock.fileno(), msvcrt.LK_NBLCK, 1)
-        except OSError:
-            yield False
-            return
-        yield True
+        except OSError as error:
+            is_free = error.errno not in _IS_HELD
+            if is_free:
+                warn(
+                    f"The disk of {folder.parent} has no locks ({error.strerror or error}), so that a second run into "
+                    "this folder would not be noticed; start none before this one has ended."
+                )
+        yield is_free
 
 
 @contextmanager

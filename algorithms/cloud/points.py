@@ -331,3 +331,28 @@ def write_points(
         writer.header.vlrs.append(las.vlrs.known.LasZipVlr(laszip_record.data))
     header.finish(stream, writer.header)
     monitor.progress(1.0)
+
+
+def check_count(stream: BinaryIO, path: Path, count: int) -> None:
+    """Read back how many points a file has that was just written, and refuse it if that is another number.
+
+    Parameters
+    ----------
+    stream : file
+        The file, which may have another name until it is complete.
+    path : Path
+        The name for the message.
+    count : int
+        Number of points that were to be written.
+
+    Raises
+    ------
+    ValueError
+        If it has more or fewer, or can't be read.
+    """
+    stream.flush()
+    written = Path(stream.name)
+    header = open_header(written)
+    check_points(written, header)
+    if header.count != count:
+        raise ValueError(f"{path.name} would have {header.count:,} instead of {count:,} points; it is not written.")

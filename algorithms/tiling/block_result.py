@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-import zipfile
-import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
 from ..stage import LayerFeatures
-from .array_files import write_arrays
+from .array_files import is_as_written, write_arrays
 
 # Fields of a result with arrays by name: of dimensions, rasters, layers, steps or values.
 _KINDS = (
@@ -114,13 +113,20 @@ class BlockResult:
             )
 
     @classmethod
-    def is_complete(cls, path: Path) -> bool:
-        """Whether a file holds what :meth:`write` wrote; one that is missing, cut off or damaged does not."""
-        try:
-            cls.read(path)
-        except (OSError, EOFError, KeyError, ValueError, TypeError, zipfile.BadZipFile, zlib.error):
+    def is_complete(cls, path: Path, counts: Optional[Sequence[int]] = None) -> bool:
+        """Whether a file holds what :meth:`write` wrote, of files with these numbers of points if they are known.
+
+        One that is missing, cut off, damaged or somebody else's does not.
+        """
+        if not is_as_written(path):
             return False
-        return True
+        if counts is None:
+            return True
+        with np.load(path, allow_pickle=False) as stored:
+            source, position = stored["source"], stored["position"]
+        if source.shape != position.shape or not ((source >= 0) & (source < len(counts))).all():
+            return False
+        return bool(((position >= 0) & (position < np.asarray(counts, np.int64)[source])).all())
 
     @classmethod
     def edges(cls, path: Path) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:

@@ -9,7 +9,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..cloud.outputs import LAS, LAZ, os_errors_as_messages, replacing, working_folder
-from ..cloud.points import chunks_near, write_points
+from ..cloud.points import check_count, chunks_near, write_points
 from ..cloud.vpc import fill_merged
 from ..geometry.groups import run_starts
 from ..stage import Monitor
@@ -60,6 +60,10 @@ def cut_into_tiles(
         blocks = _sort_out(survey, side, heaps, monitor.part(0.0, _READ))
         if not blocks:
             raise ValueError("The survey has no points within the extent; choose another extent.")
+        size = survey.header.layout.dtype.itemsize
+        count = sum((heaps / block.name).stat().st_size for block in blocks) // size
+        if survey.extent is None and count != len(survey):
+            raise ValueError(f"The tiles would have {count:,} of the {len(survey):,} points; nothing was written.")
         tiles = []
         for done, block in enumerate(blocks):
             tile = folder / f"{stem}_{block.name}{kind}"
@@ -68,6 +72,7 @@ def cut_into_tiles(
             part = monitor.part(_READ, 1.0).part(done / len(blocks), (done + 1) / len(blocks))
             with replacing(tile) as stream:
                 _write(survey, records, compressed, stream, part)
+                check_count(stream, tile, len(records))
             del records
             heap.unlink()
             tiles.append(tile)
@@ -100,6 +105,7 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
                 with os_errors_as_messages(folder.parent), (folder / Block(*position, side).name).open("ab") as heap:
                     # numpy's own way does not say why it could not write.
                     heap.write(records[start:stop].tobytes())
+        source.check_state()
     return [Block(column, row, side) for column, row in sorted(blocks, key=lambda position: position[::-1])]
 
 

@@ -12,6 +12,7 @@ import pickle  # nosec B403 - only to send: what comes back is read by the conne
 import subprocess  # nosec B404 - no shell, see below
 import sys
 import tempfile
+import time
 from collections.abc import Iterable
 from concurrent.futures import BrokenExecutor, Executor, Future
 from multiprocessing import Pipe
@@ -95,6 +96,13 @@ class Processes(Executor):
         for server in self._servers if wait else ():
             server.join()
 
+    def at_work(self) -> str:
+        """Return which processes are at work and since when, in words."""
+        with self._lock:
+            running = sorted((process.number, process.seconds) for process in self._running)
+        said = [f"process {number} has been at work for {seconds:.0f} s" for number, seconds in running]
+        return ", ".join(said) or "processes are being started"
+
     def _serve(self) -> None:
         """Have one process, and its successors, work on calls until there are no more."""
         process: Optional[_Process] = None
@@ -129,7 +137,7 @@ class Processes(Executor):
             self._running.add(process)
         try:
             process.prepare(self._threads)
-        except CannotStart:
+        except (CannotStart, EOFError, ConnectionError):
             self._ended(process)
             raise
         return process
@@ -170,6 +178,17 @@ class _Process:
             raise CannotStart(_not_started(python, error.strerror or str(error))) from error
         finally:
             other.close()
+        self._since = time.monotonic()
+
+    @property
+    def number(self) -> int:
+        """The number that the system gave it."""
+        return self._program.pid
+
+    @property
+    def seconds(self) -> float:
+        """How long it has been at work on its call, or starting (s)."""
+        return time.monotonic() - self._since
 
     def prepare(self, threads: int) -> None:
         """Send the process the folder of its package; wait until it has imported it.
@@ -177,16 +196,21 @@ class _Process:
         Raises
         ------
         CannotStart
-            If it ends before that.
+            If it ends before that by itself.
+        EOFError, ConnectionError
+            If the system ends it.
         """
         try:
             self._send((PACKAGE, str(FOLDER), self._search_path, threads))
             self._connection.recv()
         except (EOFError, ConnectionError):
-            self._program.wait()
+            code = self._program.wait()
             self._errors.seek(0)
             lines = self._errors.read().decode(errors="replace").strip().splitlines()
-            why = lines[-1] if lines else f"it ended with code {self._program.returncode}"
+            # A signal has a negative code; on Windows whoever ends a process chooses its code.
+            if code < 0 or (os.name == "nt" and not lines):
+                raise
+            why = lines[-1] if lines else f"it ended with code {code}"
             raise CannotStart(_not_started(self._python, why)) from None
 
     def call(self, function: Callable, arguments: tuple) -> Any:
@@ -197,6 +221,7 @@ class _Process:
         EOFError, ConnectionError
             If the process ends before it has answered.
         """
+        self._since = time.monotonic()
         self._send((function, arguments))
         returned, value, trace = self._connection.recv()
         if returned:

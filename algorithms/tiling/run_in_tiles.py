@@ -16,7 +16,6 @@ from typing import Any, Callable, NamedTuple, Optional, Union
 import numpy as np
 
 from ..cloud.copc_index import has_index
-from ..cloud.files import readable
 from ..cloud.outputs import LAS
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
@@ -28,7 +27,7 @@ from .cutting import cut_into_tiles
 from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
 from .mosaics import join_rasters
-from .survey import Survey, files_of_survey, open_survey, tiles_folder
+from .survey import Source, Survey, files_of_survey, open_survey, tiles_folder
 from .survey_sampling import samplings_of
 from .survey_steps import SurveySteps
 from .tile_writing import TileWriter, unique_stems
@@ -44,10 +43,7 @@ from .tiled_run import (
 )
 from .tiled_steps import in_blocks, layers_of, owners, tunables_of, why_whole
 from .work_folder import remove_work, work_folder
-from .workers import run_all
-
-# Seconds between two messages about how far it is.
-_BETWEEN_MESSAGES = 10.0
+from .workers import BETWEEN_MESSAGES, run_all
 
 
 def run_in_tiles(
@@ -95,7 +91,7 @@ def run_in_tiles(
         step.stage.check(chosen)
     given = [Path(path) for path in paths]
     survey = open_survey(given, options.crs_units, monitor, options.extent, options.crs)
-    with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder) as work:
+    with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder, monitor.warn) as work:
         return _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
 
 
@@ -197,7 +193,7 @@ class _Run:
         if not large:
             return
         pieces = self.settings.work / "pieces"
-        key = self._key([source.path for source in large], side, str(self.survey.extent))
+        key = self._key(large, side, str(self.survey.extent))
         if not (pieces / key).is_file():
             shutil.rmtree(pieces, ignore_errors=True)
             pieces.mkdir()
@@ -220,17 +216,21 @@ class _Run:
         options = self.settings.options
         return open_survey(paths, options.crs_units, extent=self.survey.extent, crs=options.crs)
 
-    def _key(self, paths: Iterable[Path], *facts: Any) -> str:
-        """Return a name for the result of files in their present state, of facts, tunables and this version."""
+    def _key(self, sources: Iterable[Source], *facts: Any) -> str:
+        """Return a name for the result of files in the state at the start, of facts, tunables and this version."""
         settings = self.settings
-        described = [[_state(path) for path in paths], settings.pipeline.name, settings.tunables, _version(), facts]
+        states = [[str(source.path.resolve()), *source.state] for source in sources]
+        described = [states, settings.pipeline.name, settings.tunables, _version(), facts]
         return hashlib.sha256(json.dumps(described, default=str, sort_keys=True).encode()).hexdigest()[:16]
 
     def _work_on_blocks(self, executor: Any, plan: _Plan) -> WorkedOn:
         """Have all blocks worked on that are not done yet."""
         blocks = blocks_of(self.survey, plan.side)
         tasks = [self._task(block, plan) for block in blocks]
-        known = {number: task.result for number, task in enumerate(tasks) if BlockResult.is_complete(task.result)}
+        counts = [source.header.count for source in self.survey.sources]
+        known = {
+            number: task.result for number, task in enumerate(tasks) if BlockResult.is_complete(task.result, counts)
+        }
         if known:
             self.monitor.inform(
                 f"{len(known)} of {len(blocks)} blocks were worked on before and are taken as they are."
@@ -251,7 +251,7 @@ class _Run:
         near = self.survey.near(block.box + margin)
         # Results identify files by their numbers, which change when a file is added or taken away.
         key = self._key(
-            (self.survey.sources[one].path for one in near),
+            (self.survey.sources[one] for one in near),
             near,
             block.name,
             block.side,
@@ -276,7 +276,7 @@ class _Run:
             nonlocal done, last
             done += 1
             now = time.monotonic()
-            if now - last > _BETWEEN_MESSAGES or done == blocks:
+            if now - last > BETWEEN_MESSAGES or done == blocks:
                 last = now
                 pace = done / max(now - start, 1e-9)
                 self.monitor.inform(
@@ -328,13 +328,6 @@ class _Run:
         for sentence, given in Counter(one for result in found for one in result.absent).items():
             if given == count:
                 self.monitor.none_found(sentence)
-
-
-def _state(path: Path) -> tuple[str, int, int]:
-    """Return what identifies a state of a file: where it is, its size, when it was written."""
-    with readable(path):
-        stat = path.stat()
-    return str(path.resolve()), stat.st_size, stat.st_mtime_ns
 
 
 def _minutes(seconds: float) -> str:

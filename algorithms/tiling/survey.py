@@ -20,6 +20,9 @@ from ..cloud.units import Resolver, Units, units_of, wkt_of
 from ..cloud.vpc import check_tiles, fill_merged, merged_header
 from ..stage import Monitor
 
+# The folder among the tiles with the COPC files that QGIS shows.
+SHOWN = "shown"
+
 # Dimensions by which two records are recognized as the same measurement.
 _KEYS = ("gps_time", "return_number", "number_of_returns", "point_source_id", "intensity")
 
@@ -34,6 +37,25 @@ class Source:
     path: Path
     header: Header
     box: np.ndarray
+    state: tuple[int, int]  #: Size and time of the last change, see :func:`state_of`, before anything was read
+
+    def check_state(self) -> None:
+        """Refuse a file that has changed since: headers, positions of points and results would not fit each other.
+
+        Raises
+        ------
+        ValueError
+            If its size or the time of its last change differs.
+        """
+        if state_of(self.path) != self.state:
+            raise ValueError(f"{self.path.name} has changed since the run began; run it again when it is complete.")
+
+
+def state_of(path: Path) -> tuple[int, int]:
+    """Return what shows whether a file has changed: its size, and when it was written (ns)."""
+    with readable(path):
+        stat = path.stat()
+    return stat.st_size, stat.st_mtime_ns
 
 
 @dataclass(frozen=True)
@@ -180,6 +202,7 @@ class Survey:
                     records = np.zeros(len(rows), self.header.layout.dtype)
                     fill_merged(records, chunk[rows], header, self.header)
                     yield start + rows, records
+        source.check_state()
 
     def _in_order(self, records: np.ndarray, source: np.ndarray, position: np.ndarray) -> Window:
         """Sort records by their measurements, and keep each measurement once."""
@@ -242,7 +265,9 @@ def open_survey(
         outside of the extent.
     """
     monitor = monitor or Monitor()
-    files, headers = open_headers(files_of_survey(paths), monitor)
+    files = files_of_survey(paths)
+    states = {file: state_of(file) for file in files}
+    files, headers = open_headers(files, monitor)
     check_tiles(files, headers)
     for file, header in zip(files, headers):
         check_points(file, header)
@@ -252,7 +277,7 @@ def open_survey(
         named = header = header_with_crs(header, *crs)
     units = units_of(named, crs_units)
     units.report(monitor)
-    sources = tuple(Source(file, one, _box(one, units)) for file, one in zip(files, headers))
+    sources = tuple(Source(file, one, _box(one, units), states[file]) for file, one in zip(files, headers))
     if extent is not None:
         sources = _within_extent(sources, extent * units.horizontal)
     survey = Survey(sources, header.without(*OF_OLD_POINTS), units, wkt_of(named), extent=extent)
@@ -334,7 +359,10 @@ def tiles_folder(folder: Path, inputs: Iterable[Path]) -> Iterator[None]:
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{folder} is a file; choose a folder for the tiles.")
     with made_folder(folder):
+        shown = folder / SHOWN
+        if shown.is_symlink():
+            raise ValueError(f"{shown} is a link, which no run makes; remove it or choose another folder.")
         with os_errors_as_messages(folder):
-            names = sorted(folder.iterdir())
+            names = sorted([*folder.iterdir(), *shown.glob("*")])
         check_not_read(names, inputs)
         yield

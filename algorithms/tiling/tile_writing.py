@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any, Optional
 
@@ -12,14 +14,14 @@ from ..cloud.outputs import COPC, stem_of
 from ..cloud.points import open_header
 from .array_files import write_arrays
 from .blocks import Block
-from .survey import Source, boxes_meet
+from .survey import SHOWN, Source, boxes_meet
 from .tiled_run import JOINED, RunSettings, TilesOutcome, WorkedOn
-from .tiles import TileTask, points_outside, rows_of, write_tile
+from .tiles import Tile, TileTask, points_outside, rows_of, write_tile
 from .views import View
 from .workers import run_all
 
-# The folder among the tiles with the COPC files that QGIS shows.
-SHOWN = "shown"
+# What follows the name of a file in the names of its pieces: the lower left corner of a block.
+_CORNER = re.compile(r"_-?\d+_-?\d+")
 
 
 class TileWriter:
@@ -47,11 +49,30 @@ class TileWriter:
         settings, outcome = self.settings, self.outcome
         tasks = self._tasks(blocks, self._final_numbers(blocks))
         part = settings.monitor.part(JOINED, 1.0)
+        _check_targets(tasks)
         results, errors = run_all(executor, write_tile, tasks, settings.stop, part, lambda _: None)
-        outcome.tiles = [results[at] for at in sorted(results) if results[at] is not None]
-        if outcome.survey.extent is not None:
-            outcome.points = sum(open_header(tile).count for tile in outcome.tiles)
-        outcome.failures += [f"{tasks[at].source.name}: {why}" for at, why in sorted(errors.items())]
+        outcome.failures += [f"{tasks[at].source.path.name}: {why}" for at, why in sorted(errors.items())]
+        self._take([results[at] for at in sorted(results)])
+
+    def _take(self, written: list[Tile]) -> None:
+        """Take over the tiles; hold the points that are in the files now against those that were read."""
+        outcome, survey = self.outcome, self.outcome.survey
+        in_files = 0
+        for tile in written:
+            if tile.path is None:
+                continue
+            outcome.tiles.append(tile.path)
+            count = open_header(tile.path).count
+            in_files += count
+            if count != tile.points:
+                outcome.failures.append(f"{tile.path.name} has {count:,} points of the {tile.points:,} written to it.")
+        if survey.extent is not None:
+            outcome.points = in_files
+        accounted = in_files + sum(tile.left_out for tile in written)
+        if survey.extent is None and not outcome.failures and accounted != len(survey):
+            outcome.failures.append(
+                f"The tiles account for {accounted:,} of the {len(survey):,} points read; do not use them."
+            )
 
     def _final_numbers(self, blocks: WorkedOn) -> list[Path]:
         """Write what the numbers of each block become; return the files."""
@@ -67,7 +88,7 @@ class TileWriter:
             (settings.folder / SHOWN).mkdir(exist_ok=True)
         tasks: list[TileTask] = []
         done, boxes, lost = blocks.done, _boxes(blocks.done_blocks), _boxes([block for block, _ in blocks.failed])
-        for number, (source, stem) in enumerate(zip(survey.sources, unique_stems(survey.sources))):
+        for number, (source, stem) in enumerate(zip(survey.sources, unique_stems(survey.sources, self.by_index))):
             near = np.flatnonzero(boxes_meet(boxes, source.box))
             is_lost = boxes_meet(lost, source.box).any()
             if source.path in self.by_index:
@@ -79,20 +100,20 @@ class TileWriter:
                 outcome.failures.append(f"{source.path.name} is not written, as a block of it failed.")
             else:
                 parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
-                tasks.append(self._tile(source.path, number, stem, parts, final))
+                tasks.append(self._tile(source, number, stem, parts, final))
         return tasks
 
     def _pieces(self, number: int, stem: str, blocks: list[tuple[Block, Path, Path]]) -> list[TileTask]:
         """Return the tiles of a file that is cut by its index: one for each block, with its result and numbers."""
-        path = self.outcome.survey.sources[number].path
+        source = self.outcome.survey.sources[number]
         return [
-            self._tile(path, number, f"{stem}_{block.name}", (result,), (numbers,), block.box)
+            self._tile(source, number, f"{stem}_{block.name}", (result,), (numbers,), block.box)
             for block, result, numbers in blocks
         ]
 
     def _tile(
         self,
-        path: Path,
+        source: Source,
         number: int,
         name: str,
         parts: tuple[Path, ...],
@@ -103,8 +124,8 @@ class TileWriter:
         settings, survey = self.settings, self.outcome.survey
         target = settings.folder / f"{name}{settings.options.suffix}"
         shown = settings.folder / SHOWN / f"{name}{COPC}" if settings.options.shown else None
-        of_survey = settings.stop, survey.units, survey.extent
-        return TileTask(path, number, target, parts, numbers, *of_survey, piece, self.view, settings.options.crs, shown)
+        of_survey, crs = (settings.stop, survey.units, survey.extent), settings.options.crs
+        return TileTask(source, number, target, parts, numbers, *of_survey, piece, self.view, crs, shown)
 
 
 def _boxes(blocks: list[Block]) -> np.ndarray:
@@ -112,15 +133,40 @@ def _boxes(blocks: list[Block]) -> np.ndarray:
     return np.array([block.box for block in blocks]).reshape(-1, 2, 2)
 
 
-def unique_stems(sources: Iterable[Source]) -> list[str]:
-    """Return the names of files without extension, each once, also where two folders have files of one name."""
+def _check_targets(tasks: list[TileTask]) -> None:
+    """Refuse tiles of which two would be one file, whatever their names were made of.
+
+    Raises
+    ------
+    ValueError
+        With the name that two have.
+    """
+    for name, count in Counter(str(task.target).lower() for task in tasks).items():
+        if count > 1:
+            raise ValueError(f"{count} tiles would be written to {name}; give the files of the survey other names.")
+
+
+def unique_stems(sources: Iterable[Source], by_index: Collection[Path] = ()) -> list[str]:
+    """Return the names of files without extension, each once, also where two folders have files of one name.
+
+    Those ``by_index`` become tiles with the corner of a block behind the name: none has the name of another file then.
+    """
+    sources = list(sources)
     # Some file systems don't distinguish upper from lower case.
-    taken: dict[str, str] = {}
-    for source in sources:
-        stem = name = stem_of(source.path)
+    taken: set[str] = set()
+    stems: dict[int, str] = {}
+    for number in sorted(range(len(sources)), key=lambda number: sources[number].path in by_index):
+        path = sources[number].path
+        stem = name = stem_of(path)
         again = 1
-        while name.lower() in taken:
+        while name.lower() in taken or (path in by_index and _is_of_piece(name.lower(), taken)):
             again += 1
             name = f"{stem}_{again}"
-        taken[name.lower()] = name
-    return list(taken.values())
+        taken.add(name.lower())
+        stems[number] = name
+    return [stems[number] for number in range(len(sources))]
+
+
+def _is_of_piece(stem: str, names: Iterable[str]) -> bool:
+    """Whether a piece of a file of this name could have one of these names."""
+    return any(one.startswith(stem) and _CORNER.fullmatch(one, len(stem)) for one in names)

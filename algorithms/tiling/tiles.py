@@ -17,6 +17,7 @@ from ..cloud.units import Units, wkt_of
 from ..stage import Monitor
 from .block_result import BlockResult
 from .blocks import REFERRING, StoppableMonitor
+from .survey import Source
 from .views import View
 
 
@@ -24,7 +25,7 @@ from .views import View
 class TileTask:
     """A tile of the output: the file that it is made of, and the blocks that have its points."""
 
-    source: Path  #: The file that the tile is made of
+    source: Source  #: The file that the tile is made of
     number: int  #: Its number in the survey
     target: Path  #: The tile
     results: tuple[Path, ...]  #: Results of the blocks that have its points
@@ -39,6 +40,15 @@ class TileTask:
     shown: Optional[Path] = None  #: COPC file of the tile that is written for QGIS to show
 
 
+@dataclass(frozen=True)
+class Tile:
+    """A tile that was written."""
+
+    path: Optional[Path]  #: The file; None where none of its points stay
+    points: int  #: How many points it has
+    left_out: int  #: How many of its points the chain has left out
+
+
 def points_outside(path: Path, count: int) -> str:
     """Return the sentence on a file of which ``count`` points are in no block."""
     # Files are assigned to blocks by the bounds in their headers.
@@ -51,25 +61,27 @@ def rows_of(result: Path, number: int) -> np.ndarray:
         return np.flatnonzero(stored["source"] == number)
 
 
-def write_tile(task: TileTask) -> Optional[Path]:
-    """Write a tile with what its blocks found; return it, None where the extent of the survey holds none of its points.
+def write_tile(task: TileTask) -> Tile:
+    """Write a tile with what its blocks found; return it.
 
     Raises
     ------
     ValueError
-        If a file can't be read or written.
+        If a file can't be read or written, or has changed since the run began.
     """
     position = None if task.extent is None and task.piece is None else _positions(task)
     if position is not None and not len(position):
-        return None
+        return Tile(None, 0, 0)
     monitor = StoppableMonitor(task.stop)
     cloud = _points_of(task, position, monitor)
+    task.source.check_state()
     stays, values, worked_on = _results_of_blocks(task, position, len(cloud))
-    if worked_on < len(cloud):
-        raise ValueError(points_outside(task.source, len(cloud) - worked_on))
+    if worked_on != len(cloud):
+        raise ValueError(points_outside(task.source.path, len(cloud) - worked_on))
     rows = np.flatnonzero(stays)
     if not len(rows):
-        return None
+        return Tile(None, 0, len(cloud))
+    left_out = len(cloud) - len(rows)
     cloud = cloud if len(rows) == len(cloud) else cloud.take(rows)
     for name, whole in values.items():
         cloud.set(name, whole[rows] - cloud.origin if name == "xyz" else whole[rows])
@@ -78,7 +90,7 @@ def write_tile(task: TileTask) -> Optional[Path]:
         write_cloud(cloud, task.shown, monitor)
     if task.view is not None:
         task.view.add(task.target.name, cloud)
-    return task.target
+    return Tile(task.target, len(cloud), left_out)
 
 
 def _results_of_blocks(
@@ -113,18 +125,19 @@ def _results_of_blocks(
 
 def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor) -> Cloud:
     """Return the points of a file that a tile is made of, in its order; of a piece those at ``position`` (n,)."""
+    path = task.source.path
     if task.piece is None or position is None:
-        cloud = read_cloud(task.source, monitor, box=task.extent)
+        cloud = read_cloud(path, monitor, box=task.extent)
         # A worker has no database to look units up in.
         return Cloud(_named(cloud.header, task.crs), cloud.points, task.units, cloud.files)
-    header = open_header(task.source)
+    header = open_header(path)
     found = [np.empty(0, header.layout.dtype)]
-    with readable(task.source):
-        for start, records in chunks_near(task.source, header, task.piece / task.units.horizontal, monitor):
+    with readable(path):
+        for start, records in chunks_near(path, header, task.piece / task.units.horizontal, monitor):
             first, end = np.searchsorted(position, [start, start + len(records)])
             found.append(records[position[first:end] - start])
     header = replace(header.without(*OF_OLD_POINTS), count=len(position))
-    return Cloud(_named(header, task.crs), np.concatenate(found), task.units, [task.source])
+    return Cloud(_named(header, task.crs), np.concatenate(found), task.units, [path])
 
 
 def _named(header: Header, crs: Optional[tuple[str, str]]) -> Header:

@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Callable
 
 from ..cloud.outputs import LOCK, locked_folder
 
@@ -17,10 +18,10 @@ _MADE = ("block-*.npz", "numbers-*.npz", "view-*.npz", _STOP, "pieces", ".lb-*.p
 
 
 @contextmanager
-def work_folder(folder: Path) -> Iterator[Path]:
+def work_folder(folder: Path, warn: Callable[[str], None] = lambda _: None) -> Iterator[Path]:
     """Give the folder in which a run keeps the results of blocks; refuse it while another run has it.
 
-    At the end it is removed if it holds no results.
+    At the end it is removed if it holds no results. ``warn`` is told of a disk that knows no locks.
 
     Raises
     ------
@@ -42,7 +43,7 @@ def work_folder(folder: Path) -> Iterator[Path]:
         raise ValueError(f"{work} was made by no run; rename it or choose another folder.")
     is_ours = False
     try:
-        with locked_folder(work) as is_ours:
+        with locked_folder(work, warn) as is_ours:
             if not is_ours:
                 raise ValueError(f"Another run is writing to {folder}; wait for its end or choose another folder.")
             (work / _STOP).unlink(missing_ok=True)

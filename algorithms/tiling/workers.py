@@ -6,6 +6,7 @@ import os
 import pickle  # nosec B403 - what goes to the cluster that the user has confirmed; no file is unpickled
 import shutil
 import tempfile
+import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
@@ -22,6 +23,9 @@ from .processes import FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
 # Seconds between two checks for a cancellation by the user.
 _BETWEEN_LOOKS = 0.5
 
+# Seconds between two messages about what is done or waited for.
+BETWEEN_MESSAGES = 10.0
+
 # Seconds that a scheduler has to answer.
 _ANSWER = 15
 
@@ -35,6 +39,11 @@ _ALL_DIED = "KilledWorker"
 _ENDED = (
     "the processes that worked on it were ended, by the system where memory was short; run it again with fewer "
     "processes or smaller blocks"
+)
+
+# The message where a cluster has forgotten what it was given.
+_DROPPED = (
+    "The Dask scheduler has ended or dropped the work; start it and the same run again, which goes on from there."
 )
 
 # The most processes that concurrent.futures allows on Windows.
@@ -111,7 +120,7 @@ class Workers:
             client.register_plugin(distributed.diagnostics.plugin.UploadFile(str(_archive(Path(folder)))))
             executor = client.get_executor(pure=False, retries=1)
             try:
-                yield _Remote(executor)
+                yield _Remote(client, executor)
             finally:
                 executor.shutdown(wait=False)
 
@@ -132,12 +141,21 @@ class _Remote(Executor):
     The scheduler unpickles functions and arguments that it passes on, but only workers have this program.
     """
 
-    def __init__(self, executor: Executor) -> None:
-        self._executor = executor
+    def __init__(self, client: Any, executor: Executor) -> None:
+        self._client, self._executor = client, executor
 
     def submit(self, fn: Callable, /, *args: Any, **kwargs: Any) -> Future:
         """Have a worker call a function with one argument."""
+        if self._client.status != "running":
+            raise ValueError(_DROPPED)
         return self._executor.submit(pickle.loads, pickle.dumps(_Call(fn, *args)))
+
+    def at_work(self) -> str:
+        """Return who is at work, in words."""
+        if self._client.status != "running":
+            return "the Dask scheduler does not answer"
+        count = len(self._client.scheduler_info()["workers"])
+        return f"the Dask scheduler has {count or 'no'} worker{'s' * (count != 1)}"
 
 
 def _archive(folder: Path) -> Path:
@@ -165,7 +183,7 @@ def run_all(
     stop : Path
         A file by which running work stops; it is made when the user cancels.
     monitor : Monitor
-        Receives the share of tasks that are done.
+        Receives the share of tasks that are done, and what is waited for where none is done for a while.
     on_done : callable
         Is called with the position of every task that is done.
 
@@ -174,31 +192,30 @@ def run_all(
     Cancelled
         If the user cancels; no work is left running then.
     ValueError
-        If processes of this machine can't be started, or the disk is full.
+        If processes of this machine can't be started, the disk is full, or a scheduler has ended.
     """
     waiting = {executor.submit(work, task): number for number, task in enumerate(tasks)}
     results: dict[int, Any] = {}
     failed: dict[int, str] = {}
     open_: set[Future] = set(waiting)
+    last = time.monotonic()
     try:
         while open_:
             done, open_ = wait(open_, timeout=_BETWEEN_LOOKS, return_when=FIRST_COMPLETED)
+            if done:
+                last = time.monotonic()
+            elif time.monotonic() - last > BETWEEN_MESSAGES:
+                last = time.monotonic()
+                monitor.inform(f"Waiting for {len(open_)} of {len(tasks)} tasks: {_at_work(executor)}.")
             for future in done:
                 number = waiting[future]
+                if future.cancelled():
+                    raise ValueError(_DROPPED)
                 error = future.exception()
                 if error is None:
                     results[number] = future.result()
-                elif isinstance(error, DiskFullError):
-                    # All other work would be done in vain.
-                    raise error
-                elif isinstance(error, (ValueError, OSError, MemoryError)):
-                    failed[number] = str(error) or type(error).__name__
-                elif isinstance(error, CannotStart):
-                    raise ValueError(str(error)) from error
-                elif isinstance(error, WorkerEnded) or type(error).__name__ == _ALL_DIED:
-                    failed[number] = f"{_ENDED}."
                 else:
-                    raise error
+                    failed[number] = _why_failed(error)
                 on_done(number)
             monitor.progress(1 - len(open_) / max(1, len(tasks)))
     except BaseException as error:
@@ -211,3 +228,21 @@ def run_all(
             wait([future for future in open_ if not future.cancelled()], timeout=_TO_STOP)
         raise
     return results, failed
+
+
+def _why_failed(error: BaseException) -> str:
+    """Return why a task failed, in a sentence; raise what all other work would fail with, too."""
+    if isinstance(error, DiskFullError):
+        raise error
+    if isinstance(error, (ValueError, OSError, MemoryError)):
+        return str(error) or type(error).__name__
+    if isinstance(error, CannotStart):
+        raise ValueError(str(error)) from error
+    if isinstance(error, WorkerEnded) or type(error).__name__ == _ALL_DIED:
+        return f"{_ENDED}."
+    raise error
+
+
+def _at_work(executor: Executor) -> str:
+    """Return who is at work for an executor of :class:`Workers`, in words."""
+    return executor.at_work() if isinstance(executor, (Processes, _Remote)) else "this process is at work"

@@ -5,16 +5,19 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud import files as files_module
 from lidar_buildings.algorithms.cloud import outputs
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.copc_sidecar import copc_path
 from lidar_buildings.algorithms.cloud.files import check_write, read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.outputs import all_or_nothing, replacing
+from lidar_buildings.algorithms.cloud.points import write_points
 from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.tests.monitors import Listening
 
@@ -265,17 +268,51 @@ def test_what_belongs_to_an_older_file_goes_with_it(folder):
     assert names(folder) == ["a.db"]
 
 
-def test_links_are_followed_and_permissions_kept(folder, tmp_path):
-    (tmp_path / "elsewhere").mkdir()
-    real = tmp_path / "elsewhere" / "real.laz"
-    real.write_text("older")
-    real.chmod(0o664)
-    (folder / "link.laz").symlink_to(real)
+def test_permissions_of_what_is_replaced_are_kept(folder):
+    (folder / "a.laz").write_text("older")
+    (folder / "a.laz").chmod(0o664)
+    with replacing(folder / "a.laz") as stream:
+        stream.write(b"newer")
+    assert (folder / "a.laz").stat().st_mode & 0o777 == 0o664
+
+
+@pytest.mark.parametrize("leads_to", ["diary.txt", "nothing", "link.laz"])
+def test_a_link_is_replaced_and_what_it_leads_to_stays(folder, tmp_path, leads_to):
+    """A link of the name of a tile led to somebody's text, which became a point cloud."""
+    diary = tmp_path / "diary.txt"
+    diary.write_text("mine")
+    (folder / "link.laz").symlink_to(folder / leads_to if leads_to == "link.laz" else tmp_path / leads_to)
     with replacing(folder / "link.laz") as stream:
         stream.write(b"newer")
-    assert (folder / "link.laz").is_symlink()
-    assert real.read_text() == "newer"
-    assert real.stat().st_mode & 0o777 == 0o664
+    assert not (folder / "link.laz").is_symlink()
+    assert (folder / "link.laz").read_bytes() == b"newer"
+    assert diary.read_text() == "mine"
+    assert names(folder) == ["link.laz"]
+    assert names(tmp_path) == ["diary.txt", "out"]
+
+
+def test_a_link_is_there_again_where_its_run_fails(folder, tmp_path):
+    (tmp_path / "diary.txt").write_text("mine")
+    (folder / "a.txt").symlink_to(tmp_path / "diary.txt")
+
+    def blocked():
+        with all_or_nothing() as files:
+            for name in ("a.txt", "b.txt"):
+                files.beside(folder / name).write_text("newer")
+            (folder / "b.txt").mkdir()
+
+    with pytest.raises(ValueError, match="a folder is in its place"):
+        blocked()
+    assert (folder / "a.txt").is_symlink()
+    assert (tmp_path / "diary.txt").read_text() == "mine"
+
+
+def test_a_link_to_the_folder_is_followed(folder, tmp_path):
+    (tmp_path / "here").symlink_to(folder)
+    with replacing(tmp_path / "here" / "a.laz") as stream:
+        stream.write(b"newer")
+    assert names(folder) == ["a.laz"]
+    assert (tmp_path / "here").is_symlink()
 
 
 def test_a_device_is_refused(folder):
@@ -329,6 +366,54 @@ def test_a_folder_of_someone_else_is_not_swept(folder):
     with replacing(folder / "a.txt") as stream:
         stream.write(b"newer")
     assert names(folder) == [theirs.name, "a.txt"]
+
+
+def test_what_another_computer_writes_is_not_swept(folder, monkeypatch):
+    """Locks of some network disks hold on one computer only: it looked abandoned to all others."""
+    with monkeypatch.context() as there:
+        there.setattr(outputs.platform, "node", lambda: "elsewhere")
+        files = outputs.ResultFiles()
+        theirs = files.beside(folder / "b.txt")
+    theirs.write_text("half of a large file")
+    (left,) = folder.iterdir()
+    os.utime(left, (time.time() - 60,) * 2)
+    monkeypatch.setattr(outputs.fcntl, "flock", lambda *_: None)
+    for computer, names_left in (("here", [left.name, "a.txt"]), ("elsewhere", ["a.txt"])):
+        monkeypatch.setattr(outputs.platform, "node", lambda computer=computer: computer)
+        with replacing(folder / "a.txt") as stream:
+            stream.write(b"newer")
+        assert names(folder) == names_left
+    files.discard()
+
+
+@pytest.mark.skipif(outputs.fcntl is None, reason="flock is for all but Windows")
+@pytest.mark.parametrize(("error", "is_free"), [("EWOULDBLOCK", False), ("EOPNOTSUPP", True), ("ENOLCK", True)])
+def test_a_disk_without_locks_is_no_other_run(folder, monkeypatch, error, is_free):
+    """Every survey on it was refused: another run was said to write there."""
+    number, said = getattr(errno, error), []
+
+    def flock(*_):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(outputs.fcntl, "flock", flock)
+    with outputs.locked_folder(folder, said.append) as found:
+        assert found == is_free
+    assert len(said) == is_free
+    assert all("has no locks" in sentence for sentence in said)
+    with replacing(folder / "a.txt") as stream:
+        stream.write(b"newer")
+    assert (folder / "a.txt").read_bytes() == b"newer"
+
+
+def test_a_file_that_holds_other_points_than_were_to_be_written_is_refused(cloud, folder, monkeypatch):
+    def losing(stream, header, chunks, *rest):
+        write_points(stream, replace(header, count=header.count - 1), chunks, *rest)
+
+    monkeypatch.setattr(files_module, "write_points", losing)
+    for name in ("a.las", "a.laz"):
+        with pytest.raises(ValueError, match=f"{name} would have 2,999 instead of 3,000 points"):
+            write_cloud(cloud, folder / name)
+    assert names(folder) == []
 
 
 def test_a_folder_is_locked_where_there_is_no_flock(folder, monkeypatch):

@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -16,7 +17,7 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.tiling import processes
+from lidar_buildings.algorithms.tiling import processes, workers
 from lidar_buildings.algorithms.tiling.block_result import BlockResult
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
@@ -147,6 +148,47 @@ def test_processes_that_cant_start_are_a_sentence(survey, tmp_path, monkeypatch)
             run(survey, tmp_path / "out", workers=Workers(processes=2))
 
 
+def test_a_worker_that_is_killed_while_it_starts_costs_nothing_but_time(survey, whole, tmp_path, monkeypatch):
+    """It ended the survey, with the advice to use one process; later kills were survived."""
+    starting = tmp_path / "python3"
+    starting.write_text(f'#!/bin/sh\nif mkdir "{tmp_path}/once"; then kill -9 $$; fi\nexec {sys.executable} "$@"\n')
+    starting.chmod(0o755)
+    monkeypatch.setattr(processes, "own_python", lambda: str(starting))
+    outcome = run(survey, tmp_path / "out", workers=Workers(processes=2))
+    assert (tmp_path / "once").is_dir()
+    assert outcome.failures == []
+    assert contents(tmp_path / "out") == whole
+
+
+class Continuing(Monitor):
+    """Has stopped workers go on once the log has named one."""
+
+    def inform(self, sentence):
+        super().inform(sentence)
+        for number in workers_of(os.getpid()):
+            os.kill(number, signal.SIGCONT)
+
+
+def stop_oneself(once):
+    """Stop this process, as a terminal or a debugger does."""
+    if not once.exists():
+        once.touch()
+        os.kill(os.getpid(), signal.SIGSTOP)
+    return 1
+
+
+def test_what_is_waited_for_is_said(tmp_path, monkeypatch):
+    """A worker that was stopped held the run up for ever, without a word."""
+    monkeypatch.setattr(workers, "BETWEEN_MESSAGES", 1.0)
+    monitor = Continuing()
+    with Workers(processes=2).open() as executor:
+        results, failed = run_all(
+            executor, stop_oneself, [tmp_path / "once"], tmp_path / "stop", monitor, lambda number: None
+        )
+    assert (results, failed) == ({0: 1}, {})
+    assert re.fullmatch(r"Waiting for 1 of 1 tasks: process \d+ has been at work for \d+ s\.", monitor.infos[-1])
+
+
 def sleep(seconds):
     time.sleep(seconds)
 
@@ -257,15 +299,58 @@ def test_the_search_path_of_workers_has_no_folder_of_data_and_none_that_is_relat
     assert processes._trusted(path, {tmp_path.resolve()}) == ["/usr/lib"]
 
 
+def moved(path):
+    """Write a result whose points are none of the files', as the program itself writes it."""
+    result = BlockResult.read(path)
+    result.position += 1_000_000
+    result.write(path)
+
+
+def other_shape(path):
+    """Write all arrays anew, one of them with an axis more."""
+    with np.load(path) as stored:
+        arrays = dict(stored)
+    np.savez(path, **{**arrays, "position": arrays["position"][None]})
+
+
+def locked(path):
+    """Set the bit of the archive by which Python takes its first array for encrypted."""
+    raw = bytearray(path.read_bytes())
+    raw[raw.rindex(b"PK\x01\x02") + 8] |= 1
+    path.write_bytes(raw)
+
+
+def flipped(path):
+    """Change a bit in the middle, where the points are."""
+    raw = bytearray(path.read_bytes())
+    raw[len(raw) // 2] ^= 1
+    path.write_bytes(raw)
+
+
+DAMAGES = (
+    lambda path: path.write_bytes(path.read_bytes()[:5000]),
+    lambda path: np.savez(path, source=np.array([object()], object)),
+    lambda path: path.write_bytes(b""),
+    moved,
+    other_shape,
+    locked,
+    flipped,
+    lambda path: np.savez_compressed(path, source=np.zeros(10_000_000)),
+)
+
+
 def test_a_damaged_result_of_a_block_is_worked_on_again(survey, whole, tmp_path):
     with pytest.raises(Cancelled):
         run(survey, tmp_path / "out", Listening(stop_at=0.87), workers=Workers(processes=1))
     work = tmp_path / "out" / ".lidar-buildings"
-    *rest, empty, planted, cut = sorted(work.glob("block-*.npz"), key=lambda path: path.stat().st_size)
-    cut.write_bytes(cut.read_bytes()[:5000])
-    np.savez(planted, source=np.array([object()], object))
-    empty.write_bytes(b"")
-    assert [BlockResult.is_complete(path) for path in (cut, planted, empty, rest[0])] == [False, False, False, True]
+    found = sorted(work.glob("block-*.npz"), key=lambda path: -path.stat().st_size)
+    for path, damage in zip(found, DAMAGES):
+        damage(path)
+    n_damaged = len(DAMAGES)
+    assert [BlockResult.is_complete(path, [20_000] * 4) for path in found] == [
+        at >= n_damaged for at in range(len(found))
+    ]
+    assert len(found) > n_damaged
     assert run(survey, tmp_path / "out", workers=Workers(processes=1)).failures == []
     assert contents(tmp_path / "out") == whole
 

@@ -1,6 +1,7 @@
 """Files that are tiles of one cloud: none gets points of another, and all have the units of the survey."""
 
 import errno
+import os
 import struct
 import subprocess
 import sys
@@ -14,7 +15,8 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
+from lidar_buildings.algorithms.tiling import cutting, survey_sampling, tile_writing
+from lidar_buildings.algorithms.tiling import run_in_tiles as run_in_tiles_module
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import open_survey
@@ -133,6 +135,119 @@ def test_names_that_some_systems_take_for_one_are_separated(tmp_path):
         folder.mkdir()
     paths = [tile(folders[0] / "Tile.las", (0, 0)), tile(folders[1] / "tile.las", (30, 0), seed=1)]
     assert [made.name for made in run(paths, tmp_path / "out").tiles] == ["Tile.las", "tile_2.las"]
+
+
+def test_no_piece_of_a_large_file_has_the_name_of_another_file(tmp_path):
+    """The second one written won, and thousands of points were lost without a word."""
+    cloud = read_cloud(tile(tmp_path / "a.las", (0, 0), side=40.0))
+    write_cloud(cloud, tmp_path / "a.copc.laz")
+    (tmp_path / "a.las").unlink()
+    paths = [tmp_path / "a.copc.laz", tile(tmp_path / "A_600000_5000000.las", (100, 0), n=300, seed=1)]
+    outcome = run(paths, tmp_path / "out", largest_file=400, block_side=20.0)
+    assert not outcome.failures
+    assert len({path.name.lower() for path in outcome.tiles}) == 5
+    assert sum(len(read_cloud(path)) for path in outcome.tiles) == outcome.points == 800
+
+
+def test_tiles_of_one_name_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(tile_writing, "unique_stems", lambda sources, _: ["Tile", "tile"][: len(list(sources))])
+    paths = [tile(tmp_path / "a.las", (0, 0)), tile(tmp_path / "b.las", (30, 0), seed=1)]
+    with pytest.raises(ValueError, match=r"2 tiles would be written to .*tile\.las; give the files"):
+        run(paths, tmp_path / "out")
+    assert not list((tmp_path / "out").glob("*.las"))
+
+
+def test_points_that_are_in_no_tile_are_a_failure(tmp_path, monkeypatch):
+    write = tile_writing.write_tile
+
+    def overwritten(task):
+        made = write(task)
+        if task.source.path.name == "b.las":
+            made.path.write_bytes((tmp_path / "out" / "a.las").read_bytes())
+        return made
+
+    monkeypatch.setattr(tile_writing, "write_tile", overwritten)
+    paths = [tile(tmp_path / "a.las", (0, 0)), tile(tmp_path / "b.las", (30, 0), n=400, seed=1)]
+    assert run(paths, tmp_path / "out").failures == ["b.las has 500 points of the 400 written to it."]
+
+
+def test_a_cut_that_leaves_points_out_is_refused(tmp_path, monkeypatch):
+    path = tile(tmp_path / "a.las", (0, 0))
+    half = [(0, np.array(next(iter(cutting.chunks_near(path, *chunk)))[1][:250])) for chunk in [_chunk(path)]]
+    monkeypatch.setattr(cutting, "chunks_near", lambda *_: iter(half))
+    with pytest.raises(ValueError, match="would have 250 of the 500 points; nothing was written"):
+        cut_into_tiles(open_survey([path]), 10.0, tmp_path / "cut", "tile", False, Monitor())
+    assert not (tmp_path / "cut").exists()
+
+
+def _chunk(path):
+    survey = open_survey([path])
+    return survey.sources[0].header, survey.box, Monitor()
+
+
+@pytest.mark.parametrize("when", ["blocks", "tiles"])
+def test_a_file_that_changes_during_a_run_fails_by_name(tmp_path, monkeypatch, when):
+    """With its points in another order half of the classes were wrong, and nothing was said."""
+    paths = [tile(tmp_path / "a.las", (0, 0)), tile(tmp_path / "b.las", (200, 0), seed=1)]
+    module = run_in_tiles_module if when == "blocks" else tile_writing
+    run_all = module.run_all
+
+    def changing(*given):
+        cloud = read_cloud(paths[1])
+        write_cloud(cloud.take(np.arange(len(cloud))[::-1]), tmp_path / "c.las")
+        (tmp_path / "c.las").replace(paths[1])
+        return run_all(*given)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "run_all", changing)
+        outcome = run(paths, tmp_path / "out")
+    assert [one.name for one in outcome.tiles] == ["a.las"]
+    assert any("b.las has changed since the run began; run it again" in failure for failure in outcome.failures)
+    again = run(paths, tmp_path / "out")
+    expected = run(paths, tmp_path / "expected")
+    assert not again.failures
+    assert [one.read_bytes() for one in again.tiles] == [one.read_bytes() for one in expected.tiles]
+
+
+def test_a_file_that_changes_while_it_is_cut_is_refused(tmp_path, monkeypatch):
+    path, chunks_near = tile(tmp_path / "a.las", (0, 0)), cutting.chunks_near
+
+    def changing(*given):
+        yield from chunks_near(*given)
+        os.utime(path, ns=(0, 0))
+
+    monkeypatch.setattr(cutting, "chunks_near", changing)
+    with pytest.raises(ValueError, match="a.las has changed since the run began"):
+        cut_into_tiles(open_survey([path]), 10.0, tmp_path / "cut", "tile", False, Monitor())
+
+
+def test_a_link_among_the_tiles_is_replaced(tmp_path):
+    """Its target, somebody's text, became a point cloud."""
+    path, diary, out = tile(tmp_path / "a.las", (0, 0)), tmp_path / "diary.txt", tmp_path / "out"
+    diary.write_text("mine")
+    out.mkdir()
+    (out / "a.las").symlink_to(diary)
+    assert not run([path], out).failures
+    assert diary.read_text() == "mine"
+    assert len(read_cloud(out / "a.las")) == 500
+    assert not (out / "a.las").is_symlink()
+
+
+def test_the_folder_of_what_is_shown_is_no_link_and_has_no_input(tmp_path):
+    """The COPC files for QGIS went through the link, and in the place of an input of their name."""
+    path, out, elsewhere = tile(tmp_path / "a.las", (0, 0)), tmp_path / "out", tmp_path / "elsewhere"
+    for folder in (out, elsewhere):
+        folder.mkdir()
+    (out / "shown").symlink_to(elsewhere)
+    with pytest.raises(ValueError, match="shown is a link, which no run makes"):
+        run([path], out, shown=True)
+    (out / "shown").unlink()
+    (out / "shown").mkdir()
+    write_cloud(read_cloud(tile(tmp_path / "b.las", (30, 0), seed=1)), out / "shown" / "a.copc.laz")
+    before = (out / "shown" / "a.copc.laz").read_bytes()
+    with pytest.raises(ValueError, match=r"a\.copc\.laz is in the folder .*shown, where the tiles go, and is an input"):
+        run([path, out / "shown" / "a.copc.laz"], out, shown=True)
+    assert (out / "shown" / "a.copc.laz").read_bytes() == before
 
 
 def test_cutting_keeps_fields_of_one_name_apart(tmp_path):

@@ -16,6 +16,7 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.tiling import workers as workers_module
 from lidar_buildings.algorithms.tiling.processes import own_python
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
@@ -113,6 +114,48 @@ def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile,
     np.testing.assert_array_equal(one, other)
     assert len(outcome.layers["footprints"]) == 1
     assert Path(outcome.tiles[0]).is_file()
+
+
+def test_a_scheduler_that_ends_is_a_sentence_and_the_run_goes_on_with_another(tile, cluster, tmp_path):
+    """It was Python's CancelledError, without a word."""
+    address, files, processes = cluster
+    options = TilesOptions(Workers(scheduler=address, certificates=files), 20.0)
+    begun = time.monotonic()
+    with pytest.raises(ValueError, match="The Dask scheduler has ended or dropped the work; start it and the same"):
+        run_in_tiles(DETECT, [tile], tmp_path / "there", Killing(processes[0]), options)
+    assert time.monotonic() - begun < 120
+    monitor = Monitor()
+    outcome = run_in_tiles(DETECT, [tile], tmp_path / "there", monitor, TilesOptions(Workers(processes=1), 20.0))
+    assert outcome.failures == []
+    assert [one for one in monitor.infos if "were worked on before" in one]
+
+
+class Joining(Monitor):
+    """Starts a worker once the log has said that there is none."""
+
+    def __init__(self, start):
+        super().__init__()
+        self.start = start
+
+    def inform(self, sentence):
+        super().inform(sentence)
+        if "has no workers" in sentence and self.start:
+            self.start()
+            self.start = None
+
+
+def test_a_scheduler_without_workers_is_said(tile, cluster, tmp_path, monkeypatch):
+    """The run waited for ever, without a word."""
+    monkeypatch.setattr(workers_module, "BETWEEN_MESSAGES", 1.0)
+    address, files, processes = cluster
+    command = processes[1].args
+    for process in processes[1:]:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    monitor = Joining(lambda: processes.append(subprocess.Popen(command, cwd=tmp_path, start_new_session=True)))
+    options = TilesOptions(Workers(scheduler=address, certificates=files), 20.0)
+    assert run_in_tiles(DETECT, [tile], tmp_path / "there", monitor, options).failures == []
+    assert [one for one in monitor.infos if one.startswith("Waiting for 9 of 9 tasks: the Dask scheduler has no work")]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a script is no program on Windows")
