@@ -83,7 +83,9 @@ def find_input_layer(
     if found is None:
         raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; nothing was found at {value}.")
     kind = QgsWkbTypes.geometryType(found.wkbType())
-    if kind not in (_TYPES[input_layer.geometry], Qgis.GeometryType.Unknown):
+    # Files of some formats, such as GeoJSON, say of their geometries only what the features have.
+    is_empty = kind == Qgis.GeometryType.Null and found.featureCount() == 0
+    if not is_empty and kind not in (_TYPES[input_layer.geometry], Qgis.GeometryType.Unknown):
         raise ValueError(
             f"{input_layer.title} ({name}) must be a layer of {input_layer.objects}, got {found.sourceName()!r} with "
             f"{QgsWkbTypes.geometryDisplayString(kind).lower()} geometries; choose another."

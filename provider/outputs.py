@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Callable, Optional
@@ -24,7 +24,7 @@ from qgis.core import (
 from ..algorithms import packages
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.copc_sidecar import check_copc_beside, copc_path
-from ..algorithms.cloud.files import write_cloud
+from ..algorithms.cloud.files import check_compression, write_cloud
 from ..algorithms.cloud.outputs import (
     COPC,
     ResultFiles,
@@ -92,7 +92,7 @@ def _is_cloud(definition) -> bool:
     return isinstance(definition, QgsProcessingParameterPointCloudDestination)
 
 
-def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
+def check_targets(definitions: list, parameters: dict, inputs: list, clouds: Sequence[Path] = ()) -> None:
     """Refuse outputs that can't be written, before any work.
 
     Parameters
@@ -103,12 +103,14 @@ def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
         Values as the algorithm was given them.
     inputs : list of Path
         Files that are read and so must not be written: layers, clouds, and the tiles of virtual ones.
+    clouds : sequence of Path
+        Clouds whose points are written.
 
     Raises
     ------
     ValueError
-        If an output has an unknown extension, is an input or another output, or no ordinary file, or if its folder
-        is absent, read-only or full.
+        If an output has an extension of no format that can hold it, is an input or another output, or no ordinary
+        file, or if its folder is absent, read-only or full. The same if a package to write it is missing.
     """
     seen: dict[Path, str] = {}
     for definition in definitions:
@@ -123,6 +125,8 @@ def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
                 if other != definition.name():
                     raise ValueError(f"{other} and {definition.name()} are the same file ({file}); give each its own.")
             _check_target(definition, path, inputs)
+            if _is_cloud(definition):
+                check_compression(path, clouds)
 
 
 def _check_database(value: Any) -> None:
@@ -144,7 +148,7 @@ def _check_target(definition, path: Path, inputs: list) -> None:
     elif isinstance(definition, QgsProcessingParameterRasterDestination):
         check_raster(path)
     elif isinstance(definition, QgsProcessingParameterFeatureSink):
-        check_layer(path)
+        check_layer(path, definition.dataType())
     else:
         _check_ending(definition, path)
     for file in files_of(definition, str(path)):

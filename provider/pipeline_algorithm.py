@@ -198,7 +198,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             *files_read([*clouds, *read_too]),
             *input_layer_files(self, self.pipeline.input_layers.values(), given, context),
         ]
-        check_targets(self.destinationParameterDefinitions(), given, read)
+        check_targets(self.destinationParameterDefinitions(), given, read, clouds)
         for reference in read_too:
             refuse_same(clouds, reference)
         for cloud in (*clouds, *read_too):

@@ -166,7 +166,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         if job.inputs:
             job.box = extent_box(self, read_extent(job.inputs[0])[2] or job.crs.toWkt(FULL), parameters, context)
         read = [*files_read(job.paths), *input_layer_files(self, self.stage.input_layers, parameters, context)]
-        check_targets(self.destinationParameterDefinitions(), parameters, read)
+        check_targets(self.destinationParameterDefinitions(), parameters, read, job.inputs)
         if job.reference:
             refuse_same(job.inputs, job.reference)
         if job.inputs:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, Callable, Union
 
 import numpy as np
 from qgis.core import (
     Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
     QgsFeature,
     QgsField,
     QgsFields,
@@ -17,11 +20,13 @@ from qgis.core import (
     QgsPoint,
     QgsPolygon,
     QgsVectorFileWriter,
+    QgsVectorLayer,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QMetaType
 
 from ..algorithms.stage import Field, Layer, LayerFeatures
+from .memory_files import memory_folder
 
 _TYPES = {
     bool: QMetaType.Type.Bool,
@@ -36,18 +41,50 @@ SOURCE_TYPES = {
     "Point": Qgis.ProcessingSourceType.VectorPoint,
 }
 
+# What is written to find out whether a format holds geometries and attributes: near the origin, which each system has.
+_SAMPLES = {
+    Qgis.ProcessingSourceType.VectorPolygon: "Polygon ((0 0, 1 0, 1 1, 0 0))",
+    Qgis.ProcessingSourceType.VectorLine: "LineString (0 0, 1 1)",
+    Qgis.ProcessingSourceType.VectorPoint: "Point (1 1)",
+}
+_WORD = "word"
 
-def check_layer(path: Path) -> None:
-    """Refuse a file name without an extension of a format of layers; QGIS would write another file.
+
+def check_layer(path: Path, kind: Qgis.ProcessingSourceType) -> None:
+    """Refuse a file name whose extension is of no format that holds a layer: QGIS would write another file, or lose it.
 
     Raises
     ------
     ValueError
-        If it has none.
+        If it has no extension, or that of a format without such geometries or without attributes.
     """
     extension = path.suffix.lower().lstrip(".")
-    if extension not in QgsVectorFileWriter.supportedFormatExtensions():
+    if extension not in QgsVectorFileWriter.supportedFormatExtensions() or not _holds(extension, kind):
         raise ValueError(f"{path.name} can't be written as a layer: give it the extension .gpkg, .shp or .geojson.")
+
+
+@cache
+def _holds(extension: str, kind: Qgis.ProcessingSourceType) -> bool:
+    """Whether a feature comes back with geometry and attributes from a file with this extension: it is tried."""
+    fields, options = QgsFields(), QgsVectorFileWriter.SaveVectorOptions()
+    for number, of_type in enumerate(_TYPES.values()):
+        fields.append(QgsField(f"field{number}", of_type))
+    options.driverName = driver = QgsVectorFileWriter.driverForExtension(extension)
+    options.datasourceOptions = QgsVectorFileWriter.defaultDatasetOptions(driver)
+    options.layerOptions = QgsVectorFileWriter.defaultLayerOptions(driver)
+    feature = QgsFeature(fields)
+    feature.setGeometry(QgsGeometry.fromWkt(_SAMPLES[kind]))
+    feature.setAttributes([True, 1, 1.5, _WORD])
+    wkb, of_none = feature.geometry().wkbType(), (QgsCoordinateReferenceSystem(), QgsCoordinateTransformContext())
+    with memory_folder() as folder:
+        path = f"{folder}/trial.{extension}"
+        writer = QgsVectorFileWriter.create(path, fields, wkb, *of_none, options)
+        is_written = writer.hasError() == QgsVectorFileWriter.WriterError.NoError and writer.addFeature(feature)
+        # The file is closed with the writer, and complete.
+        del writer
+        back = list(QgsVectorLayer(path, "trial", "ogr").getFeatures()) if is_written else []
+        kinds = [one.geometry().type() for one in back if _WORD in one.attributes()]
+    return kinds == [feature.geometry().type()]
 
 
 def fields_of(layer: Layer, features: LayerFeatures) -> QgsFields:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -18,8 +18,8 @@ from .header import OF_OLD_CHUNKS, OF_OLD_POINTS, Header
 from .laspy_library import need_lazrs
 from .laz import writing_backend
 from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
-from .point_formats import WITH_WAVEFORMS
-from .point_records import PointRecords
+from .point_formats import WITH_WAVEFORMS, Layout
+from .point_records import PointRecords, merged_layout
 from .points import check_count, check_points, open_headers, points_within, read_points, write_points
 from .units import Resolver, Units, crs_records, has_wkt, units_of, wkt_of
 from .vpc import read_tiles, tiles_of
@@ -286,12 +286,32 @@ def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False)
     """
     path = Path(path)
     check_output(path, cloud.files)
-    if kind_of(path) == COPC or copc_beside:
+    _check_packages(kind_of(path), cloud.records().layout)
+    if copc_beside:
         need_lazrs()
-    if kind_of(path) == LAZ:
-        writing_backend(cloud.records().layout.point_format)
     if kind_of(path) != COPC:
         check_copc_beside(path, cloud.files)
+
+
+def check_compression(path: Path, clouds: Iterable[Path]) -> None:
+    """Refuse an output that no installed package compresses, before clouds whose points it is to hold are read.
+
+    Raises
+    ------
+    ValueError
+        If a package is missing, or in one sentence, what is wrong with a cloud.
+    """
+    if kind_of(path) in (LAZ, COPC):
+        layouts = [header.layout for cloud in clouds for header in _headers(cloud)]
+        _check_packages(kind_of(path), merged_layout(layouts or [Layout(6)]))
+
+
+def _check_packages(kind: str, layout: Layout) -> None:
+    """Refuse a kind of file that no installed package writes for points of a layout."""
+    if kind == COPC:
+        need_lazrs()
+    if kind == LAZ:
+        writing_backend(layout.point_format)
 
 
 def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> None:

@@ -8,6 +8,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..cloud.laz import writing_backend
 from ..cloud.outputs import LAS, LAZ, os_errors_as_messages, replacing, working_folder
 from ..cloud.points import check_count, chunks_near, write_points
 from ..cloud.vpc import fill_merged
@@ -56,6 +57,8 @@ def cut_into_tiles(
         be written.
     """
     kind = LAZ if compressed else LAS
+    if compressed:
+        writing_backend(survey.header.layout.point_format)
     with tiles_folder(folder, [source.path for source in survey.sources]), working_folder(folder) as heaps:
         blocks = _sort_out(survey, side, heaps, monitor.part(0.0, _READ))
         if not blocks:

@@ -16,6 +16,7 @@ from typing import Any, Callable, NamedTuple, Optional, Union
 import numpy as np
 
 from ..cloud.copc_index import has_index
+from ..cloud.laz import writing_backend
 from ..cloud.outputs import LAS
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
@@ -91,6 +92,8 @@ def run_in_tiles(
         step.stage.check(chosen)
     given = [Path(path) for path in paths]
     survey = open_survey(given, options.crs_units, monitor, options.extent, options.crs)
+    if options.compressed:
+        writing_backend(survey.header.layout.point_format)
     with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder, monitor.warn) as work:
         return _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
 

@@ -456,6 +456,10 @@ def test_only_tif_is_written(provider, context, town_file, out):
     [
         ({"FOOTPRINTS": "{out}/a.foo"}, "a.foo can't be written as a layer: give it the extension .gpkg, .shp or"),
         ({"FOOTPRINTS": "{out}/a"}, "a can't be written as a layer: give it the extension"),
+        *(
+            ({"FOOTPRINTS": f"{{out}}/a.{ending}"}, f"a.{ending} can't be written as a layer: give it the extension")
+            for ending in ("csv", "xlsx", "ods", "dxf", "gpx", "json")
+        ),
         ({"FOOTPRINTS": "{out}/folder.gpkg"}, "folder.gpkg is a folder; give the name of a file."),
         ({"FOOTPRINTS": "ogr:dbname='{out}/none/a.gpkg' table=\"a\" (geom)"}, "none does not exist; make it"),
         ({"FOOTPRINTS": "ogr:dbname='{out}/folder.gpkg' table=\"a\" (geom)"}, "folder.gpkg is a folder"),

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud import laz
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.geometry.grid import SparsePointsError
@@ -17,8 +18,9 @@ from lidar_buildings.algorithms.stage import Monitor, stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling import survey_sampling
+from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
-from lidar_buildings.algorithms.tiling.survey import crs_of_survey, files_of_survey
+from lidar_buildings.algorithms.tiling.survey import crs_of_survey, files_of_survey, open_survey
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.las_files import made_las, random_records, vlr
@@ -315,6 +317,19 @@ def test_bounds_that_can_not_be_are_measured(tmp_path):
     outcome = run(paths, tmp_path / "out")
     assert not outcome.failures
     assert [len(read_cloud(one)) for one in outcome.tiles] == [len(read_cloud(one)) for one in paths]
+
+
+def test_tiles_that_no_package_compresses_are_refused_before_the_work(make_las, tmp_path, monkeypatch):
+    """Waveforms need laszip: the run failed tile by tile at its end."""
+    has_backend = laz.has_backend
+    monkeypatch.setattr(laz, "has_backend", lambda name: name != "Laszip" and has_backend(name))
+    path = make_las("one.las", point_format=9, vlrs=(crs(RD),))
+    with pytest.raises(ValueError, match="LAZ with waveforms"):
+        run_in_tiles(QUICK, [path], tmp_path / "out", options=replace(OF_BLOCKS, compressed=True))
+    with pytest.raises(ValueError, match="LAZ with waveforms"):
+        cut_into_tiles(open_survey([path]), 50.0, tmp_path / "cut", "a", True, Monitor())
+    assert not (tmp_path / "out").exists()
+    assert not (tmp_path / "cut").exists()
 
 
 def test_points_outside_the_bounds_of_their_header_are_not_lost_in_silence(tmp_path):
