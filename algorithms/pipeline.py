@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import Any, Optional
 
@@ -163,8 +164,24 @@ class Pipeline:
                 outputs.append(Output(of if is_single else f"{step.name}_{of}", step, of))
         return tuple(outputs)
 
+    def steps_for(self, wanted: Collection[str]) -> tuple[Step, ...]:
+        """Return the steps, in order, that the outputs of these names are made by or depend on.
+
+        A step that only measures runs with the layers that it measures: their numbers are given with them.
+        """
+        asked = {(output.step.name, output.of) for output in self.outputs if output.name in wanted}
+        needed, steps = set(asked), []
+        for step in reversed(self.steps):
+            made = {(step.name, of) for of in _made(step)}
+            read = {made_by(layer) for layer in step.layers.values()}
+            only_measures = made == {(step.name, REPORT)}
+            if made & needed or (only_measures and read & asked):
+                steps.append(step)
+                needed |= {*read, (self.cloud_of(step) or "", CLOUD)}
+        return tuple(reversed(steps))
+
     def needs(self, output: Output) -> bool:
-        """Whether an output is made even if nobody asks for it: a cloud, or a layer that another step reads."""
+        """Whether the graph makes an output even if nobody asks for it: a cloud, or a layer that another step reads."""
         return output.of == CLOUD or any(
             f"{output.step.name}.{output.of}" in step.layers.values() for step in self.steps
         )
@@ -173,6 +190,12 @@ class Pipeline:
     def id(self) -> str:
         """Processing id, ``detectbuildings``."""
         return self.name.replace("_", "")
+
+
+def made_by(layer: str) -> tuple[str, str]:
+    """Return the step and the name of a layer that another step reads, "walls.footprints"."""
+    step, name = layer.split(".")
+    return step, name
 
 
 def _made(step: Step) -> list[str]:

@@ -50,12 +50,13 @@ _DETECTION = (
     Step("complete", "complete_buildings"),
     Step("refine", "refine_buildings"),
     Step("kept_buildings", "restore_classes"),
+    # Before the steps that only sort the other points: these are not run for footprints alone.
+    Step("footprints", "extract_footprints"),
     Step("near_ground", "complete_ground"),
     Step("water", "classify_water"),
     Step("wires", "classify_wires"),
     Step("vegetation", "classify_vegetation"),
     Step("kept", "restore_classes"),
-    Step("footprints", "extract_footprints"),
 )
 _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
     "min_area": ("buildings", "complete", "footprints"),

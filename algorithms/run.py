@@ -345,16 +345,16 @@ def run_pipeline(
     cloud: Union[Cloud, Sequence[Cloud], None] = None,
     monitor: Optional[Monitor] = None,
     input_layers: Optional[dict[str, Optional[LayerFeatures]]] = None,
-    kept: Optional[Collection[str]] = None,
+    wanted: Optional[Collection[str]] = None,
     samplings: Optional[Mapping[str, CloudSampling]] = None,
     reference: Optional[Cloud] = None,
     **tunables: Any,
 ) -> Results:
-    """Run all steps on ``cloud``, changing it as the steps do, and return all results.
+    """Run the steps on ``cloud``, changing it as the steps do, and return their results.
 
     ``cloud`` is several clouds where the pipeline merges. ``input_layers`` are the layers that the pipeline
-    is given, by name, in meters relative to the cloud's origin. ``kept`` are the steps whose clouds
-    are wanted, of those that the pipeline keeps; None is all of them. ``tunables`` are named
+    is given, by name, in meters relative to the cloud's origin. Steps that no ``wanted`` output depends on are not run;
+    what the others make besides is among the results. ``tunables`` are named
     ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share is
     named ``<tunable>``.
 
@@ -373,8 +373,8 @@ def run_pipeline(
         Receives the progress.
     input_layers : dict of str to LayerFeatures, optional
         Layers by name, in m from the origin of the cloud.
-    kept : collection of str, optional
-        Steps whose clouds are wanted; None is all that the pipeline keeps.
+    wanted : collection of str, optional
+        Names of the outputs to make, see :attr:`.Pipeline.outputs`; None is all of them.
     samplings : mapping of str to CloudSampling, optional
         Samplings that were measured before, by step.
     reference : Cloud, optional
@@ -392,17 +392,22 @@ def run_pipeline(
     monitor = monitor or Monitor()
     chosen = {step.name: of_step for step, of_step in pipeline.by_step(tunables)}
     given = given_layers(pipeline.name, pipeline.input_layers.values(), input_layers or {})
+    names = [output.name for output in pipeline.outputs] if wanted is None else wanted
+    steps = pipeline.steps_for(names)
     # Later steps change the cloud that they work on: a cloud that is kept as it was is copied when it is made.
-    wanted = {*(pipeline.kept if kept is None else kept), *(step.cloud for step in pipeline.steps)}
+    kept = {
+        output.step.name for output in pipeline.outputs if output.name in names and output.of == CLOUD != output.name
+    }
+    kept.update(step.cloud for step in steps)
     copies: dict[str, Cloud] = {}
     outcomes: dict[str, Outcome] = {}
     current = cloud
     of_run = _RunSampling(samplings or {}, cloud, monitor)
-    for i, step in enumerate(pipeline.steps):
-        part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps), f"{step.name}_")
+    ends = np.cumsum([step.stage.cost for step in steps]) / sum(step.stage.cost for step in steps)
+    for step, start, end in zip(steps, [0.0, *ends], ends):
+        part = monitor.step(step.name, step.stage, chosen[step.name], float(start), float(end))
         part.progress(0.0)
-        names = [input_layer.name for input_layer in step.stage.input_layers]
-        layers = {name: _layer(step, name, outcomes, given) for name in names}
+        layers = {one.name: _layer(step, one.name, outcomes, given) for one in step.stage.input_layers}
         works_on = copies[step.cloud].copy() if step.cloud else current if step.stage.reads_cloud else None
         sampled = of_run.of(works_on) if step.stage.samples and isinstance(works_on, Cloud) else None
         second = reference if step.stage.reads_reference else None
@@ -412,7 +417,7 @@ def run_pipeline(
         if step.stage.makes_cloud:
             current = outcome.cloud
             of_run.after(step, current)
-            if step.name in wanted and outcome.cloud is not None:
+            if step.name in kept and outcome.cloud is not None:
                 copies[step.name] = outcome.cloud.copy()
     of_run.log()
     results = _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
@@ -444,7 +449,7 @@ def _results(
 ) -> Results:
     results = Results(cloud)
     for output in pipeline.outputs:
-        outcome = outcomes[output.step.name]
+        outcome = outcomes.get(output.step.name, Outcome(None))
         if output.of in outcome.layers:
             results.layers[output.name] = outcome.layers[output.of]
         elif output.of in outcome.rasters:

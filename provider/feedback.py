@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import html
 import time
 from difflib import get_close_matches
 from typing import Any, Optional
 
-from qgis.core import QgsApplication, QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
+from qgis.core import QgsApplication, QgsProcessingAlgorithm, QgsProcessingFeedback
 
-from ..algorithms.stage import Cancelled, Monitor, Param, Stage
+from ..algorithms.stage import SAMPLING, Cancelled, Monitor, Param, Stage
 from .declared import on_command_line
-from .run_log import current_log
+from .run_log import RunLog
 
 
 class ProgressBar:
@@ -44,13 +45,20 @@ class FeedbackMonitor(Monitor):
         The stage that runs: the log uses its labels and units.
     given : dict, optional
         Its tunables; those with a value were set by the user, and the log doesn't call them automatic.
+    log : RunLog, optional
+        Keeps values and sentences for the pages of the run.
     """
 
     def __init__(
-        self, feedback: QgsProcessingFeedback, stage: Optional[Stage] = None, given: Optional[dict[str, Any]] = None
+        self,
+        feedback: QgsProcessingFeedback,
+        stage: Optional[Stage] = None,
+        given: Optional[dict[str, Any]] = None,
+        log: Optional[RunLog] = None,
     ) -> None:
         super().__init__()
         self._feedback, self._stage, self._given = feedback, stage, given or {}
+        self._log = log or RunLog()
         self._bar = ProgressBar(feedback)
 
     def progress(self, fraction: float) -> None:
@@ -62,95 +70,195 @@ class FeedbackMonitor(Monitor):
     def resolved(self, **values: Any) -> None:
         """Keep the values that stages report, and log those that the user didn't give."""
         super().resolved(**values)
-        log = current_log()
-        if log is not None:
-            log.resolved(values)
+        self._log.resolved(values)
         for name, value in values.items():
-            if self._given.get(name) is None:
+            if self._given.get(name) is None and value is not None:
                 self._bar.end_line()
-                self._feedback.pushInfo(self._sentence(name, value))
+                self._feedback.pushInfo(value_sentence(self._stage, name, value))
 
     def warn(self, sentence: str) -> None:
         """Log and keep a warning."""
         super().warn(sentence)
-        self._note(sentence)
+        self._log.note(sentence)
         self._bar.end_line()
         self._feedback.pushWarning(sentence)
 
     def inform(self, sentence: str) -> None:
         """Log and keep a sentence."""
         super().inform(sentence)
-        self._note(sentence)
+        self._log.note(sentence)
         self._bar.end_line()
         self._feedback.pushInfo(sentence)
 
-    def _note(self, sentence: str) -> None:
-        log = current_log()
-        if log is not None:
-            log.note(sentence)
+    def end_steps(self) -> None:
+        """End the last step: all is computed, and is written next."""
+        self._log.end()
 
-    def _sentence(self, name: str, value: Any) -> str:
-        tunable = self._stage.tunables.get(name) if self._stage else None
-        param = tunable.param if tunable else Param("", "")
-        # Who needs all digits finds them among the results.
-        if isinstance(value, bool):
-            shown = "yes" if value else "no"
-        elif isinstance(value, float):
-            shown = param.written(float(f"{value:.4g}"))
-        else:
-            shown = f"{value} {param.unit}".rstrip()
-        if tunable is None:
-            return f"{name.replace('_', ' ').capitalize()}: {shown}"
-        found = "none set, the cloud has" if param.empty else "automatic"
-        return f"{param.label}, {found}: {shown}"
+    def end(self) -> None:
+        """End the run."""
+        self.progress(1.0)
+
+
+def value_sentence(stage: Optional[Stage], name: str, value: Any) -> str:
+    """Return a value that a stage found or took, as the log says it, with label and unit."""
+    tunable = stage.tunables.get(name) if stage else None
+    param = tunable.param if tunable else Param("", "")
+    # Who needs all digits finds them among the results.
+    if isinstance(value, bool):
+        shown = "yes" if value else "no"
+    elif isinstance(value, float):
+        shown = param.written(float(f"{value:.4g}"))
+    else:
+        shown = f"{value} {param.unit}".rstrip()
+    if tunable is None:
+        return f"{name.replace('_', ' ').capitalize()}: {shown}"
+    found = "none set, the cloud has" if param.empty else "automatic"
+    return f"{param.label}, {found}: {shown}"
 
 
 # How the log begins a line with measurements of a cloud, and what separates these.
 _SAMPLING, _BETWEEN = "Sampling: ", ", "
 
+# What a chain does before and after its steps, for the log.
+_READING, _WRITING = "Reading", "Writing"
 
-class ChainFeedback(QgsProcessingMultiStepFeedback):
-    """Passes everything on, but shows warnings and values once, however many steps of a chain give them.
+# Share of the work below which the time that is left can't be told.
+_TOO_EARLY = 0.02
 
-    Each step ends with the seconds that it took.
+
+class ChainMonitor(FeedbackMonitor):
+    """Shows the steps of a chain: a line for each with its seconds, and below it what the step found.
+
+    Warnings and values are shown once, however many steps give them; what a step that measures the results says comes
+    last, as the summary of the run.
     """
 
-    def __init__(self, feedback: QgsProcessingFeedback) -> None:
-        super().__init__(1, feedback)
-        self._bar = ProgressBar(feedback)
+    def __init__(self, feedback: QgsProcessingFeedback, log: RunLog) -> None:
+        super().__init__(feedback, log=log)
+        self._title = _READING
+        self._held: list[str] = []
+        self._summary: list[str] = []
+        self._measures = False
         self._shown: set[str] = set()
-        self._began: Optional[float] = None
+        self._began = self._start = time.monotonic()
+        self._fraction = 0.0
 
-    def setProgressText(self, text: str) -> None:  # noqa: N802 - QGIS asks for these names
-        """Log the title of a step, after the seconds of the one before it."""
-        self.end_step()
+    def progress(self, fraction: float) -> None:
+        """Move the progress bar, or raise :class:`Cancelled`."""
+        self._fraction = fraction
+        super().progress(fraction)
+
+    def step(self, name: str, stage: Stage, tunables: dict[str, Any], start: float, end: float) -> Monitor:
+        """Begin a step, and end the one before it."""
+        self._end_step(stage.title)
+        # A step may give no value to a tunable that is automatic by itself.
+        self._log.begin(stage, tunables)
+        self._title, self._measures, self._began = stage.title, bool(stage.measures), time.monotonic()
+        return _StepMonitor(self, self._log, stage, tunables, name, start, end)
+
+    def end_steps(self) -> None:
+        """End the last step: all is computed, and is written next."""
+        super().end_steps()
+        self._end_step(_WRITING.lower())
+        self._title, self._began = _WRITING, time.monotonic()
+
+    def end(self) -> None:
+        """End the run, and show its summary."""
+        super().end()
+        self._end_step()
+        self._show(self._summary)
+
+    def found(self, sentence: str) -> None:
+        """Keep what the step that runs has found until its line is shown."""
+        (self._summary if self._measures else self._held).append(sentence)
+
+    def resolved(self, **values: Any) -> None:
+        """Keep values; show those that the chain itself measures: how the cloud was sampled."""
+        self.values.update(values)
+        for name, value in values.items():
+            if name == SAMPLING:
+                self._held.append(f"{_SAMPLING}{value}")
+
+    def inform(self, sentence: str) -> None:
+        """Keep a sentence and show it below the line of its step."""
+        Monitor.inform(self, sentence)
+        self._log.note(sentence)
+        self.found(sentence)
+
+    def warn(self, sentence: str) -> None:
+        """Show and keep a warning, unless it was shown."""
+        if sentence not in self._shown:
+            self._shown.add(sentence)
+            super().warn(sentence)
+
+    def _end_step(self, following: str = "") -> None:
+        """Show the line of the step that ran: its seconds, what comes next, and how much time is left."""
+        line = f"{self._title}: {time.monotonic() - self._began:.1f} s"
+        coming = [f"next: {following}"] if following else []
+        if following and self._fraction > _TOO_EARLY:
+            left = (time.monotonic() - self._start) * (1 - self._fraction) / self._fraction
+            coming.append(f"about {spoken_time(left)} left")
         self._bar.end_line()
-        self._began = time.monotonic()
-        super().setProgressText(text)
+        show_heading(self._feedback, line, f" ({', '.join(coming)})" if coming else "")
+        self._show(self._held)
+        self._held = []
 
-    def end_step(self) -> None:
-        """Log the seconds of the step that runs."""
-        if self._began is not None:
-            self._bar.end_line()
-            super().pushInfo(f"{time.monotonic() - self._began:.1f} s")
-            self._began = None
+    def _show(self, sentences: list[str]) -> None:
+        """Show sentences and measurements that were not shown yet."""
+        for sentence in sentences:
+            is_sampling = sentence.startswith(_SAMPLING)
+            facts = sentence[len(_SAMPLING) :].split(_BETWEEN) if is_sampling else [sentence]
+            new = [fact for fact in facts if fact not in self._shown]
+            self._shown.update(new)
+            if new:
+                self._bar.end_line()
+                self._feedback.pushInfo((_SAMPLING if is_sampling else "") + _BETWEEN.join(new))
 
-    def pushInfo(self, info: str) -> None:  # noqa: N802
-        """Log a sentence or measurements that were not shown yet."""
-        is_sampling = info.startswith(_SAMPLING)
-        facts = info[len(_SAMPLING) :].split(_BETWEEN) if is_sampling else [info]
-        new = [fact for fact in facts if fact not in self._shown]
-        self._shown.update(new)
-        if new:
-            self._bar.end_line()
-            super().pushInfo((_SAMPLING if is_sampling else "") + _BETWEEN.join(new))
 
-    def pushWarning(self, warning: str) -> None:  # noqa: N802 - QGIS asks for this name
-        """Log a warning that was not shown yet."""
-        if warning not in self._shown:
-            self._shown.add(warning)
-            self._bar.end_line()
-            super().pushWarning(warning)
+class _StepMonitor(Monitor):
+    """The monitor of one step of a chain: values have its labels and units in the log, its name among the results."""
+
+    def __init__(
+        self, chain: ChainMonitor, log: RunLog, stage: Stage, given: dict[str, Any], name: str, *part: float
+    ) -> None:
+        super().__init__()
+        self._chain, self._log, self._stage, self._given, self._name = chain, log, stage, given, name
+        self._start, self._length = part[0], part[1] - part[0]
+
+    def progress(self, fraction: float) -> None:
+        """Move the progress bar, or raise :class:`Cancelled`."""
+        self._chain.progress(self._start + self._length * fraction)
+
+    def resolved(self, **values: Any) -> None:
+        """Pass on values, and log those that the user didn't give."""
+        self._chain.resolved(**{f"{self._name}_{name}": value for name, value in values.items()})
+        self._log.resolved(values)
+        for name, value in values.items():
+            if self._given.get(name) is None and value is not None:
+                self._chain.found(value_sentence(self._stage, name, value))
+
+    def warn(self, sentence: str) -> None:
+        """Pass on a warning."""
+        self._chain.warn(sentence)
+
+    def inform(self, sentence: str) -> None:
+        """Pass on a sentence."""
+        self._chain.inform(sentence)
+
+
+def show_heading(feedback: QgsProcessingFeedback, heading: str, rest: str = "") -> None:
+    """Log a line that begins in bold where the log can show it, as plain text on the command line."""
+    if on_command_line():
+        feedback.pushInfo(heading + rest)
+    else:
+        feedback.pushFormattedMessage(f"<b>{html.escape(heading)}</b>{html.escape(rest)}", heading + rest)
+
+
+def spoken_time(seconds: float) -> str:
+    """Return a time as people say it, in seconds or minutes."""
+    if seconds < 90:
+        return f"{max(1, round(seconds))} s"
+    return f"{round(seconds / 60)} min"
 
 
 def warn_unknown_parameters(

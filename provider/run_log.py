@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Iterable, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -51,30 +49,6 @@ class RunLog:
         if self.steps and not self.steps[-1].seconds:
             self.steps[-1].seconds = time.monotonic() - self._began
             self.steps[-1].parameters = parameter_rows(*self._given[-1])
-
-
-# The log of the run that a thread is in.
-_CURRENT: ContextVar[Optional[RunLog]] = ContextVar("run", default=None)
-
-
-def current_log() -> Optional[RunLog]:
-    """Return the log of the run that this thread is in; None outside of runs."""
-    return _CURRENT.get()
-
-
-@contextmanager
-def run_log() -> Iterator[RunLog]:
-    """Keep what steps do until the block ends; the steps of a chain go to the log of the chain."""
-    outer = _CURRENT.get()
-    if outer is not None:
-        yield outer
-        return
-    log = RunLog()
-    token = _CURRENT.set(log)
-    try:
-        yield log
-    finally:
-        _CURRENT.reset(token)
 
 
 def parameter_rows(stage: Stage, given: dict[str, Any], used: dict[str, Any]) -> list[Row]:

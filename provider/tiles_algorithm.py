@@ -60,7 +60,7 @@ from .layer_outputs import UNWANTED, write_layer
 from .models import pipeline_parameters
 from .named_clouds import code_of, names_of_crs
 from .outputs import all_in_place, check_targets, target_path
-from .parameters import tunable_values
+from .pipeline_algorithm import pipeline_tunables
 from .rasters import write_mosaic
 from .run_log import about_run, complete_page, parameter_rows
 from .schedulers import check_scheduler
@@ -143,7 +143,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.paths = survey_paths(self, INPUT, parameters, context)
         check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
         self.files = files_of_survey(self.paths)
-        self.tunables = self._tunables(parameters, context)
+        self.tunables = pipeline_tunables(self, self.tiled.pipeline, parameters, context)
         self.crs = given_crs(self, parameters, context)
         self.wkt = crs_of_survey(self.files) or (self.crs.toWkt(FULL) if self.crs.isValid() else "")
         self.extent = extent_box(self, self.wkt, parameters, context)
@@ -151,18 +151,6 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         given = input_layer_files(self, self.tiled.pipeline.input_layers.values(), parameters, context)
         check_targets(sinks, parameters, [*self.files, *given])
-
-    def _tunables(self, parameters: dict, context: QgsProcessingContext) -> dict[str, Any]:
-        """Return the composite's parameters by its own names."""
-        pipeline = self.tiled.pipeline
-        values = {}
-        for step in pipeline.steps:
-            named = {name: pipeline.parameter(step, name) for name in step.stage.tunables}
-            shown = {name: composite.upper() for name, composite in named.items()}
-            given = tunable_values(self, step.stage, parameters, context, shown, step.tunables)
-            for name, value in given.items():
-                values[named[name]] = value
-        return values
 
     def _workers(self, parameters: dict, context: QgsProcessingContext) -> Workers:
         """Return where blocks are worked on; refuse a scheduler or certificates that can't be used."""

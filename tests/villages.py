@@ -20,9 +20,7 @@ def village(**tunables):
 def mapped(arrays, old_map, monitor=None, **tunables):
     """Return what the chain makes of a cloud, with an old map or with None."""
     cloud = create_cloud(arrays)
-    return run_pipeline(
-        PIPELINES["map_footprints"], cloud, monitor, input_layers={"old_map": old_map}, kept=(), **tunables
-    )
+    return run_pipeline(PIPELINES["map_footprints"], cloud, monitor, input_layers={"old_map": old_map}, **tunables)
 
 
 def corner_distances(found, true):

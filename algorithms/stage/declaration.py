@@ -52,6 +52,8 @@ class Stage:
     #: How far (m) from a point others may lie that decide on it, a number or a function of all tunables by name. Where
     #: a cloud is worked on in parts, each is seen with the points around it that far.
     reach: Reach = 0.0
+    #: Processor time (s) per million points of a town, as measured; in a chain, its share of the progress
+    cost: float = 1.0
     #: Values that it measures on its results; a part of a cloud takes those of the whole instead of its own, see
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()

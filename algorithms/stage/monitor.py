@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .declaration import Stage
 
 
 class Cancelled(Exception):
@@ -50,6 +53,10 @@ class Monitor:
         """Return a monitor whose 0 to 1 is ``start`` to ``end`` of this one, and whose values get a prefix here."""
         return _Part(self, start, end, prefix)
 
+    def step(self, name: str, stage: Stage, tunables: dict[str, Any], start: float, end: float) -> Monitor:
+        """Return the monitor of a step of a chain, a stage with its tunables; its values get the name as prefix."""
+        return self.part(start, end, f"{name}_")
+
 
 class ProgressOnly(Monitor):
     """Passes progress on; values and warnings stay here: they are of auxiliary work, not of the run."""
@@ -71,7 +78,13 @@ class _Part(Monitor):
         self.values, self.warnings, self.infos = whole.values, whole.warnings, whole.infos
 
     def progress(self, fraction: float) -> None:
-        self.whole.progress(self.start + (self.end - self.start) * fraction)
+        self.whole.progress(self._of_whole(fraction))
+
+    def step(self, name: str, stage: Stage, tunables: dict[str, Any], start: float, end: float) -> Monitor:
+        return self.whole.step(self.prefix + name, stage, tunables, self._of_whole(start), self._of_whole(end))
+
+    def _of_whole(self, fraction: float) -> float:
+        return self.start + (self.end - self.start) * fraction
 
     def resolved(self, **values: Any) -> None:
         self.whole.resolved(**{self.prefix + name: value for name, value in values.items()})

@@ -173,7 +173,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     """Run the chain on a window; return the results of the block, and on which sides (2, 2) a feature was cut off."""
     pipeline = in_blocks(PIPELINES[task.pipeline])
     positions = _positions(task.survey, window)
-    made = run_pipeline(pipeline, window.cloud, monitor, kept=(), samplings=task.samplings, **task.tunables)
+    made = run_pipeline(pipeline, window.cloud, monitor, samplings=task.samplings, **task.tunables)
     seconds = monitor.seconds()
     point, stays = _result_points(window, made)
     values = _written(pipeline, made, point, task.survey.origin)

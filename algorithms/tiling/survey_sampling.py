@@ -130,7 +130,7 @@ def _made(
 ) -> Optional[Cloud]:
     """Return the cloud that a step makes of a part of a survey."""
     own = tunables_of(step, tunables)
-    return run_pipeline(step, cloud, ProgressOnly(monitor), kept=(), samplings={"": sampling}, **own).cloud
+    return run_pipeline(step, cloud, ProgressOnly(monitor), samplings={"": sampling}, **own).cloud
 
 
 def _measured(

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..pipeline import Pipeline, Step
+from ..pipeline import Pipeline, Step, made_by
 from ..stage import Layer, TextFile
 
 # Steps of this group decide which points there are and which of them are noise.
@@ -32,7 +32,7 @@ def in_blocks(pipeline: Pipeline) -> Pipeline:
 
 def part_of(pipeline: Pipeline, steps: Iterable[Step]) -> Pipeline:
     """Return a composite of some of the steps of another one, with parameters of the same names."""
-    return replace(pipeline, steps=tuple(steps), shown=())
+    return replace(pipeline, steps=tuple(steps), shown=(), kept=())
 
 
 def afterwards(pipeline: Pipeline) -> list[Step]:
@@ -102,12 +102,6 @@ def files_of(pipeline: Pipeline) -> dict[str, tuple[TextFile, str]]:
 def _named(names: dict[tuple[str, str], str], step: Step, layer: str) -> str:
     """Return the composite's name of a layer that a step makes, or is given by an earlier one."""
     return names[made_by(step.layers[layer]) if layer in step.layers else (step.name, layer)]
-
-
-def made_by(layer: str) -> tuple[str, str]:
-    """Return the step and the name of a layer that another step reads, "walls.footprints"."""
-    step, name = layer.split(".")
-    return step, name
 
 
 def why_whole(pipeline: Pipeline) -> str:

@@ -311,7 +311,7 @@ def agree(folder: Path) -> list[Table]:
         if name == "detect_buildings" and cloud_name.startswith("ground"):
             continue
         path = TILE.parents[1] / f"{cloud_name}.laz"
-        whole = run_pipeline(of_survey(PIPELINES[name]), read_cloud(path), kept=()).cloud
+        whole = run_pipeline(of_survey(PIPELINES[name]), read_cloud(path)).cloud
         target = folder / f"{name}-{path.stem}"
         made = run_in_tiles(PIPELINES[name], [path], target, options=TilesOptions(block_side=side, compressed=False))
         tile = read_cloud(made.tiles[0])

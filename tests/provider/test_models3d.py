@@ -106,7 +106,7 @@ def test_a_block_from_street_and_air_is_in_qgis_what_it_is_in_memory(provider, c
     given = {"INPUT": str(out / "a.laz"), "REFERENCE": str(out / "s.laz")}
     made = run("modelcityblock", {**given, **{name: str(out / file) for name, file in names.items()}}, context, log)
     expected = run_pipeline(
-        PIPELINES["model_city_block"], read_cloud(out / "a.laz"), reference=read_cloud(out / "s.laz"), kept=()
+        PIPELINES["model_city_block"], read_cloud(out / "a.laz"), reference=read_cloud(out / "s.laz")
     )
     openings = list(QgsVectorLayer(made["SET_OPENINGS"], "o", "ogr").getFeatures())
     assert len(openings) == len(expected.layers["set_openings"]) > 10

@@ -9,7 +9,7 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.provider.run_log import current_log, parameter_rows, run_log
+from lidar_buildings.provider.run_log import RunLog, parameter_rows
 from lidar_buildings.tests.builders import roof
 from lidar_buildings.tests.provider.helpers import run
 
@@ -43,7 +43,6 @@ def test_the_page_of_a_chain_names_its_cloud_and_the_values_of_automatic_paramet
     assert len(seconds) == len(PIPELINES["detect_buildings"].steps) + 1
     assert seconds[-1] == pytest.approx(sum(seconds[:-1]), abs=1.0)
     assert not re.search(r'(?:src|href)="(?!data:)', page)
-    assert current_log() is None
 
 
 def test_a_page_of_one_stage_has_its_parameters(provider, context, log, town_file, reference_file, out):
@@ -67,11 +66,9 @@ def test_rows_of_parameters_name_the_source_of_each_value():
 
 
 def test_messages_of_steps_are_kept_once():
-    with run_log() as log:
-        for _ in range(2):
-            log.begin(STAGES["classify_ground_tin"], {})
-            log.note("No coordinates.")
-        with run_log() as inner:
-            assert inner is log
-        log.end()
+    log = RunLog()
+    for _ in range(2):
+        log.begin(STAGES["classify_ground_tin"], {})
+        log.note("No coordinates.")
+    log.end()
     assert [step.notes for step in log.steps] == [["No coordinates."], []]

@@ -39,9 +39,9 @@ def site(rng, gaps):
 def test_dry_crowns_are_no_buildings_in_either_kind_of_cloud(rng, gaps):
     cloud, is_crown, is_roof = site(rng, gaps)
     assert sampling_of(cloud).is_closed_surface() != gaps
-    is_building = run_pipeline(PIPELINES["detect_buildings"], cloud, kept=()).cloud.get("classification") == (
-        PointClass.BUILDING
-    )
+    is_building = run_pipeline(PIPELINES["detect_buildings"], cloud, wanted=("output",)).cloud.get(
+        "classification"
+    ) == (PointClass.BUILDING)
     assert is_building[is_roof].mean() > 0.9
     assert is_building[is_crown].mean() < 0.05
 
@@ -50,5 +50,5 @@ def test_without_color_they_are_called_buildings(rng):
     """Their shape is that of roofs: only color distinguishes them."""
     cloud, is_crown, _ = site(rng, True)
     plain = create_cloud({"xyz": cloud.get("xyz") + cloud.origin})
-    classes = run_pipeline(PIPELINES["detect_buildings"], plain, kept=()).cloud.get("classification")
+    classes = run_pipeline(PIPELINES["detect_buildings"], plain, wanted=("output",)).cloud.get("classification")
     assert (classes[is_crown] == PointClass.BUILDING).mean() > 0.3

@@ -70,7 +70,7 @@ def in_order(clouds, *names):
     ],
 )
 def test_blocks_give_what_the_whole_cloud_gives(cloud, tmp_path, name, tunables, dimensions):
-    expected = run_pipeline(of_survey(PIPELINES[name]), cloud.copy(), kept=(), **tunables).cloud
+    expected = run_pipeline(of_survey(PIPELINES[name]), cloud.copy(), **tunables).cloud
     (tmp_path / "tiles").mkdir()
     monitor = Listening()
     made = run_in_tiles(
@@ -103,7 +103,7 @@ def test_cells_of_a_part_of_a_survey_are_those_of_the_whole(cloud, tmp_path, mon
     cells = Pipeline("cells", "Cells", "Tests", "", "", "", "", (Step("cells", "classify_cells"),))
     monkeypatch.setitem(STAGES, "classify_cells", classify_cells.stage)
     monkeypatch.setitem(PIPELINES, "cells", cells)
-    expected = run_pipeline(cells, cloud.copy(), kept=()).cloud
+    expected = run_pipeline(cells, cloud.copy()).cloud
     (tmp_path / "tiles").mkdir()
     made = run_in_tiles(
         cells,
@@ -155,14 +155,12 @@ def test_cells_of_a_histogram_are_whole_in_blocks(tmp_path, monkeypatch):
     monkeypatch.setitem(PIPELINES, "alone", alone)
     found = in_blocks_of(alone, cloud, tmp_path)
     np.testing.assert_array_equal(found[-6:], 0)
-    np.testing.assert_array_equal(
-        found, in_order([run_pipeline(alone, cloud.copy(), kept=()).cloud], "classification")[0]
-    )
+    np.testing.assert_array_equal(found, in_order([run_pipeline(alone, cloud.copy()).cloud], "classification")[0])
 
 
 def test_blocks_take_what_a_step_measures_from_the_whole(cloud, tmp_path, middle):
     """Where half of the cloud is a slope, each block would have a value of its own."""
-    whole = in_order([run_pipeline(middle, cloud.copy(), kept=()).cloud], "classification")[0]
+    whole = in_order([run_pipeline(middle, cloud.copy()).cloud], "classification")[0]
     np.testing.assert_array_equal(in_blocks_of(middle, cloud, tmp_path), whole)
     assert 0.4 < whole.mean() < 0.6
 

@@ -1,0 +1,369 @@
+"""What stages and composites have in common as algorithms: read, compute in memory, write all results or none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Optional, Union
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingDestinationParameter,
+    QgsProcessingFeedback,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterPointCloudDestination,
+    QgsProcessingParameterRasterDestination,
+)
+
+from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.files import check_readable, count_points, read_extent
+from ..algorithms.cloud.outputs import replacing
+from ..algorithms.report.page import with_coordinates
+from ..algorithms.run import Results
+from ..algorithms.stage import (
+    FileContent,
+    InputLayer,
+    Layer,
+    LayerFeatures,
+    Monitor,
+    Raster,
+    RasterSurface,
+    Report,
+    Stage,
+    TextFile,
+)
+from .algorithm import CheckedAlgorithm
+from .clouds import cloud_path, files_read
+from .crs import FULL, crs_of, crs_units
+from .errors import as_processing_errors
+from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
+from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
+from .inputs import (
+    CRS,
+    OUTPUT,
+    REFERENCE,
+    REPORT,
+    crs_parameter,
+    extent_box,
+    extent_parameter,
+    given_crs,
+    input_parameter,
+    input_paths,
+    reference_parameter,
+    refuse_same,
+    subject_of,
+    with_help,
+)
+from .layer_outputs import UNWANTED, write_layer
+from .memory import warn_if_memory_is_short
+from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_named
+from .outputs import all_in_place, check_targets, write_for_qgis
+from .places import Place, place_of_cloud, place_of_layers
+from .rasters import write_raster
+from .run_log import RunLog, about_run, complete_page
+from .styles import cloud_style, layer_style, show_on_load
+from .text_files import file_parameter, write_text
+from .texts import tr
+from .vectors import SOURCE_TYPES
+
+# Files and layers go by these names among the outputs of a stage or chain.
+CLOUD = OUTPUT.lower()
+
+
+@dataclass(frozen=True)
+class Made:
+    """An output: its name and title, the stage that makes it, and how that declares it."""
+
+    name: str  #: ``OUTPUT``, ``FOOTPRINTS``
+    title: str
+    stage: Stage
+    #: "output" for a cloud, "report" for a page; a text file has the name of the output
+    declared: Union[Layer, Raster, TextFile, str]
+    optional: bool = True
+    by_default: bool = True  #: Whether the dialog makes it unless told otherwise
+
+    @property
+    def key(self) -> str:
+        """Its name among the results in memory."""
+        return self.name.lower()
+
+    def definition(self) -> QgsProcessingDestinationParameter:
+        """Return the parameter that says where it goes."""
+        declared = self.declared
+        if isinstance(declared, Layer):
+            kind = SOURCE_TYPES[declared.geometry]
+            made = QgsProcessingParameterFeatureSink(self.name, self.title, kind, optional=self.optional)
+            with_help(made, tr("A GeoPackage or any other vector format that QGIS writes."))
+        elif isinstance(declared, Raster):
+            made = QgsProcessingParameterRasterDestination(self.name, self.title, optional=self.optional)
+            with_help(made, tr("A GeoTIFF, tiled and compressed."))
+        elif isinstance(declared, TextFile):
+            made = file_parameter(declared)
+            made.setDescription(self.title)
+        elif declared == CLOUD:
+            made = QgsProcessingParameterPointCloudDestination(self.name, self.title, optional=self.optional)
+            with_help(made, tr("A .las, .laz or .copc.laz file."))
+        else:
+            made = QgsProcessingParameterFileDestination(self.name, self.title, "HTML files (*.html)", optional=True)
+            with_help(made, tr("A page that shows the numbers."))
+        made.setCreateByDefault(self.by_default)
+        return made
+
+
+def outputs_of(stage: Stage) -> list[tuple[str, Union[Layer, Raster, TextFile, str]]]:
+    """Return the names of what a stage makes, and how it declares each: cloud, layers, rasters, text files, page."""
+    files = [(one.name, one) for one in (*stage.layers, *stage.rasters, *stage.files)]
+    page = REPORT.lower()
+    return [(CLOUD, CLOUD)] * stage.makes_cloud + files + [(page, page)] * bool(stage.measures)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What an algorithm reads."""
+
+    clouds: bool  #: Whether it reads a cloud, or several
+    several: bool
+    title: str
+    layers: tuple[InputLayer, ...]
+    compared: Optional[Stage] = None  #: The stage that reads the second cloud
+    needs_reference: bool = False
+
+
+@dataclass
+class Job:
+    """What a run needs of its parameters, found out before it starts."""
+
+    tunables: dict[str, Any]
+    wanted: list[Made]
+    clouds: list[Path] = field(default_factory=list)
+    reference: Optional[Path] = None
+    box: Optional[np.ndarray] = None
+    crs: QgsCoordinateReferenceSystem = field(default_factory=QgsCoordinateReferenceSystem)
+
+    @property
+    def paths(self) -> list[Path]:
+        """All clouds that are read, the reference last."""
+        return [*self.clouds, *([self.reference] if self.reference else [])]
+
+    @property
+    def points(self) -> int:
+        """How many points are read."""
+        return sum(count_points(path, self.box) for path in self.paths)
+
+
+@dataclass
+class Read:
+    """What was read for a run, and where on Earth that lies."""
+
+    clouds: list[Cloud]
+    reference: Optional[Cloud]
+    layers: dict[str, LayerFeatures]
+    place: Optional[Place]
+
+
+class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
+    """An algorithm that reads clouds and layers, computes in memory, and writes all its results or none.
+
+    Subclasses say what they read and make, and compute it.
+    """
+
+    inputs: Inputs
+    made: list[Made]
+    creates = False  #: Whether it makes a cloud of nothing
+    #: Progress when all is read, and when all is computed; writing takes the rest
+    shares = (0.15, 0.8)
+
+    def add_tunables(self) -> None:
+        """Declare the parameters that are tunables."""
+        raise NotImplementedError
+
+    def tunables(self, parameters: dict, context: QgsProcessingContext) -> dict[str, Any]:
+        """Return the checked values of the tunables by their names."""
+        raise NotImplementedError
+
+    def number_titles(self) -> dict[str, str]:
+        """Return the titles of the numbers that a run returns, by name."""
+        raise NotImplementedError
+
+    def monitor(self, feedback: QgsProcessingFeedback, log: RunLog) -> FeedbackMonitor:
+        """Return what shows the progress of a run and keeps what its steps say."""
+        raise NotImplementedError
+
+    def compute(self, read: Read, monitor: Monitor) -> Results:
+        """Return the results of what was read."""
+        raise NotImplementedError
+
+    def numbers(self, results: Results, values: dict[str, Any]) -> dict[str, Any]:
+        """Return the numbers of a run by their names; ``values`` are those that its monitor received."""
+        raise NotImplementedError
+
+    def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802 - QGIS asks for these names
+        """Declare inputs, tunables and outputs."""
+        inputs = self.inputs
+        if inputs.clouds:
+            self.addParameter(input_parameter(inputs.several, inputs.title))
+        if inputs.compared is not None:
+            self.addParameter(reference_parameter(inputs.compared))
+        for input_layer in inputs.layers:
+            self.addParameter(input_layer_parameter(input_layer))
+        self.add_tunables()
+        if inputs.clouds:
+            self.addParameter(extent_parameter())
+        if inputs.clouds or self.creates:
+            self.addParameter(crs_parameter(SIMULATED_CRS if self.creates else None))
+        for made in self.made:
+            self.addParameter(made.definition())
+        for name, title in self.number_titles().items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+        self.name_pages()
+
+    def check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        """Find out what a run needs; refuse what can be refused before it."""
+        self.job = self._job(parameters, context)
+
+    def systems(self) -> list[str]:
+        """Return the coordinate reference systems of the clouds, and the one that is given."""
+        return [*(read_extent(path)[2] for path in self.job.paths), *names_of_crs(self.job.crs)]
+
+    def _job(self, parameters: dict, context: QgsProcessingContext) -> Job:
+        """Return what a run needs; refuse with a ValueError what can be refused before it."""
+        inputs = self.inputs
+        wanted = [made for made in self.made if parameters.get(made.name) not in UNWANTED]
+        job = Job(self.tunables(parameters, context), wanted)
+        if inputs.clouds:
+            job.clouds = input_paths(self, inputs.several, parameters, context)
+        if inputs.compared is not None and (inputs.needs_reference or parameters.get(REFERENCE) not in UNWANTED):
+            job.reference = cloud_path(self, REFERENCE, parameters, context)
+        job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
+        if job.clouds:
+            job.box = extent_box(self, read_extent(job.clouds[0])[2] or job.crs.toWkt(FULL), parameters, context)
+        read = [*files_read(job.paths), *input_layer_files(self, inputs.layers, parameters, context)]
+        check_targets(self.destinationParameterDefinitions(), parameters, read, job.clouds)
+        if job.reference:
+            refuse_same(job.clouds, job.reference)
+        for path in job.paths:
+            check_readable(path, crs_units)
+        if job.clouds:
+            refuse_elsewhere(self, inputs.layers, job.clouds, parameters, context)
+        return job
+
+    def processAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
+        """Read, compute, write; all or nothing. What was cancelled has no results."""
+        self.alone = not is_step(feedback)
+        warn_unknown_parameters(self, parameters, feedback)
+        definitions, subject = self.destinationParameterDefinitions(), subject_of(self.job.paths, feedback)
+        title = self.displayName() if self.alone else ""
+        log = RunLog()
+        with (
+            as_processing_errors(feedback),
+            all_in_place(definitions, parameters, context, subject, title) as run,
+        ):
+            monitor = self.monitor(feedback, log)
+            read = self._read(parameters, context, monitor.part(0.0, self.shares[0]))
+            results = self.compute(read, monitor.part(*self.shares))
+            monitor.end_steps()
+            if self.creates and results.cloud is not None:
+                results.cloud = named(results.cloud, self.job.crs)
+            place = place_of_cloud(results.cloud) if results.cloud is not None else read.place
+            if place is None:
+                raise ValueError(f"{self.displayName()} has neither a point cloud nor a layer; choose one.")
+            writer = _Writer(self, run.parameters, context, monitor.part(self.shares[1], 1.0), place)
+            written = writer.write(self.job.wanted, results)
+            log.end()
+            written.update(writer.write_pages(self.job, results, log))
+            monitor.end()
+            numbers = {
+                name: value for name, value in self.numbers(results, monitor.values).items() if value is not None
+            }
+            return {**run.final(written), **numbers}
+        return {}
+
+    def _read(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> Read:
+        """Read clouds and layers."""
+        job = self.job
+        # Before reading: a process that runs out of memory is ended without a message.
+        warn_if_memory_is_short(job.points, monitor)
+        count = max(1, len(job.paths))
+        parts = [monitor.part(i / count, (i + 1) / count) for i in range(count)]
+        clouds = [read_named(path, part, job.crs, job.box) for path, part in zip(job.paths, parts)]
+        reference = clouds.pop() if job.reference else None
+        found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.inputs.layers}
+        given = {wanted: layer for wanted, layer in found.items() if layer is not None}
+        place = place_of_cloud(clouds[0]) if clouds else place_of_layers(given, monitor)
+        layers = {
+            input_layer.name: read_input_layer(input_layer, layer, place, context, monitor.part(1.0, 1.0))
+            for input_layer, layer in given.items()
+            if place is not None
+        }
+        return Read(clouds, reference, layers, place)
+
+
+@dataclass
+class _Writer:
+    """Writes results in memory to where the user wants them."""
+
+    algorithm: CloudAlgorithm
+    parameters: dict
+    context: QgsProcessingContext
+    monitor: Monitor
+    place: Place
+
+    def write(self, wanted: Sequence[Made], results: Results) -> dict[str, str]:
+        """Write everything but pages; return where each is, by the names of the outputs."""
+        files = [made for made in wanted if made.declared != REPORT.lower()]
+        written: dict[str, str] = {}
+        for number, made in enumerate(files):
+            part = self.monitor.part(number / len(files), (number + 1) / len(files))
+            written.update(self._write(made, results, part))
+            part.progress(1.0)
+        return written
+
+    def _write(self, made: Made, results: Results, monitor: Monitor) -> dict[str, str]:
+        """Write one result; return where it is."""
+        algorithm, declared, parameters, context = self.algorithm, made.declared, self.parameters, self.context
+        if isinstance(declared, Layer):
+            features = results.layers[made.key]
+            return write_layer(algorithm, made.name, declared, features, self.place, parameters, context, monitor)
+        if isinstance(declared, Raster):
+            return self._write_raster(made.name, declared, results.rasters[made.key], monitor)
+        if isinstance(declared, TextFile):
+            content: FileContent = results.files[made.key]
+            return write_text(algorithm, declared, content, self.place, parameters, context, monitor)
+        cloud = results.clouds.get(made.key, results.cloud)
+        return self._write_cloud(made, cloud, monitor) if cloud is not None else {}
+
+    def _write_cloud(self, made: Made, cloud: Cloud, monitor: Monitor) -> dict[str, str]:
+        target = self.algorithm.parameterAsOutputLayer(self.parameters, made.name, self.context)
+        shown = write_for_qgis(cloud, target, self.context, monitor)
+        crs = crs_of(cloud.wkt).toWkt(FULL)
+        show_on_load(self.context, shown, "Cloud", cloud_style(made.stage, cloud), crs=crs)
+        return {made.name: target}
+
+    def _write_raster(self, name: str, raster: Raster, surface: RasterSurface, monitor: Monitor) -> dict[str, str]:
+        target = self.algorithm.parameterAsOutputLayer(self.parameters, name, self.context)
+        write_raster(raster, surface, self.place, Path(target), monitor)
+        show_on_load(self.context, target, "Raster", layer_style(raster))
+        return {name: target}
+
+    def write_pages(self, job: Job, results: Results, log: RunLog) -> dict[str, str]:
+        """Write the pages that are wanted, with what was run on which clouds and with which parameters."""
+        written = {}
+        for made in job.wanted:
+            report: Optional[Report] = results.reports.get(made.key)
+            if report is None:
+                continue
+            target = self.algorithm.parameterAsFileOutput(self.parameters, made.name, self.context)
+            with replacing(Path(target)) as stream:
+                stream.write(with_coordinates(report.html, self.place.to_map).encode())
+            rows = about_run(self.algorithm.displayName(), job.paths, job.points, self.place.crs.toWkt(FULL))
+            complete_page(Path(target), rows, log.steps)
+            written[made.name] = target
+        return written
