@@ -129,8 +129,8 @@ _TOO_EARLY = 0.02
 class ChainMonitor(FeedbackMonitor):
     """Shows the steps of a chain: a line for each with its seconds, and below it what the step found.
 
-    Warnings and values are shown once, however many steps give them; what a step that measures the results says comes
-    last, as the summary of the run.
+    Warnings and values are shown once, however many steps give them; what a step says that only measures the
+    results comes last, as the summary of the run.
     """
 
     def __init__(self, feedback: QgsProcessingFeedback, log: RunLog) -> None:
@@ -138,7 +138,7 @@ class ChainMonitor(FeedbackMonitor):
         self._title = _READING
         self._held: list[str] = []
         self._summary: list[str] = []
-        self._measures = False
+        self._sums_up = False
         self._shown: set[str] = set()
         self._began = self._start = time.monotonic()
         self._fraction = 0.0
@@ -153,7 +153,8 @@ class ChainMonitor(FeedbackMonitor):
         self._end_step(stage.title)
         # A step may give no value to a tunable that is automatic by itself.
         self._log.begin(stage, tunables)
-        self._title, self._measures, self._began = stage.title, bool(stage.measures), time.monotonic()
+        self._title, self._began = stage.title, time.monotonic()
+        self._sums_up = bool(stage.measures) and not stage.makes_cloud
         return _StepMonitor(self, self._log, stage, tunables, name, start, end)
 
     def end_steps(self) -> None:
@@ -170,7 +171,7 @@ class ChainMonitor(FeedbackMonitor):
 
     def found(self, sentence: str) -> None:
         """Keep what the step that runs has found until its line is shown."""
-        (self._summary if self._measures else self._held).append(sentence)
+        (self._summary if self._sums_up else self._held).append(sentence)
 
     def resolved(self, **values: Any) -> None:
         """Keep values; show those that the chain itself measures: how the cloud was sampled."""

@@ -69,6 +69,7 @@ _MinShareAround = Annotated[
     # Of neighborhoods, and of the surroundings of a cluster.
     reach=5.0,
     of_whole=MEAN_ENTROPIES,
+    cost=3.0,
 )
 def classify_buildings(
     xyz,

@@ -31,6 +31,7 @@ _REACH = 5.0
     measures=MEASURES,
     reach=_REACH,
     of_whole=MEAN_ENTROPIES,
+    cost=2.0,
 )
 def classify_buildings_2019(
     xyz,

@@ -41,6 +41,7 @@ COMPLETION = CompletionRules()
     written_if={"confidence": "where the cloud has them", "reason": "where the cloud has them"},
     # Gaps are closed from both sides. An automatic gap is wider than this only where points are over 2.5 m apart.
     reach=lambda tunables: tunables["gap"] or 10.0,
+    cost=0.7,
 )
 def complete_buildings(
     xyz,

@@ -62,6 +62,7 @@ _RULES = _Rules()
     # for the features of a cell, and one for smoothing.
     reach=10.0,
     of_whole=(_LEARNED,),
+    cost=2.5,
 )
 def refine_buildings(
     xyz,

@@ -74,6 +74,7 @@ FACADES = Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades",
     writes=("segment_id",),
     layers=(FACADES,),
     reach=_AROUND,
+    cost=25.0,
 )
 def extract_facades(
     xyz,

@@ -55,6 +55,7 @@ PIERCED = (
     tags="window,door,opening,facade,wall,shop front,glass,mobile mapping,terrestrial,Peng",
     layers=PIERCED,
     reach=lambda tunables: max(tunables["max_depth"], BEFORE),
+    cost=17.0,
 )
 def extract_openings(
     xyz,

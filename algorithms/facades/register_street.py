@@ -50,6 +50,7 @@ _MEANINGS = {
     input_title="Airborne point cloud",
     reference_title="Street scan",
     reference="The scan of the street, from a vehicle or a tripod.",
+    cost=20.0,
 )
 def register_street(
     xyz,

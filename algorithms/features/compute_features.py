@@ -92,6 +92,7 @@ _NeighborsStep = Annotated[
     "scale",
     writes=_FEATURES,
     reach=lambda tunables: (tunables["radius"] or _REACH) if tunables["neighborhood"] == "radius" else _REACH,
+    cost=7.0,
 )
 def compute_features(
     xyz,

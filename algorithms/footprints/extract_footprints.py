@@ -58,6 +58,7 @@ _FOUND, _DRAWN = 0.4, 0.9
     tags="polygons,outlines,vectorize,regularize,right angles,level line,dynamic programming,las2building,lasboundary",
     layers=(Layer("footprints", "Footprints", "Polygon", FIELDS, style="footprints"),),
     of_whole=(_ROOF_SPACING,),
+    cost=14.0,
 )
 def extract_footprints(
     xyz,

@@ -36,6 +36,7 @@ HEIGHTS = {
     tags="vegetation,tree,canopy,bush,hedge,crown,plant,forest,low,medium,high,car,pole,fence",
     writes=("classification",),
     reach=REACH,
+    cost=1.0,
 )
 def classify_vegetation(
     xyz,

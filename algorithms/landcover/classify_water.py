@@ -25,6 +25,7 @@ _DEVIATIONS = 3.0
     tags="water,river,canal,lake,pond,hydrography,shore,bank,breakline,hydro flattening",
     writes=("classification",),
     reach=REACH,
+    cost=0.5,
 )
 def classify_water(
     xyz,

@@ -27,6 +27,7 @@ _KEPT = {
     tags="class,keep,existing,classified,freeze,lock,ground,building,reclassify",
     writes=("earlier_class",),
     written_if={"earlier_class": "where classes are kept"},
+    cost=0.1,
 )
 def keep_classes(
     xyz,

@@ -33,6 +33,7 @@ CODES: dict[str, dict[int, int]] = {
     group="Land cover",
     tags="class,code,mapping,remap,translate,AHN,IGN,USGS,LiDAR HD,3DEP,ASPRS,convert",
     writes=("classification",),
+    cost=0.1,
 )
 def recode_classes(
     xyz,

@@ -22,6 +22,7 @@ _WHOLE = (PointClass.GROUND, PointClass.BUILDING)
     tags="class,restore,keep,existing,classified,ground,building",
     writes=("classification", "cluster_id"),
     written_if={"cluster_id": "where buildings are kept"},
+    cost=0.1,
 )
 def restore_classes(
     xyz, classification, cluster_id=None, earlier_class=None, *, sampling: Optional[CloudSampling] = None, monitor=None

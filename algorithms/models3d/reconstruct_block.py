@@ -80,6 +80,7 @@ OPENING_FIELDS = (
         Layer("set_openings", "Windows and doors of the model", "Polygon", OPENING_FIELDS, style="openings"),
     ),
     files=(TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "footprints"),),
+    cost=70.0,
 )
 def reconstruct_block(
     xyz,

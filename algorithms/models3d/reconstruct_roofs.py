@@ -109,6 +109,7 @@ _TopPercentile = Annotated[
         TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "footprints"),
         TextFile("obj", "Wavefront OBJ", wavefront.FORMATS, wavefront.obj_pieces, NamedModel, "footprints"),
     ),
+    cost=70.0,
 )
 def reconstruct_roofs(
     xyz,

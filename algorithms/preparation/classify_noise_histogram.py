@@ -38,6 +38,7 @@ HISTOGRAM = HistogramRules()
     writes=("classification",),
     # About the width of an automatic cell: histograms are those of a cell and the cells around it.
     reach=SCENE.ground_within,
+    cost=1.5,
 )
 def classify_noise_histogram(
     xyz,

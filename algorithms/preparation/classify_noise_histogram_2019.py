@@ -34,6 +34,7 @@ _REACH = 64.0
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,CH filter,Carrilho",
     writes=("classification",),
     reach=lambda tunables: tunables["cell_size"] or _REACH,
+    cost=0.3,
 )
 def classify_noise_histogram_2019(
     xyz,

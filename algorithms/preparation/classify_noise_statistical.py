@@ -32,6 +32,7 @@ _SAMPLE_WAVE = 1e3 * np.sqrt([2.0, 3.0, 5.0])
     group="Preparation",
     tags="noise,outliers,statistical outlier removal,SOR,isolated points,clean,denoise,lasnoise",
     writes=("classification",),
+    cost=4.0,
 )
 def classify_noise_statistical(
     xyz,

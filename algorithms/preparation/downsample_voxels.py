@@ -51,6 +51,7 @@ class _Sorted:
     writes=("xyz", "classification", "voxel_count"),
     selects=True,
     reach=lambda tunables: tunables["voxel_size"],
+    cost=0.3,
 )
 def downsample_voxels(
     xyz,

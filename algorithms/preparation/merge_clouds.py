@@ -51,6 +51,7 @@ class Transform:
     writes=("xyz", "point_source_id", "previous_source_id"),
     written_if={"previous_source_id": "where PointSourceId was not 0 everywhere"},
     merges=True,
+    cost=0.2,
 )
 def merge_clouds(
     xyz,

@@ -88,6 +88,7 @@ _MEASURES = (
     ),
     layers=(_DISPLACEMENTS, _BUILDINGS),
     measures=_MEASURES,
+    cost=0.1,
 )
 def compare_corners(
     footprints,

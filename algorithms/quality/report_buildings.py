@@ -56,6 +56,7 @@ def _shown(footprints: LayerFeatures) -> np.ndarray:
         Measure("doubtful", "Doubtful buildings"),
     ),
     shows=_shown,
+    cost=0.5,
 )
 def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=None):
     """Write a page on the buildings found: number, areas, heights, volumes, a map, and the doubtful ones.

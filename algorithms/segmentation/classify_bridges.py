@@ -28,6 +28,7 @@ _EVERYWHERE, _OVER_GAPS = "everywhere", "gaps in the ground"
     tags="bridge,fly-over,bridge deck,footbridge,viaduct,ground,terrain,DTM,Sithole,Vosselman",
     writes=("classification",),
     reach=lambda tunables: tunables["max_width"] * (2 if tunables["search"] == _EVERYWHERE else 0.5),
+    cost=1.0,
 )
 def classify_bridges(
     xyz,

@@ -35,6 +35,7 @@ _LARGEST_VOXEL = 3.0
     tags="plane,RANSAC,voxel,roof,wall,facade,planar,segmentation",
     writes=("segment_id", "normal"),
     written_if={"normal": "with 'Write normals'"},
+    cost=2.0,
 )
 def segment_planes_ransac(
     xyz,

@@ -30,6 +30,7 @@ _REACH = 5.0
     tags="cluster,region growing,connected components,segmentation",
     writes=("cluster_id",),
     reach=lambda tunables: max(tunables["plan_distance"] or 0.0, _REACH),
+    cost=2.0,
 )
 def segment_regions(
     xyz,

@@ -54,6 +54,7 @@ SURFACE, IMAGE_SURFACE = RoofSurfaceRules(), ImageSurfaceRules()
     writes=("segment_id", "cluster_id", "reason"),
     # Width (m) of the surroundings that decide on a cluster; clusters themselves may be of any size.
     reach=5.0,
+    cost=7.0,
 )
 def segment_roofs(
     xyz,

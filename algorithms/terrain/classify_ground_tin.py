@@ -133,6 +133,7 @@ _CellSize = Annotated[
     writes=("classification",),
     reach=lambda tunables: max(tunables["max_building_size"] or 0.0, _REACH),
     of_whole=(_ROUGHNESS,),
+    cost=6.0,
 )
 def classify_ground_tin(
     xyz,

@@ -61,6 +61,7 @@ _MaxBuildingSize = Annotated[
     tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD",
     writes=("classification",),
     reach=lambda tunables: tunables["max_building_size"],
+    cost=40.0,
 )
 def classify_ground_tin_2000(
     xyz,

@@ -18,6 +18,7 @@ _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
     group="Terrain",
     tags="ground,terrain,bare earth,strip,overlap,grass,surface",
     writes=("classification",),
+    cost=0.1,
 )
 def complete_ground(
     xyz,

@@ -18,6 +18,7 @@ from .on_decks import on_decks
     tags="normalize,normalise,normalization,nDSM,HAG,height,terrain,TIN,lasheight",
     writes=("height_above_ground",),
     reach=SCENE.ground_within,
+    cost=3.5,
 )
 def compute_height_above_ground(xyz, classification, *, monitor=None):
     """Measure how high each point lies above the ground points around it.

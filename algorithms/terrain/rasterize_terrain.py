@@ -39,6 +39,7 @@ _GAP_CELLS = 5.0
         Raster("dsm", "Surface model", "terrain", "m"),
         Raster("ndsm", "Heights above the terrain", "heights", "m"),
     ),
+    cost=5.0,
 )
 def rasterize_terrain(
     xyz,

@@ -31,6 +31,7 @@ _MOST_GAP = 5.0
     group="Buildings",
     tags="building,roof,plane,cluster,DBSCAN,photogrammetry,UAV,cadastre",
     writes=("classification", "cluster_id"),
+    cost=4.0,
 )
 def classify_roofs(
     xyz,

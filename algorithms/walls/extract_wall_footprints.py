@@ -106,6 +106,7 @@ _MaxOverhang = Annotated[
         Layer("candidate_corners", "Candidate corners", "Point", CORNER_FIELDS),
     ),
     measures=MEASURES,
+    cost=5.0,
 )
 def extract_wall_footprints(
     xyz,

@@ -14,7 +14,7 @@ from qgis.core import QgsProcessingException, QgsVectorLayer
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Cancelled
-from lidar_buildings.provider import layer_outputs, outputs, stage_algorithm
+from lidar_buildings.provider import cloud_algorithm, layer_outputs, outputs
 
 
 def run(name, parameters, context, log):
@@ -85,7 +85,7 @@ def test_a_late_cancel_leaves_the_older_results(provider, context, log, town_fil
     def cancelled(self, *args):
         raise Cancelled
 
-    monkeypatch.setattr(stage_algorithm, "write_layer", cancelled)
+    monkeypatch.setattr(cloud_algorithm, "write_layer", cancelled)
     with pytest.raises(QgsProcessingException, match="Cancelled"):
         run("toychain", {**given, "SECOND_STEP": 2.5}, context, log)
     assert [digest(out / name) for name in ("a.laz", "f.gpkg")] == before

@@ -26,7 +26,7 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.units import NO_CRS
 from lidar_buildings.algorithms.stage import InputLayer, Monitor, Raster, RasterSurface
-from lidar_buildings.provider import layer_outputs, rasters, stage_algorithm
+from lidar_buildings.provider import cloud_algorithm, layer_outputs, rasters, stage_algorithm
 from lidar_buildings.provider.input_layers import find_input_layer, read_input_layer
 from lidar_buildings.provider.places import place_of_cloud
 from lidar_buildings.provider.styles import layer_style
@@ -544,7 +544,7 @@ def test_a_raster_after_which_something_fails_is_removed(provider, context, log,
             raise ValueError("No floor; look below.")
         rasters.write_raster(raster, surface, place, path, monitor)
 
-    monkeypatch.setattr(stage_algorithm, "write_raster", later)
+    monkeypatch.setattr(cloud_algorithm, "write_raster", later)
     given = {"INPUT": str(town_file), "TOP": str(out / "top.tif"), "FLOOR": str(out / "floor.tif")}
     with pytest.raises(QgsProcessingException, match=r"^No floor; look below.$"):
         run("toyheights", given, context, log)

@@ -14,6 +14,7 @@ from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.algorithms.tiling.survey import files_of_survey
 from lidar_buildings.provider import schedulers
 from lidar_buildings.provider.crs import crs_of
+from lidar_buildings.provider.pipeline_algorithm import pipeline_tunables
 from lidar_buildings.provider.settings import SCHEDULERS
 from lidar_buildings.tests.builders import roof
 from lidar_buildings.tests.las_files import made_las
@@ -76,9 +77,10 @@ def test_what_is_not_set_is_what_the_steps_have(provider, context):
     ):
         algorithm = provider.algorithm(name).create()
         for empty in ({}, {parameter.upper(): None}):
-            assert algorithm._tunables(empty, context)[parameter] == value
+            given = pipeline_tunables(algorithm, algorithm.tiled.pipeline, empty, context)
+            assert given[parameter] == value
         pipeline = algorithm.tiled.pipeline
-        assert pipeline.by_step(algorithm._tunables({}, context)) == [
+        assert pipeline.by_step(pipeline_tunables(algorithm, pipeline, {}, context)) == [
             (step, {name: step.stage.check(of_step)[name] for name in step.stage.tunables})
             for step, of_step in pipeline.by_step({})
         ]
