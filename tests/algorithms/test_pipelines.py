@@ -249,9 +249,28 @@ def test_progress_only_grows_and_every_step_is_heard_of(name):
     assert monitor.heard == sorted(monitor.heard)
     assert monitor.heard[0] >= 0
     assert monitor.heard[-1] <= 1
-    steps = len(PIPELINES[name].steps)
-    # Completing is over at once and reports no progress.
-    assert len({min(int(fraction * steps), steps - 1) for fraction in monitor.heard}) >= steps - 1
+    costs = [step.stage.cost for step in PIPELINES[name].steps]
+    assert set(np.cumsum([0.0, *costs[:-1]]) / sum(costs)) <= set(monitor.heard)
+    # The longest step reports within it: a bar that stands for minutes looks dead.
+    longest = int(np.argmax(costs))
+    begins, ends = sum(costs[:longest]) / sum(costs), sum(costs[: longest + 1]) / sum(costs)
+    assert sum(begins < fraction < ends for fraction in monitor.heard) >= 1
+
+
+def test_only_steps_that_the_wanted_outputs_need_are_run():
+    """OUTPUT alone had its footprints drawn and reported on: nearly half of the time."""
+    ran = {}
+    for wanted in ("output", "footprints", "report"):
+        monitor = Listening()
+        monitor.steps = []
+        monitor.step = lambda name, *rest, m=monitor: m.steps.append(name) or Listening.step(m, name, *rest)
+        results = run_pipeline(PIPELINES["detect_buildings"], made()[0], monitor, wanted=(wanted,))
+        ran[wanted] = set(monitor.steps)
+        assert (wanted == "output") != ("footprints" in results.layers)
+    every = {step.name for step in PIPELINES["detect_buildings"].steps}
+    assert ran["output"] == every - {"footprints", "report"}
+    # The numbers of the report are given with the footprints.
+    assert ran["footprints"] == ran["report"] == every - {"codes"}
 
 
 def two_scans(rng):
