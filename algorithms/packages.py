@@ -11,8 +11,12 @@ import importlib
 import importlib.util
 from types import ModuleType
 
+from .package_versions import too_old
+
 # Import name -> name to install; the only list of what the plugin needs besides numpy.
 REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn", "laspy": "laspy"}
+# The package for LAZ that is installed where none is there; the libraries break where an old one is.
+_LAZ = "lazrs"
 
 
 class _Lazy(ModuleType):
@@ -29,8 +33,9 @@ class _Lazy(ModuleType):
 
 
 def missing() -> list[str]:
-    """Return the packages that are not installed and without which nothing runs, by the names to install them."""
-    return [name for module, name in REQUIRED.items() if importlib.util.find_spec(module) is None]
+    """Return the packages without which nothing runs, not installed or too old, by the names to install them."""
+    needed = [name for module, name in REQUIRED.items() if importlib.util.find_spec(module) is None or too_old(name)]
+    return [*needed, *([_LAZ] if too_old(_LAZ) else [])]
 
 
 def has_laz() -> bool:
@@ -40,7 +45,7 @@ def has_laz() -> bool:
 
 def absent() -> list[str]:
     """Return all packages to install: those that are missing, and the one for LAZ."""
-    return [*missing(), *([] if has_laz() else ["lazrs"])]
+    return [*missing(), *([] if has_laz() else [_LAZ])]
 
 
 spatial = _Lazy("scipy.spatial")

@@ -9,7 +9,7 @@ from qgis.core import QgsProcessingContext, QgsProcessingFeedback
 from .crs import make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
-from .errors import as_processing_errors
+from .errors import as_processing_errors, sentence_of
 from .settings import apply_threads
 
 
@@ -42,6 +42,8 @@ class CheckedAlgorithm(DeclaredAlgorithm):
             self._checked(parameters, context)
         except ValueError as error:
             return False, str(error)
+        except OSError as error:
+            return False, sentence_of(error)
         return super().checkParameterValues(self.completed(parameters), context)  # type: ignore[misc]
 
     def prepareAlgorithm(  # noqa: N802

@@ -10,6 +10,7 @@ from pathlib import Path
 from qgis.core import QgsApplication
 
 from ..algorithms import packages
+from ..algorithms.package_versions import requirement, too_old
 from ..algorithms.tiling.processes import own_python
 
 # pip must not resolve dependencies (it would put a second numpy before QGIS's own), so those that are
@@ -37,10 +38,16 @@ def _sentence(missing: list[str], wanted: list[str]) -> str:
     if not missing:
         return ""
     noun = "package is" if len(missing) == 1 else "packages are"
+    state = "missing or too old" if any(map(too_old, missing)) else "missing"
     return (
-        f"Python {noun} missing: {', '.join(missing)}. Choose Plugins ▸ LiDAR Buildings ▸ Check installation, or run "
-        f"this in a terminal and restart QGIS: {command(wanted)}"
+        f"Python {noun} {state}: {', '.join(map(_described, missing))}. Choose Plugins ▸ LiDAR Buildings ▸ Check "
+        f"installation, or run this in a terminal and restart QGIS: {command(wanted)}"
     )
+
+
+def _described(name: str) -> str:
+    """Return a package, with its version and the one that is needed where it is too old."""
+    return f"{name} ({too_old(name)}, {requirement(name)} is needed)" if too_old(name) else name
 
 
 def command(missing: list[str]) -> str:
@@ -68,9 +75,12 @@ def shown_command(missing: list[str]) -> str:
 
 
 def pip_arguments(missing: list[str]) -> list[str]:
-    """Return what the interpreter of QGIS is to be started with to install packages into the profile."""
-    names = [name for package in _by_pip(missing) for name in _WITH.get(package, (package,))]
-    return ["-m", "pip", "install", "--no-deps", "--target", str(package_folder()), *names]
+    """Return what the interpreter of QGIS is to be started with to install packages into the profile.
+
+    "-I" takes no module from the current folder, in which a "pip.py" may lie, or from where the environment says.
+    """
+    names = [requirement(name) for package in _by_pip(missing) for name in _WITH.get(package, (package,))]
+    return ["-I", "-m", "pip", "install", "--upgrade", "--no-deps", "--target", str(package_folder()), *names]
 
 
 def package_folder() -> Path:
@@ -103,5 +113,5 @@ def _is_debian() -> bool:
 
 def _quoted(text: str) -> str:
     if sys.platform == "win32":
-        return f'"{text}"' if " " in text else text
+        return f'"{text}"' if set(" <>&|^") & set(text) else text
     return shlex.quote(text)

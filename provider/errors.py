@@ -8,12 +8,16 @@ from typing import Optional
 
 from qgis.core import QgsProcessingException, QgsProcessingFeedback
 
+from ..algorithms.cloud.printable import shown
 from ..algorithms.stage import Cancelled
 from ..algorithms.stages import less_memory
 from .declared import on_command_line
 from .feedback import ProgressBar, is_step
 
 _CANCELLED = "Cancelled; nothing was written."
+
+# Characters of a sentence about a file, whose path may have some thousand.
+_LONGEST = 1000
 
 
 @contextmanager
@@ -39,8 +43,13 @@ def as_processing_errors(
     except ValueError as error:
         raise QgsProcessingException(str(error)) from error
     except OSError as error:
-        where = f" ({error.filename})" if error.filename else ""
-        raise QgsProcessingException(f"A file can't be read or written{where}: {error.strerror or error}.") from error
+        raise QgsProcessingException(sentence_of(error)) from error
+
+
+def sentence_of(error: OSError) -> str:
+    """Return what an error of the system says of a file."""
+    where = f" ({error.filename})" if error.filename else ""
+    return shown(f"A file can't be read or written{where}: {error.strerror or error}.", _LONGEST)
 
 
 @contextmanager

@@ -38,6 +38,9 @@ _TYPES = {
     "Point": Qgis.GeometryType.Point,
 }
 
+# How many different vertices a ring, a line and a point have at least.
+_FEWEST = {"Polygon": 3, "LineString": 2, "Point": 1}
+
 # Features read between two reports of progress.
 _BETWEEN_CHECKS = 1000
 
@@ -254,9 +257,17 @@ def _parts(geometry: QgsGeometry, input_layer: InputLayer, transform: QgsCoordin
     if kind == "Polygon" and not input_layer.upright:
         straight = straight.forcePolygonCounterClockwise()
     parts = [_vertices(bytes(part.asWkb()), place) for part in straight.asGeometryCollection()]
-    if not all(len(rings) and all(np.isfinite(ring).all() for ring in rings) for rings in parts):
+    if not all(len(rings) and all(_is_sound(ring, kind) for ring in rings) for rings in parts):
         return []
     return [_SHAPES[kind](rings) for rings in parts]
+
+
+def _is_sound(vertices: np.ndarray, kind: str) -> bool:
+    """Whether vertices (m, 2 or 3) are finite, and enough of them differ for a geometry of a kind; GEOS takes none."""
+    left = vertices
+    for _ in range(_FEWEST[kind] - 1):
+        left = left[(left != left[:1]).any(axis=1)]
+    return len(left) > 0 and bool(np.isfinite(vertices).all())
 
 
 def _vertices(wkb: bytes, place: Place) -> list:

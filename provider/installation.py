@@ -26,6 +26,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ..algorithms import packages
 from ..algorithms.cloud.header import SOFTWARE
+from ..algorithms.package_versions import forget_versions, too_old
 from . import PROVIDER_ID
 from .dependencies import (
     laz_sentence,
@@ -37,6 +38,7 @@ from .dependencies import (
     system_command,
 )
 from .paths import PLUGIN
+from .questions import is_answered_yes
 from .run_log import plugin_version
 from .texts import tr
 
@@ -115,6 +117,7 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
         return False
     if not absent or not (ask or (lambda command: _is_wanted(parent, command)))(shown_command(absent)):
         return not absent
+    replaces_loaded = any(too_old(name) and name in sys.modules for name in absent)
     output = _run(parent, python(), pip_arguments(absent))
     _find_new_packages()
     remaining = packages.absent()
@@ -124,14 +127,14 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
             parent, SOFTWARE, tr("Not installed: {}. Python says: {}").format(", ".join(remaining), reason)
         )
     else:
-        QMessageBox.information(parent, SOFTWARE, tr("Everything is installed; the algorithms can run."))
+        then = tr("start QGIS again.") if replaces_loaded else tr("the algorithms can run.")
+        QMessageBox.information(parent, SOFTWARE, tr("Everything is installed;") + f" {then}")
     return not remaining
 
 
 def _is_wanted(parent: Optional[QWidget], command: str) -> bool:
-    buttons = QMessageBox.StandardButton
     question = tr("Run this command? It installs Python packages for QGIS alone, from the Python Package Index.")
-    return QMessageBox.question(parent, SOFTWARE, f"{question}\n\n{command}", buttons.Yes | buttons.No) == buttons.Yes
+    return is_answered_yes(parent, SOFTWARE, f"{question}\n\n{command}")
 
 
 def _run(parent: Optional[QWidget], program: str, arguments: list[str]) -> str:
@@ -162,6 +165,7 @@ def _find_new_packages() -> None:
     if Path(folder).is_dir() and folder not in sys.path:
         sys.path.append(folder)
     importlib.invalidate_caches()
+    forget_versions()
 
 
 def warn_at_start(iface: Any) -> Callable[[], None]:
@@ -177,7 +181,7 @@ class _StartMessage:
 
     def __init__(self, iface: Any) -> None:
         self.iface = iface
-        text = tr("Python packages are missing: {}.").format(", ".join(packages.missing()))
+        text = tr("Python packages are missing or too old: {}.").format(", ".join(packages.missing()))
         self.item = iface.messageBar().createMessage(SOFTWARE, text)
         self.button = QPushButton(tr("Install…"), self.item)
         self.button.clicked.connect(self.install)

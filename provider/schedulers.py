@@ -5,11 +5,16 @@ Whoever controls a scheduler runs code as the user. An address may come with a m
 
 from __future__ import annotations
 
+import re
+
 from qgis.core import QgsApplication
-from qgis.PyQt.QtWidgets import QMessageBox
 
 from .crs import is_main_thread
+from .questions import is_answered_yes
 from .settings import GROUP, SCHEDULERS
+
+# How addresses of schedulers are written: with nothing in them by which one could look like another.
+_ADDRESS = re.compile(r"(?:[a-z]+://)?[A-Za-z0-9._:\[\]%-]+/?")
 
 
 def confirmed() -> list[str]:
@@ -23,9 +28,13 @@ def check_scheduler(address: str) -> None:
     Raises
     ------
     ValueError
-        If the address is not confirmed; the message says how to confirm it.
+        If it is no address, or not confirmed; the message says how to confirm it.
     """
-    if not address or address in confirmed():
+    if not address:
+        return
+    if not _ADDRESS.fullmatch(address):
+        raise ValueError(f"The Dask scheduler (SCHEDULER) must be an address like tcp://host:8786, got {address!r}.")
+    if address in confirmed():
         return
     if _has_windows() and _is_wanted(address):
         SCHEDULERS.set(" ".join([*confirmed(), address]))
@@ -43,13 +52,9 @@ def _has_windows() -> bool:
 
 def _is_wanted(address: str) -> bool:
     """Ask whether a scheduler may be used."""
-    buttons = QMessageBox.StandardButton
-    answer = QMessageBox.question(
+    return is_answered_yes(
         None,
         GROUP,
         f"Connect to the Dask scheduler at {address}?\n\nWhoever controls it can run code as you, also on this "
         "computer: answer Yes only if it is yours. The address is then kept in the options of Processing.",
-        buttons.Yes | buttons.No,
-        buttons.No,
     )
-    return answer == buttons.Yes

@@ -8,9 +8,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Optional, cast
 
 from ..memory import share_freed
+from ..package_versions import requirement, too_old
+from .outputs import KeptFailure
 
 # What laspy imports where it finds it, and is not needed here: pyproj, whose wheels bring another PROJ into QGIS, and
 # requests, which takes longer to import than laspy itself.
@@ -26,9 +28,14 @@ def need_laspy() -> Any:
     Raises
     ------
     ValueError
-        If it is not installed.
+        If it is not installed, or too old.
     """
     share_freed()
+    old = too_old("laspy")
+    if old:
+        raise ValueError(
+            f"Point clouds need the Python package {requirement('laspy')}, and {old} is installed; install a newer one."
+        )
     try:
         with _without(*_UNUSED):
             importlib.import_module("laspy.vlrs.known")
@@ -69,13 +76,15 @@ def has_backend(name: str) -> bool:
 
 
 @contextmanager
-def explained(path: Path) -> Iterator[None]:
+def explained(path: Path, file: Optional[KeptFailure] = None) -> Iterator[None]:
     """Turn whatever a LAZ library raises, panics of Rust included, into one sentence.
 
     Raises
     ------
     ValueError
         If the library failed.
+    OSError
+        If it failed as ``file``, which it was reading, could not be read.
     """
     try:
         yield
@@ -83,6 +92,8 @@ def explained(path: Path) -> Iterator[None]:
         # A panic in Rust is no Exception, and its class can't be imported.
         if type(error).__module__.split(".")[0] not in ("laspy", "lazrs", "laszip", "pyo3_runtime"):
             raise
+        if file is not None and file.failure:
+            raise file.failure from None
         raise ValueError(
             f"{path.name} is truncated or damaged: its points can't be decompressed; get the file again."
         ) from None

@@ -14,7 +14,7 @@ import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO, Callable, Optional
+from typing import Any, BinaryIO, Callable, Optional
 
 try:
     import fcntl
@@ -112,14 +112,22 @@ class DiskFullError(ValueError):
     """What a run had to write did not fit on the disk: nothing else that it writes will."""
 
 
-class _File(io.FileIO):
-    """A file that stores why writing failed: LAZ libraries report that it failed, not why."""
+class KeptFailure(io.FileIO):
+    """A file that stores why reading or writing failed: LAZ libraries report that it failed, not why."""
 
     failure: Optional[OSError] = None
 
+    def readinto(self, buffer) -> Optional[int]:
+        """Read as any file."""
+        return self._kept(super().readinto, buffer)
+
     def write(self, data) -> int:
+        """Write as any file."""
+        return self._kept(super().write, data)
+
+    def _kept(self, call: Callable, data: Any) -> Any:
         try:
-            return super().write(data)
+            return call(data)
         except OSError as error:
             self.failure = error
             raise
@@ -403,7 +411,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     file = None
     try:
         with all_or_nothing() as files:
-            file = _File(files.beside(path), "xb+")
+            file = KeptFailure(files.beside(path), "xb+")
             with io.BufferedRandom(file) as stream:
                 yield stream
     except Exception as error:

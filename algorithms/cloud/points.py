@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO, Callable, Optional
+from typing import Any, BinaryIO, Callable, Optional
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from .copc_index import has_index, read_index
 from .header import Header, read_header, truncated
 from .laspy_library import explained, need_laspy
 from .laz import POINTS_PER_CHUNK, first_records, has_variable_chunks, open_chunks, open_laz, writing_backend
+from .outputs import KeptFailure
 
 # Points that are read or written at once. A multiple of the LAZ chunk, so that every call decompresses whole chunks, in
 # well under a second.
@@ -267,26 +268,26 @@ def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarra
 
 def _reads(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, int, Callable]]:
     """Yield (start, stop, function that fills an array with these points), with progress between."""
-    with path.open("rb") as stream:
-        read = _compressed(path, header, stream) if header.is_compressed else _plain(path, header, stream)
+    with KeptFailure(path) as file, BufferedReader(file) as stream:
+        read = _compressed(path, header, stream, file) if header.is_compressed else _plain(path, header, stream)
         for start in range(0, header.count, AT_ONCE):
             monitor.progress(start / header.count)
             yield start, min(start + AT_ONCE, header.count), read
     monitor.progress(1.0)
 
 
-def _compressed(path: Path, header: Header, stream: BinaryIO) -> Callable:
+def _compressed(path: Path, header: Header, stream: Any, file: KeptFailure) -> Callable:
     """Return a function that fills an array with the points of LAZ that come next."""
     fill = open_laz(path, header, stream)
 
     def read(points: np.ndarray) -> None:
-        with explained(path):
+        with explained(path, file):
             fill(points.view(np.uint8))
 
     return read
 
 
-def _plain(path: Path, header: Header, stream: BufferedReader) -> Callable:
+def _plain(path: Path, header: Header, stream: Any) -> Callable:
     """Return a function that fills an array with the points that come next; laspy would copy them once more."""
     stream.seek(header.points_at)
 

@@ -163,6 +163,7 @@ def _archive(folder: Path) -> Path:
     package = folder / "content" / PACKAGE
     ignored = shutil.ignore_patterns("__pycache__", "*.pyc")
     shutil.copytree(FOLDER / "algorithms", package / "algorithms", ignore=ignored)
+    shutil.copy(FOLDER / "requirements.txt", package)
     (package / "__init__.py").write_text('"""The core of LiDAR Buildings, as workers import it."""\n', encoding="utf-8")
     return Path(shutil.make_archive(str(folder / PACKAGE), "zip", folder / "content"))
 

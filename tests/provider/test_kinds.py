@@ -137,6 +137,16 @@ def test_a_layer_reaches_the_stage(provider, context, log, town_file, out):
     assert not log.warnings
 
 
+@pytest.mark.parametrize("name", ["a" * 300 + ".las", "a" * 5000 + ".las"])
+def test_a_name_that_no_file_can_have_is_a_sentence(provider, context, out, name):
+    """It was an OSError with its traceback."""
+    for given in ({"INPUT": str(out / name)}, {"INPUT": str(out / "a.las"), "OUTPUT": str(out / name)}):
+        accepted, message = provider.algorithm("toylift").create().checkParameterValues(given, context)
+        assert not accepted
+        assert message.endswith((".", "…"))
+        assert message.isprintable()
+
+
 def test_an_optional_layer_may_be_left_out(provider, context, log, town_file, out):
     for given in ({}, {"AREAS": None}, {"AREAS": ""}):
         run("toymask", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), **given}, context, log)
@@ -160,9 +170,9 @@ def read(provider, context, town_file):
     """Return a layer as a stage would be given it, and the warnings, in meters from the town's origin."""
 
     def read(kind, rows, cloud=None, **options):
+        input_layer = InputLayer("areas", "Areas", kind, "Boxes.", upright=options.pop("upright", False))
         layer = vector(options.pop("layer_kind", kind), rows, **options)
         context.project().addMapLayer(layer)
-        input_layer = InputLayer("areas", "Areas", kind, "Boxes.")
         algorithm = provider.algorithm("toymask").create()
         found = algorithm.parameterAsSource({"AREAS": layer}, "AREAS", context)
         monitor = Monitor()
@@ -222,6 +232,26 @@ def test_geometries_that_are_not_sound_are_counted(read):
     found, warnings = read("Polygon", rows)
     assert found.columns["id"].tolist() == [1]
     assert warnings == ["Areas: 3 of 4 features are left out; they have no valid geometry of polygons."]
+
+
+@pytest.mark.parametrize(
+    ("kind", "upright", "wkt"),
+    [
+        ("Polygon", False, "Polygon ((85000 446000, 85001 446000, 85001 446001, 85000 446000), ())"),
+        ("Polygon", True, "PolygonZ ((85000 446000 5, 85000 446000 5, 85000 446000 5, 85000 446000 5))"),
+        ("Polygon", True, "PolygonZ ((85000 446000 5, 85000 446000 9, 85000 446000 5, 85000 446000 5))"),
+        ("LineString", False, "LineStringZ (85000 446000 5, 85000 446000 5, 85000 446000 5)"),
+        ("LineString", True, "LineStringZ (85000 446000 5)"),
+    ],
+)
+def test_rings_without_corners_are_not_sound(read, kind, upright, wkt):
+    """They passed, and algorithms ended with errors of numpy."""
+    sound = {"Polygon": BOX, "LineString": "LineString (85000 446000, 85001 446000)"}[kind]
+    rows = [(sound, [1, 1.0, ""]), (wkt, [2, 1.0, ""])]
+    found, warnings = read(kind, rows, layer_kind="PolygonZ" if kind == "Polygon" else "LineStringZ", upright=upright)
+    assert found.columns["id"].tolist() == [1]
+    assert len(warnings) == 1
+    assert "1 of 2 features are left out" in warnings[0]
 
 
 def test_an_empty_layer_has_its_columns(read):

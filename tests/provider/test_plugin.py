@@ -15,12 +15,15 @@ from qgis.core import (
     QgsProcessingOutputLayerDefinition,
     QgsRectangle,
 )
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtWidgets import QMessageBox
 
 import lidar_buildings
-from lidar_buildings.algorithms import packages
+from lidar_buildings.algorithms import package_versions, packages
+from lidar_buildings.algorithms.cloud import laspy_library
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.provider import dependencies, installation
+from lidar_buildings.provider import dependencies, installation, questions
 from lidar_buildings.provider.menu import open_dialog, view_parameters
 from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
 from lidar_buildings.provider.plugin import LOG, Plugin
@@ -130,19 +133,20 @@ def test_packages_of_another_installer_are_found_and_forgotten(provider, tmp_pat
 @pytest.mark.parametrize(
     ("missing", "is_debian", "wanted"),
     [
-        (["lazrs"], True, "{python} -m pip install --no-deps --target {profile}/python lazrs"),
+        (["lazrs"], True, "{python} -I -m pip install --upgrade --no-deps --target {profile}/python 'lazrs>=0.6,<0.9'"),
         (["scipy", "scikit-learn"], True, "sudo apt-get install -y python3-scipy python3-sklearn"),
-        (["scipy"], False, "{python} -m pip install --no-deps --target {profile}/python scipy"),
+        (["scipy"], False, "{python} -I -m pip install --upgrade --no-deps --target {profile}/python scipy"),
         (
             ["scikit-learn", "lazrs"],
             True,
             "sudo apt-get install -y python3-sklearn && "
-            "{python} -m pip install --no-deps --target {profile}/python lazrs",
+            "{python} -I -m pip install --upgrade --no-deps --target {profile}/python 'lazrs>=0.6,<0.9'",
         ),
         (
             ["scikit-learn"],
             False,
-            "{python} -m pip install --no-deps --target {profile}/python scikit-learn joblib threadpoolctl",
+            "{python} -I -m pip install --upgrade --no-deps --target {profile}/python scikit-learn joblib "
+            "threadpoolctl",
         ),
     ],
 )
@@ -155,7 +159,9 @@ def test_one_command_mends_it(qgis_application, monkeypatch, missing, is_debian,
 def test_names_with_spaces_are_quoted(monkeypatch):
     monkeypatch.setattr(dependencies, "_is_debian", lambda: False)
     monkeypatch.setattr(QgsApplication, "qgisSettingsDirPath", staticmethod(lambda: "/home/a user/p"))
-    assert "--target '/home/a user/p/python' lazrs" in dependencies.command(["lazrs"])
+    assert "--target '/home/a user/p/python' 'lazrs>=0.6,<0.9'" in dependencies.command(["lazrs"])
+    monkeypatch.setattr(sys, "platform", "win32")
+    assert '"lazrs>=0.6,<0.9"' in dependencies.command(["lazrs"]), "a terminal would write to a file of that name"
 
 
 def test_without_pip_debian_is_asked_for_it(qgis_application, monkeypatch):
@@ -188,6 +194,61 @@ def test_packages_are_looked_up_by_import(monkeypatch):
     monkeypatch.setattr(packages.importlib.util, "find_spec", lambda name: None)
     assert packages.missing() == ["scipy", "scikit-learn", "laspy"]
     assert packages.absent() == ["scipy", "scikit-learn", "laspy", "lazrs"]
+
+
+@pytest.fixture
+def old_laspy(monkeypatch):
+    """A Python with a laspy that reads no LAZ as this one does."""
+    version = package_versions.importlib.metadata.version
+    monkeypatch.setattr(
+        package_versions.importlib.metadata, "version", lambda name: "2.4.1" if name == "laspy" else version(name)
+    )
+    package_versions.forget_versions()
+    yield
+    monkeypatch.undo()
+    package_versions.forget_versions()
+
+
+def test_a_package_that_is_too_old_is_as_good_as_missing(provider, old_laspy):
+    """All was said to be well, and every LAZ ended with an AttributeError."""
+    assert packages.missing() == ["laspy"]
+    can_run, why = provider.algorithm("toylift").canExecute()
+    assert not can_run
+    assert why.startswith("Python package is missing or too old: laspy (2.4.1, laspy>=2.5,<3 is needed).")
+    assert "--upgrade" in why
+    assert why in installation.installation_text()
+    with pytest.raises(ValueError, match=r"need the Python package laspy>=2\.5,<3, and 2\.4\.1 is installed"):
+        laspy_library.need_laspy.__wrapped__()
+
+
+@pytest.mark.parametrize(
+    ("installed", "is_old"), [("2.4.1", True), ("2.5", False), ("2.5.0rc1", False), ("2.10.3", False), ("1.7", True)]
+)
+def test_versions_are_compared_by_their_numbers(monkeypatch, installed, is_old):
+    monkeypatch.setattr(package_versions, "_installed", lambda name: installed)
+    assert bool(package_versions.too_old("laspy")) == is_old
+    assert not package_versions.too_old("numpy")
+
+
+def test_the_command_takes_no_module_of_the_current_folder(tmp_path, monkeypatch):
+    """A pip.py in the folder from which QGIS was started was run."""
+    for name in ("pip", "runpy"):
+        (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'planted')!r}, 'w')\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    arguments = dependencies.pip_arguments(["lazrs"])
+    command = [dependencies.python(), *arguments[: arguments.index("pip") + 1], "--version"]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert not (tmp_path / "planted").exists()
+    assert made.stdout.startswith("pip ") or "No module named pip" in made.stderr
+
+
+def test_a_question_is_shown_as_it_is(qgis_application):
+    """Qt took an address with markup for HTML: one that read as localhost was another."""
+    asked = "tcp://localhost:8786<b></b><!-- tcp://evil:8786 -->"
+    box = questions.question_box(None, "LiDAR Buildings", asked)
+    assert box.textFormat() == Qt.TextFormat.PlainText
+    assert box.text() == asked
+    assert box.defaultButton() == box.button(QMessageBox.StandardButton.No)
 
 
 @pytest.fixture

@@ -84,6 +84,6 @@ def test_without_its_packages_it_says_how_to_get_them(tmp_path_factory, field, t
     assert done.returncode == 1
     said = done.stdout + done.stderr
     assert "Python package is missing: laspy." in said
-    assert "-m pip install --no-deps --target" in said
-    assert f"{bare.folder}/config/profiles/default/python laspy lazrs" in said
+    assert "-I -m pip install --upgrade --no-deps --target" in said
+    assert f"{bare.folder}/config/profiles/default/python 'laspy>=2.5,<3' 'lazrs>=0.6,<0.9'" in said
     assert "Traceback" not in said

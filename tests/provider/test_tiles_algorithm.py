@@ -191,6 +191,27 @@ def test_a_scheduler_in_a_model_is_refused(provider, context, log, folder, tmp_p
     assert connected == []
 
 
+@pytest.mark.parametrize(
+    "address",
+    [
+        "tcp://localhost:8786<b></b><!-- tcp://evil:8786 -->",
+        "tcp://localhost:8786 tcp://evil:8786",
+        "tcp://localhost:8786@evil:8786",
+        "tcp://localhost\u202e:8786",
+    ],
+)
+def test_an_address_that_could_look_like_another_is_refused(settings, monkeypatch, address):
+    asked = []
+    monkeypatch.setattr(schedulers, "_has_windows", lambda: True)
+    monkeypatch.setattr(schedulers, "_is_wanted", lambda address: asked.append(address) or True)
+    with pytest.raises(ValueError, match=r"must be an address like tcp://host:8786, got 'tcp://localhost"):
+        schedulers.check_scheduler(address)
+    assert asked == []
+    for sound in ("tcp://mine:1", "tls://[::1]:8786", "head-node.cluster:8786"):
+        schedulers.check_scheduler(sound)
+    assert asked == ["tcp://mine:1", "tls://[::1]:8786", "head-node.cluster:8786"]
+
+
 def test_a_confirmed_scheduler_is_taken(algorithm, context, log, folder, tmp_path, settings, connected):
     settings.setValue(SCHEDULERS.key, "tcp://mine:1  tcp://mine:2")
     given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "SCHEDULER": "tcp://mine:2", **QUICKLY}

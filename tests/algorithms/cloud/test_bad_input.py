@@ -1,5 +1,6 @@
 """Bad input: one sentence each, and no memory allocated by counts in a header alone."""
 
+import errno
 import importlib
 import json
 import struct
@@ -8,7 +9,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud import points
+from lidar_buildings.algorithms.cloud import laz, outputs, points
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import check_readable, read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
@@ -220,3 +221,26 @@ def test_vpc_tile_that_is_damaged_is_named(tmp_path, good):
     features = [{"assets": {"data": {"href": name}}} for name in ("good.las", "bad.las")]
     (tmp_path / "a.vpc").write_text(json.dumps({"features": features}))
     refuse(tmp_path / "a.vpc", "bad.las is truncated or damaged")
+
+
+@pytest.mark.parametrize("backend", ["LazrsParallel", "Laszip"])
+def test_a_disk_that_fails_amid_a_file_is_no_damage(tmp_path, rng, monkeypatch, backend):
+    """The user was told to get the file again."""
+    path = tmp_path / "a.laz"
+    write_cloud(create_cloud({"xyz": rng.uniform(0, 100, (300_000, 3))}), path)
+    half = path.stat().st_size // 2
+
+    def unreadable(_):
+        raise OSError(errno.EIO, "Input/output error")
+
+    class Failing(outputs.KeptFailure):
+        def _kept(self, call, data):
+            return super()._kept(unreadable if half < self.tell() < 1.2 * half else call, data)
+
+    has_backend = laz.has_backend
+    monkeypatch.setattr(laz, "has_backend", lambda name: name == backend and has_backend(name))
+    monkeypatch.setattr(points, "KeptFailure", Failing)
+    if not laz.has_backend(backend):
+        pytest.skip(f"{backend} is not installed")
+    with pytest.raises(ValueError, match=r"a\.laz can't be read \(Input/output error\); check the file"):
+        read_cloud(path)

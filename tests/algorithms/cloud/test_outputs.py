@@ -56,12 +56,12 @@ def test_cancel_leaves_what_was_there(cloud, folder, kind):
     ],
 )
 def test_failed_writing_is_one_sentence_and_leaves_nothing(cloud, folder, monkeypatch, kind, error, message):
-    class Failing(outputs._File):
+    class Failing(outputs.KeptFailure):
         def write(self, data):
             self.failure = error
             raise error
 
-    monkeypatch.setattr(outputs, "_File", Failing)
+    monkeypatch.setattr(outputs, "KeptFailure", Failing)
     with pytest.raises(ValueError, match=message):
         write_cloud(cloud, folder / f"a{kind}")
     monkeypatch.undo()
