@@ -36,6 +36,7 @@ from ..algorithms.cloud.outputs import (
 )
 from ..algorithms.stage import Monitor
 from .clouds import reads_las
+from .errors import sentence_of
 from .memory_files import copy_folder, memory_folder
 from .rasters import check_raster
 from .styles import load_from, name_after
@@ -250,6 +251,8 @@ def all_in_place(
             run.check()
         except (ValueError, QgsProcessingException) as error:
             raise type(error)(run.final(str(error))) from error
+        except OSError as error:
+            raise ValueError(run.final(sentence_of(error))) from error
     load_from(context, run.final)
     if subject or title:
         name_after(context, {definition.description() for definition in definitions}, subject, title)

@@ -65,6 +65,7 @@ def read_cloud(
     path, monitor = Path(path), monitor or Monitor()
     with readable(path):
         files = files_of(path)
+        states = [state_of(file) for file in files]
         with_points, headers = open_headers(files, monitor)
         header, units = headers[0], units_of(headers[0], crs_units)
         if len(files) == 1:
@@ -76,11 +77,26 @@ def read_cloud(
             for other in headers[1:]:
                 units_of(other, crs_units)
             header, points = read_tiles(with_points, monitor, box)
+        if [state_of(file) for file in files] != states:
+            raise ValueError(f"{path.name} has changed while it was read; run it again when it is complete.")
     if not len(points):
         raise ValueError(f"{path.name} has no points within the extent; choose another extent.")
     header = header if box is None else replace(header, count=len(points))
     units.report(monitor)
     return Cloud(header, points, units, files if files == [path] else [*files, path])
+
+
+def state_of(path: Path) -> tuple[int, int]:
+    """Return what shows whether a file has changed: its size, and when it was written (ns).
+
+    Raises
+    ------
+    ValueError
+        If the system does not say.
+    """
+    with readable(path):
+        stat = path.stat()
+    return stat.st_size, stat.st_mtime_ns
 
 
 def dimension_names(path: Union[str, Path]) -> list[str]:

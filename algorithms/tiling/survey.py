@@ -12,7 +12,7 @@ from typing import Optional, Union
 import numpy as np
 
 from ..cloud.cloud import Cloud, origin_before
-from ..cloud.files import files_of, header_with_crs, readable
+from ..cloud.files import files_of, header_with_crs, readable, state_of
 from ..cloud.header import OF_OLD_POINTS, Header, read_header
 from ..cloud.outputs import check_not_read, kind_of, made_folder, os_errors_as_messages
 from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
@@ -49,13 +49,6 @@ class Source:
         """
         if state_of(self.path) != self.state:
             raise ValueError(f"{self.path.name} has changed since the run began; run it again when it is complete.")
-
-
-def state_of(path: Path) -> tuple[int, int]:
-    """Return what shows whether a file has changed: its size, and when it was written (ns)."""
-    with readable(path):
-        stat = path.stat()
-    return stat.st_size, stat.st_mtime_ns
 
 
 @dataclass(frozen=True)

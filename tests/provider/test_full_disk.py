@@ -22,7 +22,11 @@ OUTPUTS = {
     "shapefile": ("toyoutline", "FOOTPRINTS", "a.shp"),
     "GeoJSON": ("toyoutline", "FOOTPRINTS", "a.geojson"),
     "page": ("toycompare", "REPORT", "a.html"),
+    "cloud of a chain": ("toychain", "OUTPUT", "a.laz"),
+    "layer of a chain": ("toychain", "FOOTPRINTS", "a.gpkg"),
 }
+# Those that are one file, written once.
+SINGLE = ("LAZ", "COPC", "LAS", "raster", "page", "cloud of a chain")
 # Sizes at which a write fails (bytes): at once, within the smallest output, and within the rows of a layer.
 LIMITS = (0, 40, 3_000, 60_000, 120_000, 250_000)
 
@@ -119,7 +123,7 @@ def test_a_full_disk(provider, context, log, town_file, small_disk, kind):
     output.write_text("older")
     # With the older output, seven pages of 4 kB are free; "rest" leaves none to single files, and six to layers.
     (small_disk / "full").write_bytes(bytes(300 * 1024 - 8 * 4096))
-    (small_disk / "rest").write_bytes(bytes(7 * 4096 if kind in ("LAZ", "COPC", "LAS", "raster", "page") else 4096))
+    (small_disk / "rest").write_bytes(bytes(7 * 4096 if kind in SINGLE else 4096))
     before = contents(small_disk)
     with pytest.raises(QgsProcessingException) as caught:
         run(name, values, context, log)

@@ -3,6 +3,7 @@
 import errno
 import importlib
 import json
+import os
 import struct
 import tracemalloc
 
@@ -244,3 +245,16 @@ def test_a_disk_that_fails_amid_a_file_is_no_damage(tmp_path, rng, monkeypatch, 
         pytest.skip(f"{backend} is not installed")
     with pytest.raises(ValueError, match=r"a\.laz can't be read \(Input/output error\); check the file"):
         read_cloud(path)
+
+
+def test_a_file_that_changes_while_it_is_read_is_refused(good, tmp_path):
+    """A download that went on: half of the points were of the older file."""
+    path = tmp_path / "a.las"
+    path.write_bytes(good[".las"])
+
+    class Changing(Monitor):
+        def progress(self, fraction):
+            os.utime(path, ns=(0, 0))
+
+    with pytest.raises(ValueError, match="a.las has changed while it was read; run it again when it is complete"):
+        read_cloud(path, Changing())
