@@ -14,7 +14,7 @@ import numpy as np
 
 from .cloud.cloud import Cloud, create_cloud
 from .cloud.dimensions import DIMENSIONS
-from .cloud.merging import merge_records
+from .cloud.merging import in_one_crs, merge_records
 from .geometry.grid import plan_box
 from .memory import return_freed
 from .pipeline import CLOUD, REPORT, Pipeline, Step
@@ -98,6 +98,11 @@ def run_stage(
     """
     arguments: dict[str, Any] = stage.check(tunables)
     clouds = [cloud] if isinstance(cloud, Cloud) else list(cloud or ())
+    monitor = monitor or Monitor()
+    if stage.merges:
+        clouds = in_one_crs(clouds, monitor)
+    elif clouds and reference is not None:
+        reference = in_one_crs([clouds[0], reference], monitor)[1]
     # Coordinates of two clouds can be compared only from one origin.
     together = [*clouds, *([reference] if reference is not None and clouds else [])]
     origin = clouds[0].origin if clouds else np.zeros(3)
@@ -105,7 +110,6 @@ def run_stage(
     used = [_used(one) for one in clouds]
     arrays = [_argument(stage, name, clouds, reference, used, arguments) for name in (*stage.reads, *stage.optional)]
     layers = given_layers(stage.name, stage.input_layers, input_layers or {})
-    monitor = monitor or Monitor()
     own = sampling_of(clouds[0]) if stage.samples and sampling is None else None
     if stage.samples:
         arguments[SAMPLING] = sampling or own

@@ -24,7 +24,7 @@ class CheckedAlgorithm(DeclaredAlgorithm):
         raise NotImplementedError
 
     def systems(self) -> Iterable[str]:
-        """Return the coordinate reference systems (WKT or codes) that a checked run needs."""
+        """Return the coordinate reference systems (codes or WKT) that a checked run needs."""
         raise NotImplementedError
 
     def completed(self, parameters: dict) -> dict:

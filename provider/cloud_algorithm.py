@@ -40,7 +40,7 @@ from ..algorithms.stage import (
 )
 from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
-from .crs import FULL, crs_of, crs_units
+from .crs_authority import crs_reader, text_of
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
@@ -62,7 +62,7 @@ from .inputs import (
 )
 from .layer_outputs import UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
-from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_named
+from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_clouds
 from .outputs import all_in_place, check_targets, write_for_qgis
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
@@ -229,7 +229,8 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the clouds, and the one that is given."""
-        return [*(read_extent(path)[2] for path in self.job.paths), *names_of_crs(self.job.crs)]
+        read = crs_reader(self.job.crs)
+        return [*(read_extent(path, read)[2].plane for path in self.job.paths), *names_of_crs(self.job.crs)]
 
     def _job(self, parameters: dict, context: QgsProcessingContext) -> Job:
         """Return what a run needs; refuse with a ValueError what can be refused before it."""
@@ -242,13 +243,14 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
         if job.clouds:
-            job.box = extent_box(self, read_extent(job.clouds[0])[2] or job.crs.toWkt(FULL), parameters, context)
+            plane = read_extent(job.clouds[0], crs_reader(job.crs))[2].plane
+            job.box = extent_box(self, plane, parameters, context)
         read = [*files_read(job.paths), *input_layer_files(self, inputs.layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read, job.clouds)
         if job.reference:
             refuse_same(job.clouds, job.reference)
         for path in job.paths:
-            check_readable(path, crs_units)
+            check_readable(path)
         if job.clouds:
             refuse_elsewhere(self, inputs.layers, job.clouds, parameters, context)
         return job
@@ -293,7 +295,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         warn_if_memory_is_short(job.points, monitor)
         count = max(1, len(job.paths))
         parts = [monitor.part(i / count, (i + 1) / count) for i in range(count)]
-        clouds = [read_named(path, part, job.crs, job.box) for path, part in zip(job.paths, parts)]
+        clouds = read_clouds(job.paths, parts, job.crs, job.box)
         reference = clouds.pop() if job.reference else None
         found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.inputs.layers}
         given = {wanted: layer for wanted, layer in found.items() if layer is not None}
@@ -343,8 +345,7 @@ class _Writer:
     def _write_cloud(self, made: Made, cloud: Cloud, monitor: Monitor) -> dict[str, str]:
         target = self.algorithm.parameterAsOutputLayer(self.parameters, made.name, self.context)
         shown = write_for_qgis(cloud, target, self.context, monitor)
-        crs = crs_of(cloud.wkt).toWkt(FULL)
-        show_on_load(self.context, shown, "Cloud", cloud_style(made.stage, cloud), crs=crs)
+        show_on_load(self.context, shown, "Cloud", cloud_style(made.stage, cloud), crs=cloud.crs.plane)
         return {made.name: target}
 
     def _write_raster(self, name: str, raster: Raster, surface: RasterSurface, monitor: Monitor) -> dict[str, str]:
@@ -363,7 +364,7 @@ class _Writer:
             target = self.algorithm.parameterAsFileOutput(self.parameters, made.name, self.context)
             with replacing(Path(target)) as stream:
                 stream.write(with_coordinates(report.html, self.place.to_map).encode())
-            rows = about_run(self.algorithm.displayName(), job.paths, job.points, self.place.crs.toWkt(FULL))
+            rows = about_run(self.algorithm.displayName(), job.paths, job.points, text_of(self.place.crs))
             complete_page(Path(target), rows, log.steps)
             written[made.name] = target
         return written

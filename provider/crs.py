@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Optional
 
 from qgis.core import (
     Qgis,
@@ -15,17 +14,9 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QThread
 
-# The variant of WKT that is written: WKT 2, as the default of QGIS, WKT 1, has no words for many systems.
-FULL = QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED
+from .crs_authority import text_of
+
 _NO_LENGTHS = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
-
-
-def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
-    """Return meters per horizontal and vertical unit of an EPSG code, and whether it is geographic; None if unknown."""
-    crs = QgsCoordinateReferenceSystem.fromEpsgId(epsg)
-    if not crs.isValid():
-        return None
-    return (*meters_per_unit(crs), crs.isGeographic())
 
 
 def meters_per_unit(crs: QgsCoordinateReferenceSystem) -> tuple[float, float]:
@@ -40,33 +31,18 @@ def _meters(crs: QgsCoordinateReferenceSystem) -> float:
     return 1.0 if unit in _NO_LENGTHS else QgsUnitTypes.fromUnitToUnitFactor(unit, Qgis.DistanceUnit.Meters)
 
 
-def crs_of(wkt: str) -> QgsCoordinateReferenceSystem:
-    """Return the horizontal CRS that a cloud names as WKT or as "EPSG:n"; invalid when it names none."""
-    crs = _made(wkt)
+def crs_of(plane: str) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of layers of a cloud, by the horizontal part of its own (:attr:`.Crs.plane`); invalid for none."""
+    crs = _made(plane)
     if is_hollow(crs):
         QgsCoordinateReferenceSystem.invalidateCache()
-        crs = _made(wkt)
+        crs = _made(plane)
     return crs
 
 
-def code_in_space(wkt: str) -> str:
-    """Return the code of the CRS that a cloud names, with its heights where it has a code with them ("EPSG:7415")."""
-    return _whole(wkt).authid() or crs_of(wkt).authid()
-
-
-def _whole(wkt: str) -> QgsCoordinateReferenceSystem:
-    """Return the CRS that a cloud names, with its heights."""
-    if not wkt:
-        return QgsCoordinateReferenceSystem()
-    return QgsCoordinateReferenceSystem.fromWkt(wkt) if '"' in wkt else QgsCoordinateReferenceSystem(wkt)
-
-
-def _made(wkt: str) -> QgsCoordinateReferenceSystem:
-    """Return the horizontal CRS that a cloud names, as QGIS has it, hollow or not."""
-    crs = _whole(wkt)
-    # Layers hold heights as an attribute or in meters of the cloud's own vertical system, which GeoPackage can't name.
-    horizontal = crs.horizontalCrs()
-    return horizontal if horizontal.isValid() else crs
+def _made(text: str) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of a text, as QGIS has it, hollow or not."""
+    return QgsCoordinateReferenceSystem.fromWkt(text) if '"' in text else QgsCoordinateReferenceSystem(text)
 
 
 def is_hollow(crs: QgsCoordinateReferenceSystem) -> bool:
@@ -78,7 +54,7 @@ def is_hollow(crs: QgsCoordinateReferenceSystem) -> bool:
     return crs.isValid() and not crs.toWkt()
 
 
-def make_in_main_thread(wkts: Iterable[str]) -> list[QgsCoordinateReferenceSystem]:
+def make_in_main_thread(planes: Iterable[str]) -> list[QgsCoordinateReferenceSystem]:
     """Make the CRS of a run in the main thread, before the run asks for them in its own; keep the returned object.
 
     Outside of the main thread nothing is made: a step of a model has them from the model.
@@ -86,7 +62,7 @@ def make_in_main_thread(wkts: Iterable[str]) -> list[QgsCoordinateReferenceSyste
     if not is_main_thread():
         return []
     QgsCoordinateReferenceSystem.invalidateCache()
-    made = [crs_of(wkt) for wkt in wkts]
+    made = [crs_of(plane) for plane in planes]
     # Layers in memory look up their CRS by its code.
     return made + [QgsCoordinateReferenceSystem(crs.authid()) for crs in made if crs.authid()]
 
@@ -95,10 +71,10 @@ def renew_in_main_thread(layers: Iterable[QgsMapLayer]) -> None:
     """Give layers of a run their CRS again, made in the main thread: one that the run made ends with its thread."""
     if not is_main_thread():
         return
-    named = [(layer, layer.crs().authid(), layer.crs().toWkt(FULL)) for layer in layers if layer.crs().isValid()]
+    named = [(layer, layer.crs().authid() or text_of(layer.crs())) for layer in layers if layer.crs().isValid()]
     QgsCoordinateReferenceSystem.invalidateCache()
-    for layer, code, wkt in named:
-        layer.setCrs(QgsCoordinateReferenceSystem(code) if code else QgsCoordinateReferenceSystem.fromWkt(wkt))
+    for layer, text in named:
+        layer.setCrs(crs_of(text))
 
 
 def is_main_thread() -> bool:

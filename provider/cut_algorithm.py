@@ -23,7 +23,6 @@ from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_surv
 from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .algorithm import CheckedAlgorithm
 from .clouds import CloudsParameter, survey_paths
-from .crs import crs_units
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
@@ -65,13 +64,13 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Find the files of the survey, and refuse invalid input before the run."""
         given = survey_paths(self, INPUT, parameters, context)
         check_vpc(target_path(parameters.get(OUTPUT)), given)
-        self.files = files_of_survey(given)
-        self.wkt = crs_of_survey(self.files)
-        self.extent = extent_box(self, self.wkt, parameters, context)
+        self.given, self.files = given, files_of_survey(given)
+        self.plane = crs_of_survey(given).plane
+        self.extent = extent_box(self, self.plane, parameters, context)
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the survey and of its virtual point cloud."""
-        return [self.wkt, WGS84]
+        return [self.plane, WGS84]
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
@@ -83,7 +82,7 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         compressed = self.parameterAsBool(parameters, COMPRESSED, context)
         monitor = FeedbackMonitor(feedback)
         with as_processing_errors(feedback, f"Cancelled; tiles that were complete are in {folder}."):
-            survey = open_survey(self.files, crs_units, monitor, self.extent)
+            survey = open_survey(self.given, monitor=monitor, extent=self.extent)
             stem = self.files[0].name.split(".")[0] if len(self.files) == 1 else "tile"
             tiles = cut_into_tiles(survey, side, folder, stem, compressed, monitor)
             vpc = write_survey(survey, tiles, folder, context, monitor)

@@ -108,9 +108,9 @@ def given_crs(
 
 
 def extent_box(
-    algorithm: QgsProcessingAlgorithm, wkt: str, parameters: dict, context: QgsProcessingContext
+    algorithm: QgsProcessingAlgorithm, plane: str, parameters: dict, context: QgsProcessingContext
 ) -> Optional[np.ndarray]:
-    """Return the extent that a user gives, (2, 2) in the CRS ``wkt`` of a cloud; None where none is given.
+    """Return the extent that a user gives, (2, 2) in the CRS ``plane`` of a cloud; None where none is given.
 
     An extent in another coordinate reference system becomes the box around it.
 
@@ -121,7 +121,7 @@ def extent_box(
     """
     if parameters.get(EXTENT) in (None, ""):
         return None
-    rectangle = algorithm.parameterAsExtent(parameters, EXTENT, context, crs_of(wkt))
+    rectangle = algorithm.parameterAsExtent(parameters, EXTENT, context, crs_of(plane))
     if rectangle.isNull() or not rectangle.isFinite():
         raise ValueError(f"{parameters[EXTENT]!r} is not an extent; give it as xmin,xmax,ymin,ymax.")
     return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])

@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsFeatureSink, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingException
+from dataclasses import replace
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeatureSink,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingException,
+)
 
 from ..algorithms.stage import Layer, LayerFeatures, Monitor
-from .outputs import through_memory
+from .crs import crs_of
+from .outputs import target_path, through_memory
 from .places import Place
 from .styles import layer_style, show_on_load, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
 
 # Values of an optional output that is not wanted: None where it is left out, "" where the command line gives none.
 UNWANTED = (None, "")
+
+# Formats that name systems by a code only.
+_BY_CODE = (".geojson", ".json")
+# What GeoPackage calls a plane of which nothing is known (srs_id -1).
+_UNDEFINED = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1],AXIS["Easting",EAST],AXIS["Northing",NORTH]]'
 
 # Features, or pieces of a text, that are written between two looks at whether to stop.
 BETWEEN_CHECKS = 1000
@@ -39,6 +53,8 @@ def write_layer(
     if parameters.get(name) in UNWANTED:
         return {}
     monitor.resolved(**{layer.name: len(features)})
+    path = target_path(parameters[name])
+    place = replace(place, crs=_crs_in_file(path.name.lower() if path else "", place.crs, monitor))
     with through_memory(parameters, name, context) as (redirected, final):
         target = _fill_sink(algorithm, name, layer, features, place, redirected, context, monitor)
     target = final(target)
@@ -46,6 +62,19 @@ def write_layer(
     if not len(features):
         switch_off(context, [target])
     return {name: target}
+
+
+def _crs_in_file(file: str, crs: QgsCoordinateReferenceSystem, monitor: Monitor) -> QgsCoordinateReferenceSystem:
+    """Return the CRS by which a file names it; warn where its format can't."""
+    if file.endswith(".gpkg") and not crs.isValid():
+        # QGIS would say "geographic", that is degrees.
+        return crs_of(_UNDEFINED)
+    if file.endswith(_BY_CODE) and crs.isValid() and not crs.authid().startswith("EPSG:"):
+        monitor.warn(
+            f"{file} names no coordinate reference system: GeoJSON knows codes only, and this one has none; choose a "
+            "GeoPackage."
+        )
+    return crs
 
 
 def _fill_sink(

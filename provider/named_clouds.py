@@ -1,7 +1,8 @@
-"""Clouds that name no coordinate reference system get the one that the user gives."""
+"""Clouds that name no coordinate reference system get the one of the others of the run, or the one that is given."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Optional
 
@@ -9,43 +10,41 @@ import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem
 
 from ..algorithms.cloud.cloud import Cloud
-from ..algorithms.cloud.files import read_cloud, with_crs
-from ..algorithms.cloud.units import NO_CRS
-from ..algorithms.stage import Monitor, ProgressOnly
-from .crs import FULL, crs_units
+from ..algorithms.cloud.crs import common_crs
+from ..algorithms.cloud.files import read_cloud, read_extent
+from ..algorithms.stage import Monitor
+from .crs_authority import crs_reader, text_of
 
-# CRS of simulated clouds unless the user gives one: UTM zone 31, in which coordinates near (0, 0) are valid, too.
-SIMULATED_CRS = "EPSG:32631"
+# CRS of simulated clouds unless the user gives one: World Mercator, whose meters near (0, 0) are those on the ground.
+SIMULATED_CRS = "EPSG:3395"
 
 
-def read_named(path: Path, monitor: Monitor, crs: QgsCoordinateReferenceSystem, box: Optional[np.ndarray]) -> Cloud:
-    """Return the cloud of a file, with the given system where it names none; an invalid one adds nothing.
+def read_clouds(
+    paths: Sequence[Path],
+    monitors: Sequence[Monitor],
+    given: QgsCoordinateReferenceSystem,
+    box: Optional[np.ndarray],
+) -> list[Cloud]:
+    """Return the clouds of files that are worked on together; an invalid ``given`` system adds nothing.
 
     Raises
     ------
     ValueError
-        As :func:`.read_cloud`.
+        As :func:`.read_cloud`, or if two have different systems.
     """
-    if not crs.isValid():
-        return read_cloud(path, monitor, crs_units, box)
-    quietly = ProgressOnly(monitor)
-    cloud = named(read_cloud(path, quietly, crs_units, box), crs)
-    for warning in quietly.warnings:
-        if warning != NO_CRS:
-            monitor.warn(warning)
-    return cloud
+    read = crs_reader(given)
+    if len(paths) > 1:
+        systems = [read_extent(path, read)[2] for path in paths]
+        leader = common_crs(systems, [path.name for path in paths], monitors[0], whole=False)
+        read = crs_reader(given, leader.wkt or leader.stated)
+    return [read_cloud(path, monitor, read, box) for path, monitor in zip(paths, monitors)]
 
 
 def names_of_crs(crs: QgsCoordinateReferenceSystem) -> list[str]:
-    """Return the names that a cloud may have for a system, WKT and code; no names of an invalid one."""
-    return [name for name in (crs.toWkt(FULL), crs.authid()) if name] if crs.isValid() else []
+    """Return the text that the system of a cloud may have; none of an invalid one."""
+    return [text_of(crs)] if crs.isValid() else []
 
 
 def named(cloud: Cloud, crs: QgsCoordinateReferenceSystem) -> Cloud:
-    """Return a cloud with the coordinate reference system where it names none; an invalid one adds nothing."""
-    return with_crs(cloud, crs.toWkt(FULL), code_of(crs), crs_units) if crs.isValid() else cloud
-
-
-def code_of(crs: QgsCoordinateReferenceSystem) -> str:
-    """Return the code by which old point formats name a system, "" where it has none."""
-    return crs.authid() if crs.authid().startswith("EPSG:") else ""
+    """Return a cloud that was made with the coordinate reference system; an invalid one adds nothing."""
+    return cloud.in_crs(crs_reader(crs)(cloud.header)) if crs.isValid() else cloud

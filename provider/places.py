@@ -9,9 +9,9 @@ import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 
 from ..algorithms.cloud.cloud import Cloud, origin_before
-from ..algorithms.cloud.units import NO_CRS
+from ..algorithms.cloud.crs import NO_CRS
 from ..algorithms.stage import InputLayer, Monitor
-from .crs import code_in_space, crs_of, crs_of_layer, meters_per_unit
+from .crs import crs_of, crs_of_layer, meters_per_unit
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,7 @@ class Place:
 
 def place_of_cloud(cloud: Cloud) -> Place:
     """Return the place of what stages make of ``cloud``."""
-    crs = crs_of(cloud.wkt)
-    return Place(crs, cloud.to_map, cloud.from_map, cloud.units.horizontal, code_in_space(cloud.wkt))
+    return Place(crs_of(cloud.crs.plane), cloud.to_map, cloud.from_map, cloud.crs.horizontal, cloud.crs.code)
 
 
 def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monitor: Monitor) -> Optional[Place]:

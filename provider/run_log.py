@@ -102,9 +102,9 @@ def plugin_version() -> str:
     return next((line.partition("=")[2] for line in lines if line.startswith("version=")), "")
 
 
-def about_run(title: str, inputs: Sequence[Path], points: int, wkt: str) -> list[Row]:
+def about_run(title: str, inputs: Sequence[Path], points: int, plane: str) -> list[Row]:
     """Return what a page says first of a run: files with their points, CRS, date, version and algorithm."""
-    rows, crs = [], crs_of(wkt)
+    rows, crs = [], crs_of(plane)
     if inputs:
         names = [path.name for path in inputs]
         shown = f"{names[0]} and {len(names) - 1:,} more" if len(names) > 1 else names[0]

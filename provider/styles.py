@@ -46,7 +46,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
     """Gives a loaded result the style of one file, and its table the units of the fields and few decimals.
 
     With ``is_off`` the layer is loaded but not visible: it is the result of a step that another step has used.
-    ``crs`` (WKT) is for clouds in which QGIS finds none: it reads WKT alone.
+    ``crs`` (code or WKT) is for clouds in which QGIS finds none: it reads WKT alone.
     """
 
     def __init__(self, stem: Optional[str], fields: Sequence[Field] = (), is_off: bool = False, crs: str = "") -> None:

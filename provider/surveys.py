@@ -79,12 +79,12 @@ def write_survey(
         return np.array([(point.x(), point.y()) for point in points])
 
     try:
-        write_vpc(tiles, path, to_degrees if crs.isValid() else None)
+        write_vpc(tiles, path, to_degrees if crs.isValid() else None, survey.crs)
     except QgsCsException:
         # Coordinates far outside of the area of their system have no position in degrees.
         monitor.warn(
             f"Positions in {path.name} are not in degrees: they lie outside of {crs.userFriendlyIdentifier()}; "
             "check the coordinate reference system of the input."
         )
-        write_vpc(tiles, path)
+        write_vpc(tiles, path, None, survey.crs)
     return path

@@ -39,7 +39,7 @@ from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
 from .clouds import CloudsParameter, survey_paths
-from .crs import FULL, crs_units
+from .crs_authority import crs_reader
 from .declared import on_command_line
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
@@ -58,7 +58,7 @@ from .inputs import (
 )
 from .layer_outputs import UNWANTED, write_layer
 from .models import pipeline_parameters
-from .named_clouds import code_of, names_of_crs
+from .named_clouds import names_of_crs
 from .outputs import all_in_place, check_targets, target_path
 from .pipeline_algorithm import pipeline_tunables
 from .rasters import write_mosaic
@@ -145,8 +145,8 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.files = files_of_survey(self.paths)
         self.tunables = pipeline_tunables(self, self.tiled.pipeline, parameters, context)
         self.crs = given_crs(self, parameters, context)
-        self.wkt = crs_of_survey(self.files) or (self.crs.toWkt(FULL) if self.crs.isValid() else "")
-        self.extent = extent_box(self, self.wkt, parameters, context)
+        self.plane = crs_of_survey(self.paths, crs_reader(self.crs)).plane
+        self.extent = extent_box(self, self.plane, parameters, context)
         self.workers = self._workers(parameters, context)
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         given = input_layer_files(self, self.tiled.pipeline.input_layers.values(), parameters, context)
@@ -171,7 +171,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the survey and of its virtual point cloud."""
-        return [self.wkt, WGS84, *names_of_crs(self.crs)]
+        return [self.plane, WGS84, *names_of_crs(self.crs)]
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
@@ -211,7 +211,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         hint = QgsProcessingUtils.LayerHint.PointCloud
         details = QgsProcessingContext.LayerDetails(f"{title} ({self._subject(folder)})", context.project(), VPC, hint)
         context.addLayerToLoadOnCompletion(shown, details)
-        show_on_load(context, shown, "Cloud", self._cloud_style(), crs=self.wkt)
+        show_on_load(context, shown, "Cloud", self._cloud_style(), crs=self.plane)
 
     def _subject(self, folder: Path) -> str:
         """Return what the layers are of: the folder of the tiles, or the input where that is temporary."""
@@ -256,12 +256,11 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 workers=self.workers,
                 block_side=None if side is None else self.parameterAsDouble(parameters, BLOCK_SIDE, context),
                 compressed=self.parameterAsBool(parameters, COMPRESSED, context),
-                crs_units=crs_units,
+                read=crs_reader(self.crs),
                 extent=self.extent,
                 find_layers=find_layers,
                 take_raster=take_raster if wanted else None,
                 take_file=take_file,
-                crs=(self.crs.toWkt(FULL), code_of(self.crs)) if self.crs.isValid() else None,
                 shown=self.shows,
             ),
             **self.tunables,
@@ -287,7 +286,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         page = with_coordinates(report.html, place.to_map)
         with replacing(Path(target)) as stream:
             stream.write(page.encode())
-        rows = about_run(self.displayName(), self.paths, outcome.points, self.wkt)
+        rows = about_run(self.displayName(), self.paths, outcome.points, self.plane)
         blocks = f"{outcome.blocks:,} of {outcome.side:g} m"
         rows.append(Row("Blocks", blocks, f"Tiles written: {len(outcome.tiles):,}. Sampling: {outcome.sampling}."))
         complete_page(Path(target), rows, self._steps(outcome), "In all processes together.")

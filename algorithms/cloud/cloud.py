@@ -10,12 +10,12 @@ from weakref import ReferenceType, ref
 
 import numpy as np
 
+from .crs import Crs, crs_records, read_crs
 from .dimensions import DIMENSIONS, Dimension
 from .header import LARGEST_STEP, LAX, Header
 from .point_formats import OF_COPC, Layout
 from .point_records import PointRecords, find_extra, is_written_as, unit_factor
 from .printable import shown
-from .units import Units, crs_records, units_of, wkt_of
 
 # Origins are multiples of this (m): coordinates from there keep their digits, and neighboring clouds have the same one.
 _ORIGIN_STEP = 1000.0
@@ -41,12 +41,8 @@ class Cloud:
     points : structured array, (n,)
         The records, laid out as ``header.layout``. The array is never changed; moving
         points puts another in its place.
-    units : Units
-        Meters per unit of the file's coordinates.
-    wkt : str
-        WKT as in the file, else "EPSG:code", else "". It may be set to the full
-        WKT of that code: formats 6 to 10 and COPC, which know WKT only, are then
-        written with it.
+    crs : Crs
+        The coordinate reference system, with meters per unit of the file's coordinates.
     origin : float64 array, (3,)
         Meters; what ``get("xyz")`` is relative to. Set it to another cloud's
         before comparing the two. Its z is 0: elevations stay elevations.
@@ -54,15 +50,14 @@ class Cloud:
         The files that were read.
     """
 
-    def __init__(self, header: Header, points: np.ndarray, units: Units, files: Optional[list[Path]] = None) -> None:
-        self.header, self.points, self.units = header, points, units
-        self.wkt = wkt_of(header)
+    def __init__(self, header: Header, points: np.ndarray, crs: Crs, files: Optional[list[Path]] = None) -> None:
+        self.header, self.points, self.crs = header, points, crs
         self.files = files or []
         self._changes: dict[str, np.ndarray] = {}
         # The coordinates made last, as long as someone holds them, and the records and the origin that they are of.
         self._shared: Optional[tuple[ReferenceType[np.ndarray], np.ndarray, np.ndarray]] = None
-        low = np.array([points[axis].min() for axis in "XY"]) * (header.scale[:2] * units.horizontal)
-        low += header.offset[:2] * units.horizontal
+        low = np.array([points[axis].min() for axis in "XY"]) * (header.scale[:2] * crs.horizontal)
+        low += header.offset[:2] * crs.horizontal
         self.origin = origin_before(low)
 
     def __len__(self) -> int:
@@ -122,8 +117,8 @@ class Cloud:
             if shared is not None and points is self.points and np.array_equal(origin, self.origin):
                 return shared
         xyz = np.empty((len(self), 3))
-        scale = self.header.scale * self.units.factors
-        shift = self.header.offset * self.units.factors - self.origin
+        scale = self.header.scale * self.crs.factors
+        shift = self.header.offset * self.crs.factors - self.origin
         for i, axis in enumerate("XYZ"):
             np.multiply(self.points[axis], scale[i], out=xyz[:, i])
             xyz[:, i] += shift[i]
@@ -134,7 +129,7 @@ class Cloud:
     def _extra(self, dimension: Dimension, component: int) -> np.ndarray:
         at = cast(int, find_extra(self.header.layout, dimension, component))
         values = self.header.layout.extras[at].decode(self.points[f"extra{at}"])
-        factor = unit_factor(dimension, self.units)
+        factor = unit_factor(dimension, self.crs)
         if values.dtype.kind == "f" and dimension.dtype[0] != "f":
             values = np.nan_to_num(values)
         return (values if factor == 1 else values * factor).astype(dimension.dtype)
@@ -166,9 +161,9 @@ class Cloud:
     def _moved(self, xyz: np.ndarray) -> np.ndarray:
         """Return the records with other coordinates (m, from ``origin``), in steps of the file's scale."""
         points = self.points.copy()
-        step = self.header.scale * self.units.factors
+        step = self.header.scale * self.crs.factors
         for i, axis in enumerate("XYZ"):
-            steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self.units.factors[i])
+            steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self.crs.factors[i])
             steps /= step[i]
             # Round half up, as the center of two points often is a half: half to even would depend on the offset.
             np.floor(steps + (0.5 + _HALF), out=steps)
@@ -183,12 +178,12 @@ class Cloud:
     def take(self, index: np.ndarray) -> Cloud:
         """Return a cloud of the points at ``index``, int (m,), m >= 1, in that order, with all their dimensions.
 
-        Header, units, CRS, origin and files are those of this cloud, which is not changed.
+        Header, CRS, origin and files are those of this cloud, which is not changed.
         """
         # Many times as fast as points[index], which goes through the fields of every record.
         points = self.points.take(index)
-        taken = Cloud(replace(self.header.without(LAX), count=len(index)), points, self.units, self.files)
-        taken.wkt, taken.origin = self.wkt, self.origin
+        taken = Cloud(replace(self.header.without(LAX), count=len(index)), points, self.crs, self.files)
+        taken.origin = self.origin
         taken._changes = {name: values[index] for name, values in self._changes.items()}
         return taken
 
@@ -196,6 +191,17 @@ class Cloud:
     def changed(self) -> tuple[str, ...]:
         """Names of the dimensions that were set."""
         return tuple(self._changes)
+
+    def in_crs(self, crs: Crs) -> Cloud:
+        """Return the cloud with its coordinates taken to be in another system, itself where that is its own."""
+        if crs == self.crs:
+            return self
+        named = Cloud(self.header, self.points, crs, self.files)
+        if (crs.factors == self.crs.factors).all():
+            named.origin = self.origin
+        for name in self.changed:
+            named.set(name, self.get(name))
+        return named
 
     def copy(self) -> Cloud:
         """Return a cloud of the same points that can be changed apart from this one; arrays are shared."""
@@ -266,18 +272,18 @@ class Cloud:
         """Return local meters (m, 2 or 3) as float64 coordinates of the file, in its CRS and units."""
         local = np.asarray(coordinates, float)
         axes = local.shape[-1]
-        return (local + self.origin[:axes]) / self.units.factors[:axes]
+        return (local + self.origin[:axes]) / self.crs.factors[:axes]
 
     def from_map(self, coordinates: np.ndarray) -> np.ndarray:
         """Return coordinates (m, 2 or 3) of the file's CRS as float64 local meters; the inverse of :meth:`to_map`."""
         of_file = np.asarray(coordinates, float)
         axes = of_file.shape[-1]
-        return of_file * self.units.factors[:axes] - self.origin[:axes]
+        return of_file * self.crs.factors[:axes] - self.origin[:axes]
 
     def records(self, for_copc: bool = False) -> PointRecords:
         """Return what makes the output's records."""
         convert = OF_COPC.__getitem__ if for_copc else int
-        return PointRecords(self.points, self.header.layout, self._changes, self.units, convert)
+        return PointRecords(self.points, self.header.layout, self._changes, self.crs, convert)
 
 
 def origin_before(low: np.ndarray) -> np.ndarray:
@@ -330,8 +336,8 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
         raise ValueError("A cloud needs points with finite coordinates; it has no points, or some are not finite.")
     header = Header(count=len(xyz), layout=Layout(7 if "red" in arrays else 6))
     header.vlrs, header.encoding = crs_records(wkt)
-    units = units_of(header)
-    coordinates = xyz / units.factors
+    crs = read_crs(header)
+    coordinates = xyz / crs.factors
     header.offset = np.floor(coordinates.min(axis=0) / _ORIGIN_STEP) * _ORIGIN_STEP
     steps = np.rint((coordinates - header.offset) / _NEW_SCALE)
     if steps.max() > LARGEST_STEP:
@@ -343,7 +349,7 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
         points[axis] = steps[:, i]
     for name in ("return_number", "number_of_returns"):
         header.layout.put(points, name, np.ones(len(xyz), np.uint8))
-    cloud = Cloud(header, points, units)
+    cloud = Cloud(header, points, crs)
     cloud.origin = np.zeros(3)
     for name, values in arrays.items():
         if name != "xyz":

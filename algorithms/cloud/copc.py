@@ -10,6 +10,7 @@ import numpy as np
 from ..geometry.groups import run_starts
 from ..stage import Monitor
 from .copc_index import ENTRY, INFO
+from .crs import stated_wkt
 from .header import (
     COPC_HIERARCHY,
     COPC_INFO,
@@ -25,7 +26,6 @@ from .header import (
 )
 from .laspy_library import need_lazrs
 from .points import AT_ONCE
-from .units import has_wkt
 
 # A node with no more points than this holds them all and has no children.
 _LEAF_POINTS = 65_536
@@ -167,7 +167,7 @@ def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarra
 def copc_header(header: Header) -> Header:
     """Return ``header`` in the form of COPC: LAS 1.4, the info record first, no waveforms, no LAStools index."""
     kept = header.without(*OF_OLD_POINTS, WAVEFORMS)
-    encoding = kept.encoding & ~(WAVEFORMS_INSIDE | WAVEFORMS_OUTSIDE) | (WKT_BIT if has_wkt(kept) else 0)
+    encoding = kept.encoding & ~(WAVEFORMS_INSIDE | WAVEFORMS_OUTSIDE) | (WKT_BIT if stated_wkt(kept) else 0)
     info = Vlr(*COPC_INFO, bytes(INFO.size), description=b"COPC info")
     return replace(kept, minor=4, user_bytes=b"", gap=b"", waveforms_at=0, encoding=encoding, vlrs=[info, *kept.vlrs])
 

@@ -14,6 +14,7 @@ from ..stage import Monitor
 from .cloud import Cloud
 from .copc import copc_header, write_copc
 from .copc_sidecar import VIEW_SOFTWARE, check_copc_beside, copc_path, seal
+from .crs import Crs, CrsReader, crs_of_tiles, header_with_crs, read_crs
 from .header import OF_OLD_CHUNKS, OF_OLD_POINTS, Header
 from .laspy_library import need_lazrs
 from .laz import writing_backend
@@ -21,7 +22,6 @@ from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS, Layout
 from .point_records import PointRecords, merged_layout
 from .points import check_count, check_points, open_headers, points_within, read_points, write_points
-from .units import Resolver, Units, crs_records, has_wkt, units_of, wkt_of
 from .vpc import read_tiles, tiles_of
 
 # One sentence for every step of a chain.
@@ -34,7 +34,7 @@ _WAVEFORMS_APART = (
 def read_cloud(
     path: Union[str, Path],
     monitor: Optional[Monitor] = None,
-    crs_units: Optional[Resolver] = None,
+    read: CrsReader = read_crs,
     box: Optional[np.ndarray] = None,
 ) -> Cloud:
     """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC).
@@ -45,9 +45,8 @@ def read_cloud(
         Its extension (.las, .laz, .vpc) says what it is.
     monitor : Monitor, optional
         Receives progress, and warnings about units.
-    crs_units : callable, optional
-        EPSG code -> (meters per horizontal unit, meters per vertical unit, whether
-        it is geographic), or None if unknown; asked when a file gives a code and no unit.
+    read : callable
+        Makes the coordinate reference system of a header; in QGIS by its libraries.
     box : ndarray of shape (2, 2), optional
         Least and greatest easting and northing, in coordinates of the file: only points within are kept, edges
         included, and only these need memory.
@@ -66,24 +65,22 @@ def read_cloud(
     with readable(path):
         files = files_of(path)
         states = [state_of(file) for file in files]
-        with_points, headers = open_headers(files, monitor)
-        header, units = headers[0], units_of(headers[0], crs_units)
+        with_points, headers = _opened(path, monitor)
+        header, crs = headers[0], crs_of_tiles(headers, [file.name for file in with_points], read, monitor)
         if len(files) == 1:
             points = (
                 read_points(files[0], header, monitor) if box is None else points_within(files[0], header, box, monitor)
             )
             header = header.without(*(OF_OLD_CHUNKS if box is None else OF_OLD_POINTS))
         else:
-            for other in headers[1:]:
-                units_of(other, crs_units)
             header, points = read_tiles(with_points, monitor, box)
         if [state_of(file) for file in files] != states:
             raise ValueError(f"{path.name} has changed while it was read; run it again when it is complete.")
     if not len(points):
         raise ValueError(f"{path.name} has no points within the extent; choose another extent.")
     header = header if box is None else replace(header, count=len(points))
-    units.report(monitor)
-    return Cloud(header, points, units, files if files == [path] else [*files, path])
+    crs.report(monitor)
+    return Cloud(header, points, crs, files if files == [path] else [*files, path])
 
 
 def state_of(path: Path) -> tuple[int, int]:
@@ -110,49 +107,10 @@ def dimension_names(path: Union[str, Path]) -> list[str]:
     path = Path(path)
     with readable(path):
         header = next(iter(open_headers(files_of(path)[:1])[1]))
-    return Cloud(header, np.zeros(1, header.layout.dtype), Units()).dimension_names
+    return Cloud(header, np.zeros(1, header.layout.dtype), Crs()).dimension_names
 
 
-def with_crs(cloud: Cloud, wkt: str, code: str, crs_units: Optional[Resolver] = None) -> Cloud:
-    """Return a cloud with a coordinate reference system where it names none; one that names its own as it is.
-
-    Parameters
-    ----------
-    cloud : Cloud
-        As it was read or made.
-    wkt : str
-        The system as WKT.
-    code : str
-        "EPSG:n", which point formats 0 to 5 store, or "" where it has none.
-    crs_units : callable, optional
-        As for :func:`read_cloud`.
-
-    Raises
-    ------
-    ValueError
-        If its coordinates are degrees.
-    """
-    if cloud.wkt:
-        return cloud
-    header = header_with_crs(cloud.header, wkt, code)
-    named = Cloud(header, cloud.points, units_of(header, crs_units), cloud.files)
-    if named.units.factors.tolist() == cloud.units.factors.tolist():
-        named.origin = cloud.origin
-    for name in cloud.changed:
-        named.set(name, cloud.get(name))
-    return named
-
-
-def header_with_crs(header: Header, wkt: str, code: str) -> Header:
-    """Return the header of a cloud that names no coordinate reference system with one, as :func:`with_crs` takes it."""
-    vlrs, bits = crs_records(wkt)
-    if code and header.layout.is_old:
-        # The WKT is for the COPC that may be written of it, which has no use for GeoKeys.
-        vlrs, bits = [*crs_records(code)[0], *vlrs], 0
-    return replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
-
-
-def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None) -> None:
+def check_readable(path: Union[str, Path], read: CrsReader = read_crs) -> None:
     """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables show.
 
     Raises
@@ -162,24 +120,25 @@ def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None)
     """
     path = Path(path)
     with readable(path):
-        for file, header in zip(*open_headers(files_of(path))):
-            units_of(header, crs_units)
+        for file, header in zip(*_opened(path)):
+            read(header)
             check_points(file, header)
 
 
-def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
+def read_extent(path: Union[str, Path], read: CrsReader = read_crs) -> tuple[np.ndarray, np.ndarray, Crs]:
     """Return the lowest and the highest coordinates (3,) and the CRS of a file or of all its tiles.
 
-    Coordinates are those of the file, as in its headers. The CRS is WKT, "EPSG:code" or "".
+    Coordinates are those of the file, as in its headers.
 
     Raises
     ------
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    headers = _headers(Path(path))
+    files, headers = _opened(Path(path))
+    crs = crs_of_tiles(headers, [file.name for file in files], read, Monitor())
     low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
-    return np.min(low, axis=0), np.max(high, axis=0), wkt_of(headers[0])
+    return np.min(low, axis=0), np.max(high, axis=0), crs
 
 
 def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None) -> int:
@@ -192,7 +151,7 @@ def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None) -> in
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    return round(sum(header.count * _share_in(header, box) for header in _headers(Path(path))))
+    return round(sum(header.count * _share_in(header, box) for header in _opened(Path(path))[1]))
 
 
 def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
@@ -207,10 +166,12 @@ def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
     return float(np.prod(np.divide(inside, high - low, out=np.ones(2), where=high > low)))
 
 
-def _headers(path: Path) -> list[Header]:
-    """Return the headers of a file or of all its tiles."""
+def _opened(path: Path, monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
+    """Return a file, or all its tiles that have points, and their headers."""
     with readable(path):
-        return open_headers(files_of(path))[1]
+        named = named_files_of(path)
+        files, headers = open_headers(list(named), monitor)
+    return files, [replace(header, named=named[file]) for file, header in zip(files, headers)]
 
 
 @contextmanager
@@ -231,7 +192,12 @@ def readable(path: Path) -> Iterator[None]:
 
 
 def files_of(path: Path) -> list[Path]:
-    """Return the files that hold the points of a cloud: itself, or the tiles of a VPC.
+    """Return the files that hold the points of a cloud, see :func:`named_files_of`."""
+    return list(named_files_of(path))
+
+
+def named_files_of(path: Path) -> dict[Path, str]:
+    """Return the files that hold the points of a cloud, itself or the tiles of a VPC, and the CRS that this names.
 
     Raises
     ------
@@ -247,7 +213,7 @@ def files_of(path: Path) -> list[Path]:
         )
     if not path.is_file():
         raise ValueError(f"{path} does not exist; check the name.")
-    return tiles_of(path) if kind == VPC else [path]
+    return tiles_of(path) if kind == VPC else {path: ""}
 
 
 def write_cloud(
@@ -318,7 +284,7 @@ def check_compression(path: Path, clouds: Iterable[Path]) -> None:
         If a package is missing, or in one sentence, what is wrong with a cloud.
     """
     if kind_of(path) in (LAZ, COPC):
-        layouts = [header.layout for cloud in clouds for header in _headers(cloud)]
+        layouts = [header.layout for cloud in clouds for header in _opened(cloud)[1]]
         _check_packages(kind_of(path), merged_layout(layouts or [Layout(6)]))
 
 
@@ -364,12 +330,7 @@ def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[Bina
 
 
 def _output_header(cloud: Cloud, records: PointRecords) -> Header:
-    """Return the header of a cloud for the records that are written, with its WKT in formats of LAS 1.4."""
+    """Return the header of a cloud for the records that are written, with its CRS as their format has it."""
     header = cloud.header.with_layout(records.layout) if records.layout != cloud.header.layout else cloud.header
-    if header.layout.is_old:
-        return header
-    header = replace(header, minor=4)
-    if '"' in cloud.wkt and not has_wkt(header):
-        vlrs, bits = crs_records(cloud.wkt)
-        header = replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
-    return header
+    header = header if header.layout.is_old else replace(header, minor=4)
+    return header_with_crs(header, cloud.crs)

@@ -124,6 +124,7 @@ class Header:
     points_at: int = 0  #: Position of the points in the file
     vlrs: list[Vlr] = field(default_factory=list)
     evlrs: list[Vlr] = field(default_factory=list)
+    named: str = ""  #: CRS (WKT or "EPSG:code") that a virtual point cloud names for the file; it is not written
 
     @property
     def has_waveforms_outside(self) -> bool:

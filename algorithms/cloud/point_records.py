@@ -8,10 +8,10 @@ from typing import Callable, Optional, Union
 
 import numpy as np
 
+from .crs import Crs
 from .dimensions import DIMENSIONS, Dimension
 from .extra_bytes import ExtraField, new_field
 from .point_formats import FORMATS, UPGRADED, Layout
-from .units import Units
 
 Index = Union[slice, np.ndarray]
 # Name of a field, and which one of that name.
@@ -27,13 +27,13 @@ def find_extra(layout: Layout, dimension: Dimension, component: int = 0) -> Opti
     return next((names.index(name) for name in wanted if name in names), None)
 
 
-def unit_factor(dimension: Dimension, units: Units) -> float:
+def unit_factor(dimension: Dimension, crs: Crs) -> float:
     """Return meters (or square meters) per unit of a stored dimension.
 
     Heights are stored in the vertical unit of the file and areas in its squared
     horizontal unit, so that QGIS and PDAL, which have one unit for a file, agree.
     """
-    return {"m": units.vertical, "m²": units.horizontal**2}.get("" if dimension.standard else dimension.unit, 1.0)
+    return {"m": crs.vertical, "m²": crs.horizontal**2}.get("" if dimension.standard else dimension.unit, 1.0)
 
 
 class PointRecords:
@@ -47,8 +47,8 @@ class PointRecords:
         The input's.
     changes : dict of str to array
         What stages have set, by Python name, in meters.
-    units : Units
-        The units of the file.
+    crs : Crs
+        With the units of the file.
     convert : callable, optional
         Gives the output's point format for the format that the changes need (COPC takes 6 to 8 only).
     """
@@ -58,7 +58,7 @@ class PointRecords:
         points: np.ndarray,
         layout: Layout,
         changes: dict[str, np.ndarray],
-        units: Units,
+        crs: Crs,
         convert: Callable[[int], int] = lambda point_format: point_format,
     ) -> None:
         self.points, self.source = points, layout
@@ -67,7 +67,7 @@ class PointRecords:
         needed = _needed_format(layout, standard)
         self.is_upgraded = needed != layout.point_format
         self._standard = standard
-        extras, self._added = _extras(layout, added, units)
+        extras, self._added = _extras(layout, added, crs)
         self.layout = Layout(convert(needed), extras)
         self._as_read = not changes and self.layout == layout
 
@@ -98,7 +98,7 @@ def _needed_format(layout: Layout, standard: dict[str, np.ndarray]) -> int:
 
 
 def _extras(
-    layout: Layout, added: dict[str, np.ndarray], units: Units
+    layout: Layout, added: dict[str, np.ndarray], crs: Crs
 ) -> tuple[tuple[ExtraField, ...], dict[int, tuple[np.ndarray, float]]]:
     """Return the output's extra fields, old ones first, and by position the values set and meters (m²) per unit."""
     fields, values_at = list(layout.extras), {}
@@ -111,7 +111,7 @@ def _extras(
                 fields.append(new_field(disk, dimension.dtype, dimension.description))
             else:
                 fields[at] = _overwritten(fields[at], disk, dimension)
-            values_at[at] = values if values.ndim == 1 else values[:, component], unit_factor(dimension, units)
+            values_at[at] = values if values.ndim == 1 else values[:, component], unit_factor(dimension, crs)
     return tuple(fields), values_at
 
 

@@ -5,21 +5,16 @@ from __future__ import annotations
 import re
 import struct
 from dataclasses import dataclass
-from typing import Any, Callable, Optional, Union
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
-from ..stage import Monitor
-from .header import WKT_BIT, Header, Vlr
+from .header import Header
 from .printable import shown
 
-# EPSG code -> (meters per horizontal unit, meters per vertical unit, whether it is geographic), or None if unknown.
-Resolver = Callable[[int], Optional[tuple[float, float, bool]]]
-
-# User and record ids of the VLRs with WKT, and of those with GeoKeys and their numbers.
-_PROJECTION = b"LASF_Projection"
-_WKT = ((_PROJECTION, 2112), (b"liblas", 2112))
-_GEOKEYS, _DOUBLES = (_PROJECTION, 34735), (_PROJECTION, 34736)
+# User id of the VLRs of coordinate reference systems, and record ids of GeoKeys: numbers, doubles and texts.
+PROJECTION = b"LASF_Projection"
+GEOKEYS, _DOUBLES, _TEXTS = ((PROJECTION, number) for number in (34735, 34736, 34737))
 
 # EPSG codes of length units, as GeoKeys give them, in meters.
 _LENGTHS = {
@@ -31,15 +26,17 @@ _LENGTHS = {
     9037: 3 * 0.3047972654,  # Clarke's yard
     9096: 0.9144,  # International yard
 }
+# Names of units in WKT and in sentences.
+_NAMES = {9001: "metre", 9002: "foot", 9003: "US survey foot"}
 # GeoTIFF's value "user-defined": the key holds no EPSG code.
-_USER_DEFINED = 32767
+USER_DEFINED = 32767
 # Lengths that a unit may have (m), from a micrometer to a thousand kilometers: all others are damage.
 _SHORTEST_UNIT = 1e-6
 _LONGEST_UNIT = 1e6
-# WKT of real systems has some thousand bytes; a longer one takes seconds to parse and is taken for damage.
-_LONGEST_WKT = 1_000_000
-# GeoKeys: kind of the coordinates; codes of the geographic, the projected and the vertical system.
-_MODEL, _GEOGRAPHIC, _PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
+# GeoKeys: kind of the coordinates; codes of the geographic, the projected and the vertical system; the projection, by
+# code and by method.
+MODEL, _GEOGRAPHIC, PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
+_CONVERSION, _METHOD = 3074, 3075
 # GeoKeys: code and size of the unit in plan, code of that of heights.
 _LINEAR_UNITS, _LINEAR_UNIT_SIZE, _VERTICAL_UNITS = 3076, 3077, 4099
 # Values of the kind of the coordinates.
@@ -55,32 +52,17 @@ _PLANE = ("PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERIN
 _ON_ELLIPSOID = ("GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS", "GEOCCS")
 _HEIGHT = ("VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS")
 
-# One sentence for every input, so that a chain shows it once: later steps inherit the lack from the first.
-NO_CRS = "The input has no coordinate reference system; its coordinates are taken as meters."
+# A unit in WKT: its name is the second group, its size the third. Names of feet, and of US survey feet among these.
+_UNIT = re.compile(r'(UNIT\s*[\[(]\s*"([^"]*)"\s*,\s*)(\d+\.?\d*(?:E[-+]?\d+)?)', re.IGNORECASE)
+_FOOT = re.compile(r"(?<![a-z])(foot|feet|ft)(?![a-z])|ftus", re.IGNORECASE)
+_SURVEY_FOOT = re.compile(r"us|u\.s|survey", re.IGNORECASE)
 
 
-@dataclass(frozen=True)
-class Units:
-    """Meters per unit of the file's coordinates, and a warning for users about them."""
+class Units(NamedTuple):
+    """Meters per unit of a file's coordinates."""
 
     horizontal: float = 1.0
     vertical: float = 1.0
-    warning: str = ""
-
-    @property
-    def factors(self) -> np.ndarray:
-        """Meters per unit of x, y and z, (3,)."""
-        return np.array([self.horizontal, self.horizontal, self.vertical])
-
-    def report(self, monitor: Monitor) -> None:
-        """Warn where the unit is not known, and say so where it is not the meter."""
-        if self.warning:
-            monitor.warn(self.warning)
-        if self.horizontal != 1.0 or self.vertical != 1.0:
-            monitor.inform(
-                f"A unit of the coordinates is {self.horizontal:.6g} m, of heights {self.vertical:.6g} m; parameters, "
-                "the log and attributes are in meters."
-            )
 
 
 @dataclass
@@ -99,82 +81,45 @@ class _Node:
         return own + [found for child in self.children for found in child.anywhere(*keywords)]
 
 
-def wkt_of(header: Header) -> str:
-    """Return WKT, or "EPSG:code" from GeoKeys, "" without either; of both, that which the header's WKT bit names."""
-    wkt = _stored_wkt(header)
-    keys = _geokeys(header)
-    # The bit says which of the two counts; files that have only the other one are common.
-    if wkt and (header.encoding & WKT_BIT or not keys):
-        return wkt
-    code = keys.get(_PROJECTED, 0) or keys.get(_GEOGRAPHIC, 0)
-    return f"EPSG:{code}" if 0 < code < _USER_DEFINED else wkt
+def name_of_length(size: float) -> str:
+    """Return the name of a unit of length in WKT, by its size (m)."""
+    return next((name for code, name in _NAMES.items() if np.isclose(_LENGTHS[code], size, rtol=1e-8)), "unit")
 
 
-def has_wkt(header: Header) -> bool:
-    """Whether the file holds WKT, not just GeoKeys or nothing."""
-    return bool(_stored_wkt(header))
+def with_named_units(wkt: str) -> tuple[str, tuple[str, ...]]:
+    """Return WKT in which units called foot have the size of a foot where 1 is given, and a warning if there is one."""
+    warnings: dict[str, None] = {}
+
+    def size(found: re.Match) -> str:
+        if not _FOOT.search(found[2]) or float(found[3]) != 1:
+            return found[0]
+        warnings[_mismatch(found[2])] = None
+        return f"{found[1]}{_LENGTHS[9003 if _SURVEY_FOOT.search(found[2]) else 9002]!r}"
+
+    return _UNIT.sub(size, wkt), tuple(warnings)
 
 
-def crs_identity(wkt: str) -> str:
-    """Return "EPSG:code" for WKT that gives the code of its CRS, else the WKT without white space: to compare by."""
-    if '"' not in wkt:
-        return wkt
-    root = _parse(wkt)
-    if root is not None:
-        for node in root.children[0].all("AUTHORITY", "ID"):
-            if len(node.values) > 1 and str(node.values[0]).upper() == "EPSG":
-                # WKT 1 has the code in quotes, WKT 2 has a number.
-                return f"EPSG:{str(node.values[1]).split('.')[0]}"
-    return re.sub(r"\s", "", wkt)
+def _mismatch(name: str) -> str:
+    return f"The file calls its unit {shown(name)!r} and gives it as 1 m; the name counts."
 
 
-def crs_records(wkt: str) -> tuple[list[Vlr], int]:
-    """Return the VLRs that store ``wkt`` (WKT, "EPSG:code" or ""), and its bits of the global encoding."""
-    if wkt and '"' not in wkt:
-        code = wkt[5:]
-        if not (wkt.upper().startswith("EPSG:") and code.isdecimal() and 0 < int(code) < _USER_DEFINED):
-            raise ValueError(f"The CRS {wkt!r} can't be stored; give WKT or EPSG:code.")
-        keys = (1, 1, 0, 2, _MODEL, 0, 1, 1, _PROJECTED, 0, 1, int(code))
-        return [Vlr(*_GEOKEYS, struct.pack(f"<{len(keys)}H", *keys), description=b"GeoKeys")], 0
-    if not wkt:
-        return [], WKT_BIT
-    return [Vlr(*_WKT[0], wkt.encode() + b"\0", description=b"WKT")], WKT_BIT
+def units_of_wkt(wkt: str) -> Optional[Units]:
+    """Return the units that WKT 1 or WKT 2 gives, meters where it gives none; None for other texts.
 
-
-def units_of(header: Header, crs_units: Optional[Resolver] = None) -> Units:
-    """Return the units of the coordinates of a file.
-
-    Parameters
-    ----------
-    header : Header
-        With the file's VLRs.
-    crs_units : callable, optional
-        Looks an EPSG code up in a CRS database, for GeoKeys that give a code and no unit.
-
-    Returns
-    -------
-    Units
-        Meters where the file names no unit, with a warning unless WKT gives a projected system. Heights have the
-        horizontal unit where nothing is said of theirs.
+    Heights have the horizontal unit where nothing is said of theirs.
 
     Raises
     ------
     ValueError
-        If the coordinates are degrees or geocentric.
+        If the coordinates are degrees or geocentric, or a unit is no length.
     """
-    wkt = wkt_of(header)
-    return units_of_wkt(wkt) if '"' in wkt else _units_of_geokeys(header, crs_units)
-
-
-def units_of_wkt(wkt: str) -> Units:
-    """Return the units that WKT 1 or WKT 2 gives, see :func:`units_of`."""
     root = _parse(wkt)
     if root is None:
-        return Units(warning=NO_CRS)
+        return None
     plane = next(iter(root.anywhere(*_PLANE)), None)
     if plane is None:
         _refuse_ellipsoid(root)
-        return Units(warning=NO_CRS)
+        return None
     sizes = _axis_units(plane) or [1.0]
     if sizes[0] != sizes[min(1, len(sizes) - 1)]:
         apart = f"{sizes[0]:g} and {sizes[1]:g} m"
@@ -249,62 +194,66 @@ def _value(piece: str) -> Union[str, float]:
         return piece
 
 
-def _stored_wkt(header: Header) -> str:
-    for key in _WKT:
-        record = header.find(key)
-        if record is not None and record.data and len(record.data) <= _LONGEST_WKT:
-            return record.data.split(b"\0")[0].decode("utf-8", "replace").strip()
-    return ""
+def geokey_records(header: Header) -> tuple[tuple[int, bytes], ...]:
+    """Return the records of GeoKeys: tag and payload of each."""
+    found = ((key[1], header.find(key)) for key in (GEOKEYS, _DOUBLES, _TEXTS))
+    return tuple((tag, record.data) for tag, record in found if record is not None and record.data)
 
 
-def _geokeys(header: Header) -> dict[int, Any]:
-    """Return the GeoKeys with numbers: short ones as they are, the linear unit's size from the doubles."""
-    directory, doubles = header.find(_GEOKEYS), header.find(_DOUBLES)
-    if directory is None or not directory.data:
-        return {}
-    numbers = struct.unpack(f"<{len(directory.data) // 2}H", directory.data[: len(directory.data) // 2 * 2])
+def geokeys(header: Header) -> dict[int, Any]:
+    """Return the GeoKeys with numbers: short ones as they are, others from the doubles."""
+    records = dict(geokey_records(header))
+    directory, doubles = records.get(GEOKEYS[1], b""), records.get(_DOUBLES[1], b"")
+    numbers = struct.unpack(f"<{len(directory) // 2}H", directory[: len(directory) // 2 * 2])
     keys: dict[int, Any] = {}
     for start in range(4, len(numbers) - 3, 4):
         key, position, _, value = numbers[start : start + 4]
         if position == 0:
             keys[key] = value
-        elif position == _DOUBLES[1] and doubles is not None and doubles.data and len(doubles.data) >= 8 * (value + 1):
-            keys[key] = struct.unpack_from("<d", doubles.data, 8 * value)[0]
+        elif position == _DOUBLES[1] and len(doubles) >= 8 * (value + 1):
+            keys[key] = struct.unpack_from("<d", doubles, 8 * value)[0]
     return keys
 
 
-def _units_of_geokeys(header: Header, crs_units: Optional[Resolver]) -> Units:
-    keys = _geokeys(header)
-    if not keys:
-        return Units(warning=NO_CRS)
-    model = keys.get(_MODEL)
-    on_ellipsoid = keys.get(_GEOGRAPHIC, 0) not in (0, _USER_DEFINED) and not keys.get(_PROJECTED)
+def code_of_keys(keys: dict[int, Any]) -> int:
+    """Return the EPSG code of the horizontal system in GeoKeys, 0 without one."""
+    codes = (keys.get(PROJECTED, 0), 0 if PROJECTED in keys else keys.get(_GEOGRAPHIC, 0))
+    return next((code for code in codes if 0 < code < USER_DEFINED), 0)
+
+
+def text_of_keys(keys: dict[int, Any]) -> str:
+    """Return the codes in GeoKeys as a text, with that of the heights: "EPSG:26915+5703"."""
+    height = keys.get(_VERTICAL, 0)
+    return f"EPSG:{code_of_keys(keys)}" + (f"+{height}" if 0 < height < USER_DEFINED else "")
+
+
+def define_system(keys: dict[int, Any]) -> bool:
+    """Whether GeoKeys define a horizontal system, by a code or by parameters, and not just a unit or nothing."""
+    return bool(code_of_keys(keys) or _METHOD in keys or 0 < keys.get(_CONVERSION, 0) < USER_DEFINED)
+
+
+def units_of_geokeys(keys: dict[int, Any], known: Optional[Units]) -> tuple[Optional[Units], tuple[str, ...]]:
+    """Return the units that GeoKeys give, else those ``known`` of their codes, None without either; and warnings.
+
+    Raises
+    ------
+    ValueError
+        If the coordinates are degrees or geocentric, or a unit is no length.
+    """
+    model = keys.get(MODEL)
+    on_ellipsoid = keys.get(_GEOGRAPHIC, 0) not in (0, USER_DEFINED) and not keys.get(PROJECTED)
     if model in (_MODEL_GEOGRAPHIC, _MODEL_GEOCENTRIC) or (on_ellipsoid and _LINEAR_UNITS not in keys):
         raise _not_plane(f"EPSG:{keys.get(_GEOGRAPHIC, 'unknown')}", model == _MODEL_GEOCENTRIC)
-    return _linear_units(keys, crs_units)
-
-
-def _linear_units(keys: dict[int, Any], crs_units: Optional[Resolver]) -> Units:
-    """Return what the unit keys say, else what the CRS database says of the codes, else meters."""
-    of_code = _looked_up(keys.get(_PROJECTED, 0), crs_units)
-    of_height = _looked_up(keys.get(_VERTICAL, 0), crs_units)
-    if of_code and of_code[2]:
-        raise _not_plane(f"EPSG:{keys[_PROJECTED]}", geocentric=False)
     own = _LENGTHS.get(keys.get(_LINEAR_UNITS, 0))
-    if _LINEAR_UNIT_SIZE in keys:
-        own = _length(keys[_LINEAR_UNIT_SIZE])
-    horizontal = own or (of_code[0] if of_code else 1.0)
+    warnings: tuple[str, ...] = ()
+    size = _length(keys[_LINEAR_UNIT_SIZE]) if _LINEAR_UNIT_SIZE in keys else None
+    if size == 1 and own not in (None, 1):
+        warnings = (_mismatch(_NAMES.get(keys[_LINEAR_UNITS], f"EPSG:{keys[_LINEAR_UNITS]}")),)
+    else:
+        own = size or own
+    horizontal = own or (known.horizontal if known else 1.0)
     vertical = _LENGTHS.get(keys.get(_VERTICAL_UNITS, 0))
     if vertical is None:
         # Heights without a unit of their own have that of the plane.
-        vertical = of_height[1] if of_height else of_code[1] if of_code and not own else horizontal
-    if own or of_code:
-        return Units(horizontal, vertical)
-    code = keys.get(_PROJECTED, 0)
-    named = 0 < code < _USER_DEFINED
-    without_unit = f"The file gives EPSG:{code} and no unit; its coordinates are taken as meters."
-    return Units(horizontal, vertical, without_unit if named else NO_CRS)
-
-
-def _looked_up(code: int, crs_units: Optional[Resolver]) -> Optional[tuple[float, float, bool]]:
-    return crs_units(code) if crs_units and 0 < code < _USER_DEFINED else None
+        vertical = known.vertical if known and (_VERTICAL in keys or not own) else horizontal
+    return (Units(horizontal, vertical) if own or known else None), warnings

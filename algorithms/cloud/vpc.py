@@ -8,18 +8,18 @@ import re
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Callable, Optional
+from typing import Any, Callable, Optional
 from urllib.parse import unquote
 
 import numpy as np
 
 from ..stage import Monitor
+from .crs import Crs, stated_wkt
 from .header import LARGEST_STEP, OF_OLD_POINTS, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import convert, merged_layout
 from .points import open_header, points_within, read_chunks
 from .printable import shown
-from .units import crs_identity, wkt_of
 
 # Bit of the header's encoding that says how GPS time is counted.
 _GPS_TIME_BIT = 1
@@ -46,8 +46,8 @@ _PDAL_NAMES = {"scan_angle": "ScanAngleRank", "nir": "Infrared"}
 ToDegrees = Callable[[np.ndarray], np.ndarray]
 
 
-def tiles_of(path: Path) -> list[Path]:
-    """Return the tiles that a virtual point cloud names, in its order.
+def tiles_of(path: Path) -> dict[Path, str]:
+    """Return the tiles that a virtual point cloud names, in its order, and the CRS (WKT, "EPSG:code") it names of each.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def tiles_of(path: Path) -> list[Path]:
     try:
         # Of bytes, the encoding is found out, by a byte order mark too.
         content = json.loads(raw)
-        hrefs = [href for feature in content["features"] for href in _hrefs(feature["assets"])]
+        hrefs = {href: _crs(one.get("properties")) for one in content["features"] for href in _hrefs(one["assets"])}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ValueError(
             f"{path.name} is not a virtual point cloud: it is no STAC feature collection with assets."
@@ -66,7 +66,17 @@ def tiles_of(path: Path) -> list[Path]:
     if not hrefs:
         raise ValueError(f"{path.name} names no tiles; build it again.")
     # A tile that is named twice is read once, whichever way it is named.
-    return list({tile.resolve(): tile for tile in (_tile(path, href) for href in dict.fromkeys(hrefs))}.values())
+    tiles = {tile.resolve(): (tile, crs) for tile, crs in ((_tile(path, href), crs) for href, crs in hrefs.items())}
+    return dict(tiles.values())
+
+
+def _crs(properties: Any) -> str:
+    """Return the coordinate reference system in the properties of a STAC item, "" without one."""
+    found = properties if isinstance(properties, dict) else {}
+    wkt, code = found.get("proj:wkt2"), found.get("proj:code") or found.get("proj:epsg")
+    if isinstance(wkt, str) and wkt:
+        return wkt
+    return f"EPSG:{code}" if isinstance(code, int) else code if isinstance(code, str) else ""
 
 
 def _content(path: Path) -> bytes:
@@ -120,7 +130,7 @@ def _meanings(href: str) -> list[str]:
     return [href, *(_BEFORE_DRIVE.sub("", one) for one in (path, unquote(path).replace("\\", "/")))]
 
 
-def write_vpc(tiles: list[Path], path: Path, to_degrees: Optional[ToDegrees] = None) -> None:
+def write_vpc(tiles: list[Path], path: Path, to_degrees: Optional[ToDegrees] = None, crs: Optional[Crs] = None) -> None:
     """Write a virtual point cloud that names ``tiles``; paths are relative to its folder where they can be.
 
     Parameters
@@ -132,18 +142,20 @@ def write_vpc(tiles: list[Path], path: Path, to_degrees: Optional[ToDegrees] = N
     to_degrees : callable, optional
         Turns coordinates (n, 2) of the tiles into longitude and latitude (n, 2), by which catalogs look tiles up;
         without it they stay as they are.
+    crs : Crs, optional
+        The one of the tiles; by default what each file states.
 
     Raises
     ------
     ValueError
         If a tile can't be read or the file can't be written.
     """
-    features = [_feature(tile, path.parent, to_degrees) for tile in tiles]
+    features = [_feature(tile, path.parent, to_degrees, crs) for tile in tiles]
     with replacing(path) as stream:
         stream.write(json.dumps({"type": "FeatureCollection", "features": features}, indent=1).encode())
 
 
-def _feature(tile: Path, folder: Path, to_degrees: Optional[ToDegrees]) -> dict:
+def _feature(tile: Path, folder: Path, to_degrees: Optional[ToDegrees], crs: Optional[Crs]) -> dict:
     """Return the STAC item of a tile."""
     header = open_header(tile)
     low, high = header.low, header.high
@@ -163,7 +175,7 @@ def _feature(tile: Path, folder: Path, to_degrees: Optional[ToDegrees]) -> dict:
             "pc:type": "lidar",
             "pc:schemas": _schemas(header),
             "proj:bbox": [*low.tolist(), *high.tolist()],
-            "proj:wkt2": wkt_of(header),
+            "proj:wkt2": crs.wkt or crs.stated if crs else stated_wkt(header),
             "proj:geometry": {"type": "Polygon", "coordinates": [corners.tolist()]},
         },
         "links": [],
@@ -198,10 +210,9 @@ def read_tiles(paths: list[Path], monitor: Monitor, box: Optional[np.ndarray] = 
     Raises
     ------
     ValueError
-        If tiles have different coordinate reference systems, or span more than their scale can store.
+        If tiles span more than their scale can store.
     """
     headers = [open_header(path) for path in paths]
-    check_tiles(paths, headers)
     header = merged_header(headers, "tiles", monitor)
     if box is not None:
         return header, _records_within(paths, headers, header, box, monitor)
@@ -249,17 +260,6 @@ def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Head
     """
     convert(records, tile.layout, merged.layout, out)
     _rescale(records, tile, merged, out)
-
-
-def check_tiles(paths: list[Path], headers: list[Header]) -> None:
-    """Refuse tiles that can't be one cloud, as they have different coordinate reference systems."""
-    seen = [crs_identity(wkt_of(header)) for header in headers]
-    for path, one in zip(paths, seen):
-        if one != seen[0]:
-            raise ValueError(
-                f"The tiles {paths[0].name} and {path.name} have different coordinate reference systems "
-                f"({shown(seen[0], 40) or 'none'}, {shown(one, 40) or 'none'}); reproject them to one first."
-            )
 
 
 def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:

@@ -159,7 +159,7 @@ def _window(task: BlockTask, box: np.ndarray, monitor: Monitor) -> Optional[Wind
 def _positions(survey: Survey, window: Window) -> np.ndarray:
     """Return easting and northing (n, 2) of the records of a window, m, as the edges of blocks count them."""
     header, records = survey.header, window.cloud.points
-    unit = survey.units.horizontal
+    unit = survey.crs.horizontal
     positions = [records[axis] * (header.scale[i] * unit) + header.offset[i] * unit for i, axis in enumerate("XY")]
     return np.column_stack(positions)[window.point]
 

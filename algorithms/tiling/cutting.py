@@ -8,6 +8,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..cloud.crs import header_with_crs
 from ..cloud.laz import writing_backend
 from ..cloud.outputs import LAS, LAZ, os_errors_as_messages, replacing, working_folder
 from ..cloud.points import check_count, chunks_near, write_points
@@ -88,7 +89,7 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
     share = 1 / len(survey.sources)
     for number, source in enumerate(survey.sources):
         header = source.header
-        unit = survey.units.horizontal
+        unit = survey.crs.horizontal
         box = source.box / unit
         for _, found in chunks_near(source.path, header, box, monitor.part(number * share, (number + 1) * share)):
             chunk = found[survey.holds(found, header)]
@@ -117,4 +118,5 @@ def _write(survey: Survey, records: np.ndarray, compressed: bool, stream: Binary
     header = replace(survey.header, count=len(records))
     if not header.layout.is_old:
         header = replace(header, minor=4)
+    header = header_with_crs(header, survey.crs)
     write_points(stream, header, lambda start, stop: np.array(records[start:stop]), compressed, monitor)

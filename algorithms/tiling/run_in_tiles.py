@@ -91,7 +91,7 @@ def run_in_tiles(
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
     given = [Path(path) for path in paths]
-    survey = open_survey(given, options.crs_units, monitor, options.extent, options.crs)
+    survey = open_survey(given, options.read, monitor, options.extent)
     if options.compressed:
         writing_backend(survey.header.layout.point_format)
     with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder, monitor.warn) as work:
@@ -216,8 +216,7 @@ class _Run:
 
     def _opened(self, paths: list[Path]) -> Survey:
         """Return files as a survey of the same extent."""
-        options = self.settings.options
-        return open_survey(paths, options.crs_units, extent=self.survey.extent, crs=options.crs)
+        return open_survey(paths, lambda _: self.survey.crs, extent=self.survey.extent)
 
     def _key(self, sources: Iterable[Source], *facts: Any) -> str:
         """Return a name for the result of files in the state at the start, of facts, tunables and this version."""
@@ -261,7 +260,7 @@ class _Run:
             halo,
             {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()},
             str(self.survey.extent),
-            str(self.survey.units),
+            str(self.survey.crs),
         )
         part = replace(self.survey, sources=tuple(self.survey.sources[one] for one in near))
         result = settings.work / f"block-{block.name}-{key}.npz"

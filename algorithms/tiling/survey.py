@@ -12,12 +12,12 @@ from typing import Optional, Union
 import numpy as np
 
 from ..cloud.cloud import Cloud, origin_before
-from ..cloud.files import files_of, header_with_crs, readable, state_of
-from ..cloud.header import OF_OLD_POINTS, Header, read_header
+from ..cloud.crs import Crs, CrsReader, crs_of_tiles, read_crs
+from ..cloud.files import named_files_of, readable, state_of
+from ..cloud.header import OF_OLD_POINTS, Header
 from ..cloud.outputs import check_not_read, kind_of, made_folder, os_errors_as_messages
 from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
-from ..cloud.units import Resolver, Units, units_of, wkt_of
-from ..cloud.vpc import check_tiles, fill_merged, merged_header
+from ..cloud.vpc import fill_merged, merged_header
 from ..stage import Monitor
 
 # The folder among the tiles with the COPC files that QGIS shows.
@@ -71,8 +71,7 @@ class Survey:
 
     sources: tuple[Source, ...]  #: The files
     header: Header  #: The header of all points as one cloud: finest scale, all dimensions
-    units: Units  #: Meters per unit of the coordinates
-    wkt: str  #: Coordinate reference system, as :attr:`.Cloud.wkt`
+    crs: Crs  #: Coordinate reference system, with meters per unit of the coordinates
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))  #: What local coordinates are relative to, m
     #: (2, 2): only points within belong to the survey, edges included; least and greatest easting and northing in
     #: coordinates of the files
@@ -86,7 +85,7 @@ class Survey:
         """Number of points, those of a file that reaches beyond the extent by the share of its area within."""
         if self.extent is None:
             return float(len(self))
-        wholes = [_box(source.header, self.units) for source in self.sources]
+        wholes = [_box(source.header, self.crs) for source in self.sources]
         shares = [
             np.prod((source.box[1] - source.box[0]) / (one[1] - one[0])) for source, one in zip(self.sources, wholes)
         ]
@@ -101,7 +100,7 @@ class Survey:
     def corner(self) -> np.ndarray:
         """Least easting and northing (2,) of the files, m from ``origin``, also where only an extent is read."""
         low = np.min([source.header.low[:2] for source in self.sources], axis=0)
-        scale, offset, unit = self.header.scale[:2], self.header.offset[:2], self.units.horizontal
+        scale, offset, unit = self.header.scale[:2], self.header.offset[:2], self.crs.horizontal
         # As a cloud has its coordinates, to the last bit: no point lies before the first cell.
         return np.rint((low - offset) / scale) * (scale * unit) + (offset * unit - self.origin[:2])
 
@@ -170,7 +169,7 @@ class Survey:
 
     def _positions_of(self, source: Source, rows: np.ndarray, monitor: Monitor) -> list[np.ndarray]:
         """Return the positions (k, 2), m, of the records of a file at ascending positions, in parts."""
-        scale, offset = (values * self.units.horizontal for values in (source.header.scale, source.header.offset))
+        scale, offset = (values * self.crs.horizontal for values in (source.header.scale, source.header.offset))
         found = []
         with readable(source.path):
             for start, chunk in read_chunks(source.path, source.header, monitor):
@@ -183,9 +182,9 @@ class Survey:
     def _records(self, source: Source, box: np.ndarray, monitor: Monitor) -> Iterable[tuple[np.ndarray, np.ndarray]]:
         """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
         header = source.header
-        scale, offset = (values * self.units.horizontal for values in (header.scale, header.offset))
+        scale, offset = (values * self.crs.horizontal for values in (header.scale, header.offset))
         with readable(source.path):
-            for start, chunk in chunks_near(source.path, header, box / self.units.horizontal, monitor):
+            for start, chunk in chunks_near(source.path, header, box / self.crs.horizontal, monitor):
                 inside = self.holds(chunk, header)
                 for i, axis in enumerate("XY"):
                     coordinate = chunk[axis] * scale[i] + offset[i]
@@ -219,8 +218,8 @@ class Survey:
 
     def cloud(self, records: np.ndarray) -> Cloud:
         """Return records of the survey as a cloud."""
-        cloud = Cloud(replace(self.header, count=len(records)), records, self.units)
-        cloud.wkt, cloud.origin = self.wkt, self.origin
+        cloud = Cloud(replace(self.header, count=len(records)), records, self.crs)
+        cloud.origin = self.origin
         return cloud
 
 
@@ -231,10 +230,9 @@ def boxes_meet(boxes: np.ndarray, box: np.ndarray) -> np.ndarray:
 
 def open_survey(
     paths: Iterable[Union[str, Path]],
-    crs_units: Optional[Resolver] = None,
+    read: CrsReader = read_crs,
     monitor: Optional[Monitor] = None,
     extent: Optional[np.ndarray] = None,
-    crs: Optional[tuple[str, str]] = None,
 ) -> Survey:
     """Return the survey that files, virtual point clouds and folders of files make.
 
@@ -242,14 +240,12 @@ def open_survey(
     ----------
     paths : iterable of str or Path
         A folder means all .las, .laz and .copc.laz files in it; a file that comes twice is one.
-    crs_units : callable, optional
+    read : callable
         As for :func:`.read_cloud`.
     monitor : Monitor, optional
         Receives warnings about what can't be merged.
     extent : ndarray of shape (2, 2), optional
         As :attr:`Survey.extent`; files that lie wholly outside are no part of the survey.
-    crs : tuple of str, optional
-        The coordinate reference system of files that name none, as WKT and as "EPSG:n" (or "").
 
     Raises
     ------
@@ -258,22 +254,18 @@ def open_survey(
         outside of the extent.
     """
     monitor = monitor or Monitor()
-    files = files_of_survey(paths)
-    states = {file: state_of(file) for file in files}
-    files, headers = open_headers(files, monitor)
-    check_tiles(files, headers)
+    named = _named_files(paths)
+    states = {file: state_of(file) for file in named}
+    files, headers = _opened(named, monitor)
     for file, header in zip(files, headers):
         check_points(file, header)
     header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]
-    named = headers[0]
-    if crs is not None and not wkt_of(named):
-        named = header = header_with_crs(header, *crs)
-    units = units_of(named, crs_units)
-    units.report(monitor)
-    sources = tuple(Source(file, one, _box(one, units), states[file]) for file, one in zip(files, headers))
+    crs = crs_of_tiles(headers, [file.name for file in files], read, monitor)
+    crs.report(monitor)
+    sources = tuple(Source(file, one, _box(one, crs), states[file]) for file, one in zip(files, headers))
     if extent is not None:
-        sources = _within_extent(sources, extent * units.horizontal)
-    survey = Survey(sources, header.without(*OF_OLD_POINTS), units, wkt_of(named), extent=extent)
+        sources = _within_extent(sources, extent * crs.horizontal)
+    survey = Survey(sources, header.without(*OF_OLD_POINTS), crs, extent=extent)
     return replace(survey, origin=origin_before(survey.box[0]))
 
 
@@ -290,44 +282,55 @@ def _within_extent(sources: tuple[Source, ...], extent: np.ndarray) -> tuple[Sou
 
 
 def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
-    """Return the files that files, virtual point clouds and folders of files name, each once.
+    """Return the files of a survey, see :func:`_named_files`."""
+    return list(_named_files(paths))
+
+
+def _opened(named: dict[Path, str], monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
+    """Return the files of a survey that have points, and their headers, with the CRS by which each is named."""
+    files, headers = open_headers(list(named), monitor)
+    return files, [replace(header, named=named[file]) for file, header in zip(files, headers)]
+
+
+def _named_files(paths: Iterable[Union[str, Path]]) -> dict[Path, str]:
+    """Return the files that files, virtual point clouds and folders of files name, each once, and the CRS of each.
+
+    The CRS is the one by which a virtual point cloud names a file, WKT or "EPSG:code", else "".
 
     Raises
     ------
     ValueError
         If there are no files, or one is no point cloud.
     """
-    found: dict[Path, Path] = {}
+    found: dict[Path, tuple[Path, str]] = {}
     for path in map(Path, paths):
         inside = sorted(one for one in path.iterdir() if one.is_file() and kind_of(one)) if path.is_dir() else [path]
         for file in inside:
             # A VPC in the folder adds its files: those of the folder count once, and others were meant to be read.
-            found.update({one.resolve(): one for one in files_of(file)})
+            for one, crs in named_files_of(file).items():
+                found[one.resolve()] = one, crs or found.get(one.resolve(), (one, ""))[1]
     if not found:
         raise ValueError("There are no point clouds in the folder; choose one with .las, .laz or .copc.laz files.")
-    return list(found.values())
+    return dict(found.values())
 
 
-def crs_of_survey(files: Iterable[Path]) -> str:
-    """Return the coordinate reference system of the first file that has points, as :attr:`.Cloud.wkt`.
+def crs_of_survey(paths: Iterable[Union[str, Path]], read: CrsReader = read_crs) -> Crs:
+    """Return the coordinate reference system of a survey.
 
     Raises
     ------
     ValueError
-        If a file before it can't be read, or none has points.
+        If a file can't be read, none has points, or they have different systems.
     """
-    for file in files:
-        header = read_header(file)
-        if header.count:
-            return wkt_of(header)
-    raise ValueError("None of the files has points; choose others.")
+    files, headers = _opened(_named_files(paths))
+    return crs_of_tiles(headers, [file.name for file in files], read, Monitor())
 
 
-def _box(header: Header, units: Units) -> np.ndarray:
+def _box(header: Header, crs: Crs) -> np.ndarray:
     """Return the least and greatest easting and northing (2, 2), m, of the points of a file by its header."""
-    box = np.array([header.low[:2], header.high[:2]]) * units.horizontal
+    box = np.array([header.low[:2], header.high[:2]]) * crs.horizontal
     # Some files have rounded bounds: a margin of one step of the scale includes all points.
-    step = header.scale[:2] * units.horizontal
+    step = header.scale[:2] * crs.horizontal
     return box + np.array([-step, step])
 
 

@@ -124,8 +124,8 @@ class TileWriter:
         settings, survey = self.settings, self.outcome.survey
         target = settings.folder / f"{name}{settings.options.suffix}"
         shown = settings.folder / SHOWN / f"{name}{COPC}" if settings.options.shown else None
-        of_survey, crs = (settings.stop, survey.units, survey.extent), settings.options.crs
-        return TileTask(source, number, target, parts, numbers, *of_survey, piece, self.view, crs, shown)
+        of_survey = settings.stop, survey.crs, survey.extent
+        return TileTask(source, number, target, parts, numbers, *of_survey, piece, self.view, shown)
 
 
 def _boxes(blocks: list[Block]) -> np.ndarray:

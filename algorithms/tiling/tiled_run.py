@@ -8,8 +8,8 @@ from typing import Any, Callable, Optional
 
 import numpy as np
 
+from ..cloud.crs import CrsReader, read_crs
 from ..cloud.outputs import LAS, LAZ
-from ..cloud.units import Resolver
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import FileContent, LayerFeatures, Monitor, Report
@@ -44,9 +44,7 @@ class TilesOptions:
     #: and written, edges included
     extent: Optional[np.ndarray] = None
     #: As for :func:`.read_cloud`
-    crs_units: Optional[Resolver] = None
-    #: The coordinate reference system of files that name none, as for :func:`.open_survey`; tiles get it too
-    crs: Optional[tuple[str, str]] = None
+    read: CrsReader = read_crs
     #: Tiles as LAZ, or as LAS
     compressed: bool = True
     #: Write each tile as COPC too, into a folder "shown" among the tiles: QGIS shows the points of no other tiles

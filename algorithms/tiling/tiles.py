@@ -9,11 +9,11 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.cloud import Cloud
+from ..cloud.crs import Crs
 from ..cloud.dimensions import DIMENSIONS
-from ..cloud.files import header_with_crs, read_cloud, readable, write_cloud
-from ..cloud.header import OF_OLD_POINTS, Header
+from ..cloud.files import read_cloud, readable, write_cloud
+from ..cloud.header import OF_OLD_POINTS
 from ..cloud.points import chunks_near, open_header
-from ..cloud.units import Units, wkt_of
 from ..stage import Monitor
 from .block_result import BlockResult
 from .blocks import REFERRING, StoppableMonitor
@@ -31,12 +31,11 @@ class TileTask:
     results: tuple[Path, ...]  #: Results of the blocks that have its points
     becomes: tuple[Path, ...]  #: Files with the final numbers of what each of these blocks found
     stop: Path  #: A file whose existence ends the work
-    units: Units  #: Units of the coordinates
+    crs: Crs  #: CRS of the survey, which files that name none get
     extent: Optional[np.ndarray] = None  #: (2, 2): extent of the survey, in coordinates of the file; None is all
     #: (2, 2): box, m, of the part of the file that becomes this tile, upper edges excluded; None is all
     piece: Optional[np.ndarray] = None
     view: Optional[View] = None  #: Keeps points for the pages of the survey; None where no page shows points
-    crs: Optional[tuple[str, str]] = None  #: CRS of files that name none, as for :func:`.open_survey`
     shown: Optional[Path] = None  #: COPC file of the tile that is written for QGIS to show
 
 
@@ -127,22 +126,16 @@ def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor)
     """Return the points of a file that a tile is made of, in its order; of a piece those at ``position`` (n,)."""
     path = task.source.path
     if task.piece is None or position is None:
-        cloud = read_cloud(path, monitor, box=task.extent)
-        # A worker has no database to look units up in.
-        return Cloud(_named(cloud.header, task.crs), cloud.points, task.units, cloud.files)
+        # A worker has nothing to look systems up in.
+        return read_cloud(path, monitor, lambda _: task.crs, task.extent)
     header = open_header(path)
     found = [np.empty(0, header.layout.dtype)]
     with readable(path):
-        for start, records in chunks_near(path, header, task.piece / task.units.horizontal, monitor):
+        for start, records in chunks_near(path, header, task.piece / task.crs.horizontal, monitor):
             first, end = np.searchsorted(position, [start, start + len(records)])
             found.append(records[position[first:end] - start])
     header = replace(header.without(*OF_OLD_POINTS), count=len(position))
-    return Cloud(_named(header, task.crs), np.concatenate(found), task.units, [path])
-
-
-def _named(header: Header, crs: Optional[tuple[str, str]]) -> Header:
-    """Return a header with a CRS, its own where it has one."""
-    return header if crs is None or wkt_of(header) else header_with_crs(header, *crs)
+    return Cloud(header, np.concatenate(found), task.crs, [path])
 
 
 def _positions(task: TileTask) -> np.ndarray:

@@ -21,8 +21,9 @@ from qgis.gui import QgsLayerTreeView
 from qgis.PyQt.QtCore import QEventLoop, QTimer
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.crs import crs_of_text
 from lidar_buildings.algorithms.cloud.files import write_cloud
-from lidar_buildings.provider import crs
+from lidar_buildings.provider import crs, crs_authority
 from lidar_buildings.provider.crs import is_hollow
 
 _EXPIRY = 20  # ms
@@ -144,7 +145,6 @@ def test_a_compound_system_keeps_its_code_for_text_files():
     """Layers are in the plane system, CityJSON asks for one of three dimensions."""
     wkt = QgsCoordinateReferenceSystem("EPSG:7415").toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED)
     for named in ("EPSG:7415", wkt):
-        assert crs.code_in_space(named) == "EPSG:7415"
-        assert crs.crs_of(named).authid() == "EPSG:28992"
-    assert crs.code_in_space("EPSG:28992") == "EPSG:28992"
-    assert crs.code_in_space("") == ""
+        found = crs_of_text(named, crs_authority.GDAL)
+        assert (found.code, found.plane) == ("EPSG:7415", "EPSG:28992")
+    assert crs_of_text("EPSG:28992", crs_authority.GDAL).code == "EPSG:28992"

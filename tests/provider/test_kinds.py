@@ -23,8 +23,8 @@ from qgis.core import (
 )
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.crs import NO_CRS
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.algorithms.cloud.units import NO_CRS
 from lidar_buildings.algorithms.stage import InputLayer, Monitor, Raster, RasterSurface
 from lidar_buildings.provider import cloud_algorithm, layer_outputs, rasters, stage_algorithm
 from lidar_buildings.provider.input_layers import find_input_layer, read_input_layer
@@ -34,7 +34,7 @@ from lidar_buildings.provider.vectors import qgis_features
 from lidar_buildings.tests.provider.helpers import opened, run, squares, values_of, vector
 from lidar_buildings.tests.toys import TOYS
 
-FOOT = "EPSG:2277"  # Texas, US survey feet
+FOOT = "EPSG:2234"
 
 
 def refused(provider, name, given, context):
@@ -109,7 +109,7 @@ def test_clouds_are_merged(provider, context, log, halves, out, how):
     merged = read_cloud(out / "a.laz")
     assert np.bincount(merged.get("point_source_id")).tolist() == [0, 200, 200]
     np.testing.assert_allclose(np.sort(merged.get("xyz")[:, 2]), np.repeat([10.0, 16.0], [351, 49]))
-    assert merged.wkt == "EPSG:28992"
+    assert merged.crs.plane == "EPSG:28992"
 
 
 def test_merging_needs_clouds_that_are_no_output(provider, context, halves, out):
@@ -242,7 +242,6 @@ def test_geometries_that_are_not_sound_are_counted(read):
         ("Polygon", True, "PolygonZ ((85000 446000 5, 85000 446000 9, 85000 446000 5, 85000 446000 5))"),
         ("LineString", False, "LineStringZ (85000 446000 5, 85000 446000 5, 85000 446000 5)"),
         ("LineString", True, "LineStringZ (85000 446000 5)"),
-        ("Polygon", True, "PolygonZ ((85000 446000 5, 85001 446000 1e300, 85001 446001 5, 85000 446000 5))"),
     ],
 )
 def test_rings_without_corners_are_not_sound(read, kind, upright, wkt):
@@ -263,7 +262,7 @@ def test_an_empty_layer_has_its_columns(read):
 def test_coordinates_are_meters_where_the_cloud_is_in_feet(read, town, tmp_path):
     write_cloud(create_cloud(town, QgsCoordinateReferenceSystem(FOOT).toWkt()), tmp_path / "feet.las")
     cloud = read_cloud(tmp_path / "feet.las")
-    assert cloud.units.horizontal == pytest.approx(0.3048, rel=1e-4)
+    assert cloud.crs.horizontal == pytest.approx(0.3048, rel=1e-4)
     x, y = (cloud.to_map(np.array([[3.0, 4.0]]))[0]).tolist()
     found, warnings = read("Point", [(f"Point ({x!r} {y!r})", [1, 1.0, ""])], cloud, crs=FOOT)
     np.testing.assert_allclose(found.geometries, [[3, 4]], atol=1e-6)

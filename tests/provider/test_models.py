@@ -15,9 +15,9 @@ from qgis.core import (
 )
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.crs import NO_CRS
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.algorithms.cloud.units import NO_CRS
 from lidar_buildings.algorithms.help import pipeline_help
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline

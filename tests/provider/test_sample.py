@@ -21,7 +21,7 @@ def test_the_sample_is_small_has_no_classes_and_is_a_project(provider, tmp_path)
 
     project = QgsProject()
     fill_project(project, tmp_path)
-    assert project.crs().authid() == "EPSG:32631"
+    assert project.crs().authid() == "EPSG:3395"
     again = QgsProject()
     assert again.read(str(tmp_path / PROJECT))
     layers = {layer.name(): layer for layer in again.mapLayers().values()}

@@ -26,7 +26,6 @@ from lidar_buildings.algorithms import packages
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.provider import clouds, errors, memory, named_clouds
-from lidar_buildings.provider.crs import crs_of, crs_units
 from lidar_buildings.tests.provider.helpers import run, squares
 
 
@@ -450,20 +449,6 @@ def test_missing_packages_are_reported_everywhere(provider, context, log, town_f
 def test_nothing_is_said_of_packages_that_are_there(provider):
     assert provider.warningMessage() == ""
     assert provider.algorithm("toylift").canExecute()[0]
-
-
-def test_units_of_codes_come_from_qgis():
-    assert crs_units(28992) == (1.0, 1.0, False)
-    assert crs_units(4326)[2]
-    assert crs_units(2277)[0] == pytest.approx(1200 / 3937)
-    assert crs_units(999_999) is None
-
-
-def test_crs_are_understood_as_wkt_and_code():
-    assert crs_of("EPSG:28992").authid() == "EPSG:28992"
-    assert crs_of(crs_of("EPSG:2154").toWkt()).authid() == "EPSG:2154"
-    assert crs_of("EPSG:7415").authid() == "EPSG:28992", "the horizontal part of a compound"
-    assert not crs_of("").isValid()
 
 
 def test_files_of_the_stage_are_gone_from_memory(provider, context, log, town_file, out):

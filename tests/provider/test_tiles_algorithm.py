@@ -13,7 +13,6 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.algorithms.tiling.survey import files_of_survey
 from lidar_buildings.provider import schedulers
-from lidar_buildings.provider.crs import crs_of
 from lidar_buildings.provider.pipeline_algorithm import pipeline_tunables
 from lidar_buildings.provider.settings import SCHEDULERS
 from lidar_buildings.tests.builders import roof
@@ -406,7 +405,7 @@ def test_tiles_without_a_coordinate_system_get_the_given_one(algorithm, context,
     assert succeeded, log.textLog()
     assert QgsVectorLayer(str(target)).crs().authid() == "EPSG:28992"
     for tile in (tmp_path / "tiles").glob("*.laz"):
-        assert crs_of(read_cloud(tile).wkt).authid() == "EPSG:28992"
+        assert read_cloud(tile).crs.plane == "EPSG:28992"
     assert not [one for one in log.warnings if "coordinate reference system" in one]
 
 

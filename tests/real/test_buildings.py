@@ -143,7 +143,7 @@ def test_same_input_gives_the_same_bytes(tmp_path):
 def test_order_of_the_points_does_not_matter():
     cloud = read_cloud(path_of(SMALL))
     order = np.random.default_rng(7).permutation(len(cloud))
-    permuted = Cloud(cloud.header, cloud.points[order], cloud.units)
+    permuted = Cloud(cloud.header, cloud.points[order], cloud.crs)
     run_pipeline(PIPELINES["detect_buildings"], permuted)
     np.testing.assert_array_equal(permuted.get("classification"), detected(SMALL).classification[order])
 

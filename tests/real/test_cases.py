@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud.authority import authority_here
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.algorithms.tiling.survey import open_survey
 from lidar_buildings.tests.real.clouds import DATA
 
 CASES = DATA / "cases"
+FOOT = 1200 / 3937
 EXTENT = np.array([[500_005, 5_000_005], [500_020, 5_000_040]])
 
 
@@ -31,7 +34,7 @@ def case():
 )
 def test_laz_of_other_programs_is_read(case, name, count):
     cloud = read_cloud(case(name))
-    low, high = (bound * cloud.units.factors - cloud.origin for bound in (cloud.header.low, cloud.header.high))
+    low, high = (bound * cloud.crs.factors - cloud.origin for bound in (cloud.header.low, cloud.header.high))
     assert len(cloud) == count
     np.testing.assert_allclose(cloud.get("xyz").min(axis=0), low, atol=1e-6)
     np.testing.assert_allclose(cloud.get("xyz").max(axis=0), high, atol=1e-6)
@@ -59,3 +62,38 @@ def test_withheld_points_are_counted(case):
     monitor = Monitor()
     run_stage(STAGES["filter_points"], read_cloud(case("D1_flags.las")), monitor=monitor)
     assert "109 withheld points are left out." in monitor.infos
+
+
+@pytest.mark.parametrize(
+    ("name", "plane", "horizontal", "vertical"),
+    [
+        ("A1_utm15_vftus.las", "EPSG:26915", 1, FOOT),
+        ("K_wkt_ellips_ft.las", "EPSG:26915", 1, FOOT),
+        ("K_wkt2_3d.las", "EPSG:32615", 1, 1),
+        ("pointwise_version_1.laz", "EPSG:2271", FOOT, FOOT),
+        ("K_wm3857.las", "EPSG:3857", 1 / 1.5838, 1),
+    ],
+)
+def test_coordinate_systems_have_a_plane_and_units(case, name, plane, horizontal, vertical):
+    if authority_here() is None:
+        pytest.skip("nothing looks up systems")
+    crs = read_cloud(case(name)).crs
+    found = crs.horizontal, crs.vertical
+    assert found == pytest.approx((horizontal, vertical), rel=1e-6)
+    # Without QGIS, GeoKeys that contradict their code are no system.
+    assert crs.plane == plane or (name.startswith("pointwise") and crs.warnings)
+
+
+def test_one_plane_written_in_six_ways_is_one(case, tmp_path):
+    names = ["C_w_geokeys", "C_e_plain", "C_e_comp", "C_e_noauth", "C_e_prec", "C_e_none"]
+    monitor = Monitor()
+    survey = open_survey([case(f"{name}.las") for name in names], monitor=monitor)
+    assert survey.crs.identity == "EPSG:25832"
+    said = [one for one in monitor.warnings if "coordinate reference system" in one]
+    assert said == ["C_e_none.las names no coordinate reference system; it is taken to be in that of C_w_geokeys.las."]
+
+
+def test_lengths_in_web_mercator_are_those_on_the_ground(case):
+    sides = [np.ptp(read_cloud(case(name)).get("xyz"), axis=0) for name in ("town.laz", "town_3857.laz")]
+    # The two axes are not quite parallel.
+    assert sides[1] == pytest.approx(sides[0], rel=0.02)

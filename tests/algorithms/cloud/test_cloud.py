@@ -6,7 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud.authority import authority_here
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.crs import crs_of_text
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
@@ -43,7 +45,7 @@ def test_a_made_cloud_is_read_as_it_was_made(town, tmp_path, name, wkt):
     write_cloud(create_cloud(town, wkt), tmp_path / name)
     cloud = read_cloud(tmp_path / name)
     order = np.argsort(cloud.get("intensity"))
-    assert cloud.wkt == wkt
+    assert cloud.crs.identity == crs_of_text(wkt, authority_here()).identity
     np.testing.assert_allclose(cloud.get("xyz")[order] + cloud.origin, town["xyz"], atol=0.000_501)
     for dimension in town.keys() - {"xyz"}:
         found = cloud.get(dimension)[order]
@@ -220,10 +222,9 @@ def test_unknown_units_are_warned_of_and_known_ones_not(make_las):
 
 
 def test_wkt_that_is_supplied_later_is_written_to_formats_that_need_it(make_las, tmp_path):
-    cloud = read_cloud(make_las(point_format=6))
-    cloud.wkt = IN_FEET
+    cloud = read_cloud(make_las(point_format=6)).in_crs(crs_of_text(IN_FEET))
     write_cloud(cloud, tmp_path / "b.las")
-    assert read_cloud(tmp_path / "b.las").wkt == IN_FEET
+    assert read_cloud(tmp_path / "b.las").crs.stated == IN_FEET
 
 
 @pytest.mark.parametrize("name", ["b.las", "b.laz", "b.copc.laz"])
@@ -256,7 +257,7 @@ def test_points_taken_are_written_with_all_that_they_have(town, tmp_path, name):
     back = read_cloud(tmp_path / name)
     order = np.argsort(back.get("intensity"), kind="stable")
     assert back.get("intensity")[order].tolist() == [3, 3, 77, 400]
-    assert back.wkt == IN_FEET
+    assert back.crs.stated == IN_FEET
     for dimension in ("classification", "gps_time", "cluster_id", "normal", "entropy"):
         np.testing.assert_array_equal(back.get(dimension)[order], whole.get(dimension)[[3, 3, 77, 400]])
 

@@ -222,34 +222,33 @@ def test_a_cloud_without_system_is_taken_to_be_in_that_of_the_others(tmp_path):
     for clouds, number in (((flat("EPSG:28992"), flat()), 2), ((flat(), flat("EPSG:28992")), 1)):
         monitor = Monitor()
         union = merged(*clouds, monitor=monitor)
-        assert union.wkt == "EPSG:28992"
+        assert union.crs.identity == "EPSG:28992"
         assert monitor.warnings == [
-            f"Cloud {number} names no coordinate reference system; it is taken to be in that of Cloud {3 - number}, "
-            "in meters."
+            f"Cloud {number} names no coordinate reference system; it is taken to be in that of Cloud {3 - number}."
         ]
         write_cloud(union, tmp_path / "a.las")
-        assert read_cloud(tmp_path / "a.las").wkt == "EPSG:28992"
+        assert read_cloud(tmp_path / "a.las").crs.identity == "EPSG:28992"
 
 
 def test_none_has_a_system_and_nothing_is_said():
     monitor = Monitor()
-    assert merged(flat(), flat(), monitor=monitor).wkt == ""
+    assert merged(flat(), flat(), monitor=monitor).crs.stated == ""
     assert monitor.warnings == []
 
 
 @pytest.mark.parametrize("feet_first", [True, False])
-def test_meters_come_to_feet_where_only_one_cloud_names_its_unit(feet_first, tmp_path):
+def test_a_cloud_without_system_has_the_unit_of_the_others_too(feet_first, tmp_path):
     foot = 1200 / 3937
-    feet, meters = flat(FEET, z=100 * foot), flat(z=50.0)
-    for cloud in (feet, meters):
+    feet, nameless = flat(FEET, z=100 * foot), flat(z=50.0)
+    for cloud in (feet, nameless):
         cloud.set("height_above_ground", np.full(5, 3.0, "f4"))
-    clouds = (feet, meters) if feet_first else (meters, feet)
+    clouds = (feet, nameless) if feet_first else (nameless, feet)
     write_cloud(merged(*clouds), tmp_path / "a.las")
     union = read_cloud(tmp_path / "a.las")
-    assert union.units.horizontal == pytest.approx(foot)
+    assert union.crs.horizontal == pytest.approx(foot)
     np.testing.assert_allclose(union.get("height_above_ground"), 3.0, rtol=1e-6)
     z = union.get("xyz")[:, 2]
-    np.testing.assert_allclose(z, np.repeat([100 * foot, 50.0] if feet_first else [50.0, 100 * foot], 5), atol=0.001)
+    np.testing.assert_allclose(z, np.repeat([100, 50] if feet_first else [50, 100], 5) * foot, atol=0.001)
 
 
 def test_old_and_new_formats_of_one_system_keep_it(make_las, tmp_path, laspy):
@@ -262,7 +261,7 @@ def test_old_and_new_formats_of_one_system_keep_it(make_las, tmp_path, laspy):
     header = laspy.read(tmp_path / "u.las").header
     assert header.point_format.id == 6
     assert header.global_encoding.wkt
-    assert read_cloud(tmp_path / "u.las").wkt == wkt
+    assert read_cloud(tmp_path / "u.las").crs.identity == "EPSG:28992"
 
 
 def test_a_cloud_of_each_kind_of_gps_time_is_reported(make_las):

@@ -1,11 +1,11 @@
 """Units from WKT 1, WKT 2 and GeoKeys."""
 
-import struct
-
 import pytest
 
-from lidar_buildings.algorithms.cloud.header import Header, Vlr
-from lidar_buildings.algorithms.cloud.units import NO_CRS, crs_identity, crs_records, units_of, units_of_wkt, wkt_of
+from lidar_buildings.algorithms.cloud.header import Header
+from lidar_buildings.algorithms.cloud.units import Units, units_of_geokeys, units_of_wkt, with_named_units
+from lidar_buildings.algorithms.cloud.units import geokeys as keys_of
+from lidar_buildings.tests.algorithms.cloud.crs_texts import geokeys
 
 FOOT, SURVEY_FOOT = 0.3048, 1200 / 3937
 GEOGCS = (
@@ -51,7 +51,6 @@ def test_wkt(wkt, horizontal, vertical):
     units = units_of_wkt(wkt)
     assert units.horizontal == pytest.approx(horizontal, rel=1e-9)
     assert units.vertical == pytest.approx(vertical, rel=1e-9)
-    assert units.warning == ""
 
 
 @pytest.mark.parametrize(
@@ -76,17 +75,7 @@ def test_what_is_no_plane_is_refused(wkt, what):
     "text", ["", '"', "PROJCS", "PROJCS[", "]", "[[", "1,2,3", '"a"]', "A[" * 100, 'VERT_CS["h",UNIT["foot",0.3048]]']
 )
 def test_what_is_no_wkt_is_unknown(text):
-    assert units_of_wkt(text).warning == NO_CRS
-
-
-def geokeys(*pairs, doubles=()):
-    numbers = [1, 1, 0, len(pairs)]
-    for key, value in pairs:
-        numbers += [key, 34736, 1, 0] if value == "double" else [key, 0, 1, value]
-    records = [Vlr(b"LASF_Projection", 34735, struct.pack(f"<{len(numbers)}H", *numbers))]
-    if doubles:
-        records.append(Vlr(b"LASF_Projection", 34736, struct.pack(f"<{len(doubles)}d", *doubles)))
-    return Header(vlrs=records, encoding=0)
+    assert units_of_wkt(text) is None
 
 
 @pytest.mark.parametrize(
@@ -104,67 +93,57 @@ def geokeys(*pairs, doubles=()):
     ],
 )
 def test_geokeys(header, horizontal, vertical):
-    units = units_of(header)
-    assert (units.horizontal, units.vertical, units.warning) == (pytest.approx(horizontal), pytest.approx(vertical), "")
+    units, warnings = units_of_geokeys(keys_of(header), None)
+    assert (units, warnings) == (pytest.approx((horizontal, vertical)), ())
 
 
-def test_code_without_unit_is_looked_up_if_that_is_possible():
-    header = geokeys((1024, 1), (3072, 2264))
-    assert "EPSG:2264" in units_of(header).warning
-    assert units_of(header).horizontal == 1
-    asked = []
-
-    def crs_units(code):
-        asked.append(code)
-        return (SURVEY_FOOT, SURVEY_FOOT, False)
-
-    units = units_of(header, crs_units)
-    assert (units.horizontal, units.vertical, units.warning, asked) == (SURVEY_FOOT, SURVEY_FOOT, "", [2264])
-    assert "EPSG:2264" in units_of(header, lambda code: None).warning
-
-
-def test_code_of_the_heights_is_looked_up_too():
-    units = units_of(
-        geokeys((1024, 1), (3072, 26910), (3076, 9001), (4096, 6360)),
-        {26910: (1, 1, False), 6360: (1, FOOT, False)}.get,
-    )
-    assert (units.horizontal, units.vertical) == (1, FOOT)
+def test_units_that_keys_do_not_name_are_those_of_their_codes():
+    known = Units(SURVEY_FOOT, FOOT)
+    assert units_of_geokeys(keys_of(geokeys((1024, 1), (3072, 2264))), known) == (known, ())
+    keys = keys_of(geokeys((1024, 1), (3072, 26910), (3076, 9001), (4096, 6360)))
+    assert units_of_geokeys(keys, Units(1, FOOT)) == ((1, FOOT), ())
+    assert units_of_geokeys(keys_of(geokeys((1024, 1), (3072, 2264))), None) == (None, ())
+    assert units_of_geokeys(keys_of(Header()), None) == (None, ())
 
 
 @pytest.mark.parametrize("keys", [((1024, 2), (2048, 4326)), ((2048, 4326),), ((1024, 3), (2048, 4978))])
 def test_geographic_geokeys_are_refused(keys):
     with pytest.raises(ValueError, match=r"degrees|geocentric"):
-        units_of(geokeys(*keys))
+        units_of_geokeys(keys_of(geokeys(*keys)), None)
 
 
-def test_projected_code_that_turns_out_geographic_is_refused():
-    with pytest.raises(ValueError, match="degrees"):
-        units_of(geokeys((3072, 4326)), lambda code: (1.0, 1.0, True))
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [
+        ("US survey foot", US),
+        ("Foot_US", US),
+        ("ftUS", US),
+        ("foot", FOOT),
+        ("FEET", FOOT),
+        ("International Foot", FOOT),
+    ],
+)
+@pytest.mark.parametrize("one", ["1", "1.0", "1.000000000000"])
+def test_a_unit_called_foot_and_given_as_a_meter_is_a_foot(name, size, one):
+    """VERT_CS of clouds of US states have UNIT["US survey foot",1]."""
+    text = f'COMPD_CS["b",PROJCS["SP",UNIT["metre",1]],VERT_CS["h",VERT_DATUM["d",2005],UNIT["{name}",{one}]]]'
+    mended, (warned,) = with_named_units(text)
+    assert units_of_wkt(mended) == pytest.approx((1, size), rel=1e-9)
+    assert name in warned
+    two = f'PROJCRS["SP",{CS2},LENGTHUNIT["{name}",{one}]]'
+    assert units_of_wkt(with_named_units(two)[0]).horizontal == pytest.approx(size, rel=1e-9)
 
 
-def test_nothing_is_meters_with_a_warning():
-    assert units_of(Header()).warning == NO_CRS
-    assert units_of(geokeys()).warning == NO_CRS
+@pytest.mark.parametrize(
+    "unit", ['"metre",1', '"foot",0.3048', '"foot",10', '"Shift",1', '"US survey foot",0.304800609601']
+)
+def test_other_units_stay_as_they_are(unit):
+    text = f'PROJCS["SP",UNIT[{unit}]]'
+    assert with_named_units(text) == (text, ())
 
 
-def test_bit_of_the_header_decides_between_wkt_and_geokeys():
-    header = geokeys((1024, 1), (3072, 2264), (3076, 9003))
-    header.vlrs.append(Vlr(b"LASF_Projection", 2112, b'PROJCS["m",UNIT["metre",1]]\0'))
-    assert wkt_of(header) == "EPSG:2264"
-    assert units_of(header).horizontal == SURVEY_FOOT
-    header.encoding = 16
-    assert wkt_of(header).startswith("PROJCS")
-    assert units_of(header).horizontal == 1
-
-
-def test_identity_is_the_code_where_there_is_one():
-    assert crs_identity("EPSG:28992") == "EPSG:28992"
-    assert crs_identity(f'PROJCS["RD",{GEOGCS},AUTHORITY["EPSG","28992"]]') == "EPSG:28992"
-    assert crs_identity(f'PROJCRS["RD",{BASE},ID["EPSG",28992]]') == "EPSG:28992"
-    assert crs_identity('PROJCS["a", UNIT["metre", 1]]') == crs_identity('PROJCS["a",UNIT["metre",1]]\n')
-
-
-def test_a_crs_that_can_not_be_stored_is_refused():
-    for text in ("EPSG:28992+5709", "here", "EPSG:0", "ESRI:102100"):
-        with pytest.raises(ValueError, match="can't be stored"):
-            crs_records(text)
+def test_geokeys_that_give_a_foot_as_a_meter_mean_a_foot():
+    keys = keys_of(geokeys((1024, 1), (3072, 2264), (3076, 9003), (3077, "double"), doubles=(1.0,)))
+    units, (warned,) = units_of_geokeys(keys, None)
+    assert units.horizontal == pytest.approx(SURVEY_FOOT)
+    assert "US survey foot" in warned

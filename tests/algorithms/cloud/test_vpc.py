@@ -134,10 +134,9 @@ def test_far_tiles_get_an_offset_between_them(make_las, make_vpc, laspy):
     np.testing.assert_allclose(cloud.get("xyz")[:, 0] + cloud.origin[0], expected, atol=1e-6)
 
 
-@pytest.mark.parametrize("wkt", ['PROJCS["UTM",UNIT["metre",1],AUTHORITY["EPSG","32631"]]', ""])
-def test_tiles_of_different_crs_are_refused(make_las, make_vpc, wkt):
+def test_tiles_of_different_crs_are_refused(make_las, make_vpc):
     make_las("one.las", vlrs=(crs(RD),))
-    make_las("two.las", vlrs=(crs(wkt),) if wkt else ())
+    make_las("two.las", vlrs=(crs('PROJCS["UTM",UNIT["metre",1],AUTHORITY["EPSG","32631"]]'),))
     with pytest.raises(ValueError, match=r"one.las and two.las have different coordinate .* \(EPSG:28992, "):
         read_cloud(make_vpc("one.las", "two.las"))
 

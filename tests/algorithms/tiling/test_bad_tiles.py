@@ -20,7 +20,7 @@ from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
-from lidar_buildings.algorithms.tiling.survey import crs_of_survey, files_of_survey, open_survey
+from lidar_buildings.algorithms.tiling.survey import crs_of_survey, open_survey
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.las_files import made_las, random_records, vlr
@@ -71,10 +71,17 @@ def crs(wkt):
     return vlr("LASF_Projection", 2112, wkt.encode() + b"\0")
 
 
-@pytest.mark.parametrize("other", [FEET, ""])
-def test_other_coordinate_systems_and_units_are_refused_by_name(make_las, tmp_path, other):
+def test_a_tile_that_names_no_system_is_in_that_of_the_others(make_las, tmp_path):
+    files = [make_las(f"{i}.las", point_format=6, vlrs=(crs(RD),) if i else ()) for i in range(2)]
+    monitor = Monitor()
+    assert open_survey(files, monitor=monitor).crs.identity == "EPSG:28992"
+    warned = "0.las names no coordinate reference system; it is taken to be in that of 1.las."
+    assert monitor.warnings == [warned]
+
+
+def test_other_coordinate_systems_and_units_are_refused_by_name(make_las, tmp_path):
     one = make_las("one.las", point_format=6, vlrs=(crs(RD),))
-    two = make_las("two.las", point_format=6, vlrs=(crs(other),) if other else ())
+    two = make_las("two.las", point_format=6, vlrs=(crs(FEET),))
     with pytest.raises(ValueError, match=r"one.las and two.las have different coordinate reference systems"):
         run([one, two], tmp_path / "out")
     assert not (tmp_path / "out").exists()
@@ -151,7 +158,7 @@ def test_a_tile_without_points_is_left_out_with_a_warning(laspy, tmp_path, first
     assert [one.name for one in outcome.tiles] == ["b.las", "c.las"]
     assert outcome.points == 1000
     assert f"1 of 3 tiles have no points and are left out: {empty.name}." in monitor.warnings
-    assert crs_of_survey(files_of_survey([tmp_path])) == "EPSG:28992"
+    assert crs_of_survey([tmp_path]).identity == "EPSG:28992"
     expected = run(good, tmp_path / "expected")
     for one, other in zip(outcome.tiles, expected.tiles):
         assert one.read_bytes() == other.read_bytes()
@@ -161,7 +168,7 @@ def test_tiles_without_any_points_are_refused(laspy, tmp_path):
     paths = [without_points(laspy, tmp_path / name) for name in ("a.laz", "b.laz")]
     with pytest.raises(ValueError, match=r"None of the 2 tiles, a.laz and others, has points; choose others"):
         run(paths, tmp_path / "out")
-    with pytest.raises(ValueError, match="None of the files has points"):
+    with pytest.raises(ValueError, match="None of the 2 tiles, a.laz and others, has points"):
         crs_of_survey(paths)
     with pytest.raises(ValueError, match=r"a.laz has no points; choose another file"):
         run(paths[:1], tmp_path / "out")

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.crs import Crs
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
@@ -84,13 +85,10 @@ def test_heights_are_stored_in_the_unit_that_only_the_code_of_the_system_shows(t
     path = tile(tmp_path / "feet.las", (0, 0), epsg=2263, classification=ground)
     foot = 1200 / 3937
 
-    def units(code):
-        assert code == 2263
-        return foot, foot, False
-
-    outcome = run([path], tmp_path / "out", HEIGHTS, crs_units=units)
+    in_feet = Crs(identity="EPSG:2263", horizontal=foot, vertical=foot)
+    outcome = run([path], tmp_path / "out", HEIGHTS, read=lambda header: in_feet)
     assert not outcome.failures
-    stored = read_cloud(outcome.tiles[0])
+    stored = read_cloud(outcome.tiles[0], read=lambda header: Crs())
     # Read without the database its numbers are those in the file, feet.
     z = stored.get("xyz")[:, 2]
     assert np.abs(stored.get("height_above_ground")).max() > 0.5 * np.ptp(z)

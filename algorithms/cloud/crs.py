@@ -1,0 +1,342 @@
+"""The coordinate reference system of a cloud: one record, made when the cloud is opened and handed on from there."""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Callable, Optional
+
+import numpy as np
+
+from ..stage import Monitor
+from .authority import Authority, Definition, authority_here
+from .header import WKT_BIT, Header, Vlr
+from .printable import shown
+from .units import (
+    GEOKEYS,
+    MODEL,
+    PROJECTED,
+    PROJECTION,
+    USER_DEFINED,
+    Units,
+    code_of_keys,
+    define_system,
+    geokey_records,
+    geokeys,
+    name_of_length,
+    text_of_keys,
+    units_of_geokeys,
+    units_of_wkt,
+    with_named_units,
+)
+
+# User and record ids of the VLRs with WKT.
+_WKT = ((PROJECTION, 2112), (b"liblas", 2112))
+# WKT of real systems has some thousand bytes; a longer one takes seconds to parse and is taken for damage.
+_LONGEST_WKT = 1_000_000
+# Scale of the map, as a difference from 1, that a warning names: twice that of the edges of UTM's zones.
+_NAMED_SCALE = 0.001
+# Scale, as a difference from 1, at which meters are those on the ground: no system for surveys has such a one within
+# its area, and world Mercator has it from 8 degrees of latitude on.
+_GROUND_SCALE = 0.01
+# Largest ratio of the scales of two directions: 1.06 at the edges of maps of continents, 1.007 in
+# the spherical Mercator.
+_LARGEST_DISTORTION = 1.1
+# Scales are multiples of this, so that parts of one cloud have the same.
+_STEP = 1e-4
+# Distance (m) of the positions that the scale is measured by from the middle, and the directions to them.
+_APART, _CROSS = 50.0, np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+# Semi-major axis (m) and squared eccentricity of the ellipsoid of GRS 1980: all others are within 0.02 % of it.
+_AXIS, _ECCENTRICITY = 6378137.0, 0.00669438
+
+# Units of two readings of a system are one if they differ by no more than this share: US and international feet are.
+_SAME_UNIT = 1e-5
+
+# One sentence for every input, so that a chain shows it once: later steps inherit the lack from the first.
+NO_CRS = "The input has no coordinate reference system; its coordinates are taken as meters."
+_ONLY_UNIT = "The input names a unit and no coordinate reference system; results have none either."
+_UNNAMED = "The coordinate reference system of the input has no definition that can be written; results name none."
+
+
+@dataclass(frozen=True)
+class Crs:
+    """A coordinate reference system; it travels to other processes, which need no authority then."""
+
+    stated: str = ""  #: What the file says: WKT as it is, else "EPSG:code", else ""
+    wkt: str = ""  #: The whole system as WKT, heights included; "" if unknown
+    plane: str = ""  #: Its horizontal part: "EPSG:code" or WKT, "" if unknown
+    code: str = ""  #: Code of the whole system, else of its horizontal part, "" without any
+    identity: str = ""  #: The same text for one plane, however it is written; "" without a system
+    horizontal: float = 1.0  #: Meters on the ground per unit in plan
+    vertical: float = 1.0  #: Meters per unit of heights
+    warnings: tuple[str, ...] = ()  #: Sentences for the user
+
+    @property
+    def factors(self) -> np.ndarray:
+        """Meters per unit of x, y and z, (3,)."""
+        return np.array([self.horizontal, self.horizontal, self.vertical])
+
+    @property
+    def title(self) -> str:
+        """The system in a sentence."""
+        name = self.code or (self.plane.split('"')[1] if '"' in self.plane else self.identity)
+        return shown(name, 40) if self.identity else "none"
+
+    def report(self, monitor: Monitor) -> None:
+        """Warn of unknown and unusual facts, and say so where the unit is not the meter."""
+        for warning in self.warnings:
+            monitor.warn(warning)
+        if self.horizontal != 1.0 or self.vertical != 1.0:
+            monitor.inform(
+                f"A unit of the coordinates is {self.horizontal:.6g} m, of heights {self.vertical:.6g} m; parameters, "
+                "the log and attributes are in meters."
+            )
+
+
+# Makes the record of a file.
+CrsReader = Callable[[Header], Crs]
+
+
+def read_crs(header: Header, authority: Optional[Authority] = None, given: str = "") -> Crs:
+    """Return the coordinate reference system of a file.
+
+    WKT counts before GeoKeys, but in formats 0 to 5 whose header names GeoKeys. A file that names no system has that
+    of the virtual point cloud which it is a tile of, else the given one.
+
+    Parameters
+    ----------
+    header : Header
+        With the file's VLRs and bounds.
+    authority : Authority, optional
+        Makes the system; by default the one of this process. Without any, only units are known.
+    given : str
+        WKT or "EPSG:code" of files that name no system.
+
+    Raises
+    ------
+    ValueError
+        If coordinates are degrees or geocentric, or not true to scale in any direction.
+    """
+    keys, wkt, text = geokeys(header), stated_wkt(header), header.named or given
+    if authority is None and (wkt or text or define_system(keys)):
+        authority = authority_here()
+    # Files that have only the one that their bit does not name are common.
+    if wkt and define_system(keys) and header.layout.is_old and not header.encoding & WKT_BIT:
+        wkt = ""
+    crs = crs_of_text(wkt, authority)
+    if not crs.identity:
+        other = _crs_of_keys(header, authority) if define_system(keys) or not text else crs_of_text(text, authority)
+        crs = replace(other, warnings=(*(crs.warnings if wkt else ()), *other.warnings))
+    return _on_the_ground(crs, header, authority) if authority and crs.plane else crs
+
+
+def crs_of_text(text: str, authority: Optional[Authority] = None) -> Crs:
+    """Return the coordinate reference system of WKT, "EPSG:code" or "", see :func:`read_crs`."""
+    if not text:
+        return Crs(warnings=(NO_CRS,))
+    mended, warnings = with_named_units(text)
+    known, is_code = authority.define(mended) if authority else None, '"' not in text
+    units = units_of_wkt(mended) or (units_of_wkt(known.wkt) if known else None)
+    if units is None and not is_code:
+        return Crs(text, warnings=(f"The WKT of the file can't be read ({shown(text, 40)}); assign its CRS again.",))
+    if units is None:
+        warnings = (*warnings, _without_unit(text))
+    wkt = known.wkt if known and is_code else "" if is_code else mended
+    return _crs(text, wkt, known, _identity(known, text), units, warnings)
+
+
+def _crs_of_keys(header: Header, authority: Optional[Authority]) -> Crs:
+    """Return the system of a file with GeoKeys, or with nothing."""
+    keys = geokeys(header)
+    if not define_system(keys):
+        units, warnings = units_of_geokeys(keys, None) if keys else (None, ())
+        return Crs("", "", "", "", "", *(units or Units()), (*warnings, _ONLY_UNIT if units else NO_CRS))
+    code = code_of_keys(keys)
+    known = authority.define("", geokey_records(header)) if authority else None
+    if authority and known is None and code:
+        known = authority.define(text_of_keys(keys))
+    of_system = units_of_wkt(known.wkt) if known else None
+    units, warnings = units_of_geokeys(keys, of_system)
+    stated = f"EPSG:{code}" if code else ""
+    if units is None:
+        warnings = (*warnings, _without_unit(stated))
+    elif of_system and not np.isclose(units.horizontal, of_system.horizontal, rtol=_SAME_UNIT):
+        # The system of that code is not the one of the file.
+        known, stated = None, ""
+    if known is None and not (code and authority is None):
+        warnings = (*warnings, _UNNAMED)
+    identity = _identity(known, stated or f"GeoKeys {sorted(keys.items())}")
+    wkt = _with_heights(known.wkt, units or Units()) if known else ""
+    return _crs(stated, wkt, known, identity, units, warnings)
+
+
+def _without_unit(text: str) -> str:
+    return f"The file gives {shown(text)} and no unit; its coordinates are taken as meters."
+
+
+def _with_heights(wkt: str, units: Units) -> str:
+    """Return the WKT of a system with heights in their unit where it has others; "" where that can't be written."""
+    if units_of_wkt(wkt) == units or np.allclose(units_of_wkt(wkt), units, rtol=_SAME_UNIT):
+        return wkt
+    if not wkt.startswith("PROJCS["):
+        return ""
+    unit = name_of_length(units.vertical)
+    name, height = wkt.split('"')[1], f'UNIT["{unit}",{units.vertical!r}],AXIS["Up",UP]'
+    return f'COMPD_CS["{name} + heights",{wkt},VERT_CS["heights",VERT_DATUM["unknown",2005],{height}]]'
+
+
+def _crs(
+    stated: str,
+    wkt: str,
+    known: Optional[Definition],
+    identity: str,
+    units: Optional[Units],
+    warnings: tuple[str, ...],
+) -> Crs:
+    plane, code = (known.plane, known.code) if known else ("", "")
+    return Crs(stated, wkt, plane, code, identity, *(units or Units()), warnings)
+
+
+def _identity(known: Optional[Definition], text: str) -> str:
+    """Return the text that a plane is compared by; of WKT that no authority knows, its own code, else all of it."""
+    if known:
+        return known.identity
+    code = re.search(r'(?:AUTHORITY|ID)\["EPSG","?(\d+)"?\]\]\s*$', text)
+    return f"EPSG:{code[1]}" if code else re.sub(r"\s", "", text)
+
+
+def _on_the_ground(crs: Crs, header: Header, authority: Authority) -> Crs:
+    """Return the system with meters on the ground where those of the map are others, by the scale in the middle."""
+    if not (header.low.any() or header.high.any()) or not np.isfinite([header.low, header.high]).all():
+        return crs
+    middle, step = (header.low[:2] + header.high[:2]) / 2, _APART / crs.horizontal
+    radians, area = authority.to_radians(crs.plane, middle + step * _CROSS)
+    longitude, latitude = radians.T
+    if not np.isfinite([longitude, latitude]).all():
+        return crs
+    across = 1 - _ECCENTRICITY * np.sin(latitude.mean()) ** 2
+    radii = _AXIS / np.sqrt(across) * np.array([[np.cos(latitude.mean())], [(1 - _ECCENTRICITY) / across]])
+    on_ground = radii * np.array([np.unwrap(longitude), latitude]) @ _CROSS / (2 * _APART)
+    high, low = 1 / np.maximum(np.linalg.svd(on_ground, compute_uv=False)[::-1], _STEP)
+    is_within = area is None or area.holds(*np.degrees(radians[0]))
+    if is_within and high / low > _LARGEST_DISTORTION:
+        raise ValueError(
+            f"The map of {crs.title} stretches lengths by direction here; reproject the cloud to a system of the place."
+        )
+    scale = round(np.sqrt(high * low) / _STEP) * _STEP
+    here = f"A meter on the ground is {scale:.4f} m on the map of {crs.title} here"
+    if is_within and abs(scale - 1) >= _GROUND_SCALE:
+        warning = f"{here}; lengths, areas and volumes are those on the ground."
+        return replace(crs, horizontal=crs.horizontal / scale, warnings=(*crs.warnings, warning))
+    if max(high - 1, 1 - low) > _NAMED_SCALE:
+        between = "" if high - low < _NAMED_SCALE else f" ({low:.4f} to {high:.4f} by direction)"
+        outside = "" if is_within else ", which is not made for this place"
+        warning = f"{here}{between}{outside}; lengths, areas and volumes are those on the map."
+        return replace(crs, warnings=(*crs.warnings, warning))
+    return crs
+
+
+def common_crs(systems: Sequence[Crs], names: Sequence[str], monitor: Monitor, whole: bool = True) -> Crs:
+    """Return the system of several clouds: that of the first that names one, which the others are taken to have.
+
+    Parameters
+    ----------
+    systems : sequence of Crs
+        That of each cloud.
+    names : sequence of str
+        What each cloud is called in sentences.
+    monitor : Monitor
+        Is warned of clouds that name none while others do.
+    whole : bool
+        Heights must have one unit, too.
+
+    Raises
+    ------
+    ValueError
+        If two have different ones.
+    """
+    first = next((at for at, crs in enumerate(systems) if crs.identity), None)
+    if first is None:
+        return systems[0]
+    leader = systems[first]
+    for crs, name in zip(systems, names):
+        if not crs.identity:
+            monitor.warn(f"{name} names no coordinate reference system; it is taken to be in that of {names[first]}.")
+            continue
+        differs = crs.identity != leader.identity
+        if differs or (whole and not np.isclose(crs.vertical, leader.vertical, rtol=1e-7)):
+            one, other = (
+                system.title + ("" if differs else f" with heights in units of {system.vertical:.6g} m")
+                for system in (leader, crs)
+            )
+            raise ValueError(
+                f"{names[first]} and {name} have different coordinate reference systems ({one}, {other}); "
+                "reproject them to one first."
+            )
+    return leader
+
+
+def crs_of_tiles(headers: Sequence[Header], names: Sequence[str], read: CrsReader, monitor: Monitor) -> Crs:
+    """Return the one system of the files of a cloud, with the scale in the middle of all.
+
+    Parameters
+    ----------
+    headers : sequence of Header
+        Of the files.
+    names : sequence of str
+        Names of the files in sentences.
+    read : callable
+        Makes the system of a header.
+    monitor : Monitor
+        As for :func:`common_crs`, which raises the errors.
+    """
+    nowhere = np.zeros(3)
+    systems = [read(replace(header, low=nowhere, high=nowhere)) for header in headers]
+    leader = headers[systems.index(common_crs(systems, names, monitor))]
+    low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
+    return read(replace(leader, low=np.min(low, axis=0), high=np.max(high, axis=0)))
+
+
+def header_with_crs(header: Header, crs: Crs) -> Header:
+    """Return the header of a file that is written in a system: with its records where they lack or can't count."""
+    own, keys = stated_wkt(header), geokeys(header)
+    if header.layout.is_old:
+        if own or define_system(keys) or not crs.identity:
+            return header
+        code = crs.plane if _is_code(crs.plane) and crs.vertical == crs.horizontal else ""
+        vlrs, bits = crs_records(code or crs.wkt or crs.stated)
+        return replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
+    if '"' in crs.wkt and own != crs.stated:
+        vlrs, _ = crs_records(crs.wkt)
+        kept = header.without(*_WKT)
+        return replace(kept, vlrs=[*kept.vlrs, *vlrs], encoding=kept.encoding | WKT_BIT)
+    # Where there are both, other programs go by the bit.
+    return replace(header, encoding=header.encoding | WKT_BIT) if own and keys else header
+
+
+def crs_records(text: str) -> tuple[list[Vlr], int]:
+    """Return the VLRs that store ``text`` (WKT, "EPSG:code" or ""), and its bits of the global encoding."""
+    if text and '"' not in text:
+        if not _is_code(text):
+            raise ValueError(f"The CRS {text!r} can't be stored; give WKT or EPSG:code.")
+        numbers = (1, 1, 0, 2, MODEL, 0, 1, 1, PROJECTED, 0, 1, int(text[5:]))
+        return [Vlr(*GEOKEYS, struct.pack(f"<{len(numbers)}H", *numbers), description=b"GeoKeys")], 0
+    if not text:
+        return [], WKT_BIT
+    return [Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")], WKT_BIT
+
+
+def _is_code(text: str) -> bool:
+    """Whether a text is a code that GeoKeys can hold."""
+    return text.upper().startswith("EPSG:") and text[5:].isdecimal() and 0 < int(text[5:]) < USER_DEFINED
+
+
+def stated_wkt(header: Header) -> str:
+    """Return the WKT in a file, "" without any."""
+    for key in _WKT:
+        record = header.find(key)
+        if record is not None and record.data and len(record.data) <= _LONGEST_WKT:
+            return record.data.split(b"\0")[0].decode("utf-8", "replace").strip()
+    return ""
