@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.reasons import ADDED, Reason
+from ..geometry.grid import find_cells
 from ..geometry.groups import split_groups
 from ..geometry.rings import along_sides, perimeter, sides_of_rings, signed_area
 from ..packages import spatial
@@ -126,7 +127,7 @@ def footprint_attributes(
                 "cluster_id": outlined.building,
                 "area": area,
                 "perimeter": sum(map(perimeter, outlined.rings)),
-                "volume": area * _mean_height(outlined.nodes, plan[inner], over_ground[inner]),
+                "volume": area * _mean_height(outlined.nodes, plan[inner], over_ground[inner], spacing),
                 "regularized": int(outlined.is_straight),
                 "ground_elevation": _percentile(measures.xyz[points[inner], 2] - over_ground[inner], 50),
                 "eave_height": _percentile(eaves, _EAVE),
@@ -143,18 +144,41 @@ def footprint_attributes(
 
 
 class _Owners:
-    """Which outline each position belongs to: that of the nearest node of the lattice within one."""
+    """Which outline each position belongs to: the one of the nearest node of the lattice that belongs to any."""
 
     def __init__(self, outlines: list[Outlined], spacing: float) -> None:
-        self.spacing = spacing
-        self.tree = spatial.cKDTree(np.concatenate([outlined.nodes for outlined in outlines]))
-        numbers = np.repeat(np.arange(len(outlines)), [len(outlined.nodes) for outlined in outlines])
-        self.face = np.append(numbers, -1)
+        self.spacing, self.step = spacing, spacing / NODES
+        nodes = np.concatenate([outlined.nodes for outlined in outlines])
+        face = np.repeat(np.arange(len(outlines)), [len(outlined.nodes) for outlined in outlines])
+        column, row = np.rint(nodes / self.step).astype(np.int64).T
+        self.first, self.columns = (column.min() - 1, row.min() - 1), int(np.ptp(column)) + 3
+        number = self._number(column, row)
+        order = np.argsort(number)
+        self.occupied, self.face = number[order], np.append(face[order], -1)
+        # The nearest node of a position without a node of its own has a neighbor without an outline.
+        is_inner = np.logical_and.reduce([find_cells(self.occupied, number + by)[1] for by in self._beside])
+        self.rim_face = np.append(face[~is_inner], -1)
+        self.rim = spatial.cKDTree(nodes[~is_inner], balanced_tree=False)
+
+    @property
+    def _beside(self) -> tuple[int, ...]:
+        """Differences in number to the four nodes next to a node."""
+        return -self.columns, -1, 1, self.columns
+
+    def _number(self, column: np.ndarray, row: np.ndarray) -> np.ndarray:
+        return (row - self.first[1]) * self.columns + column - self.first[0]
 
     def at(self, plan: np.ndarray, within: float = APART) -> np.ndarray:
         """Return the outline (n,) that positions (n, 2) belong to, -1 of those far from all, in spacings."""
-        reach = within * self.spacing
-        return self.face[self.tree.query(plan, distance_upper_bound=reach, workers=searchers(len(plan)))[1]]
+        column, row = np.rint(plan / self.step).astype(np.int64).T
+        is_near = (column > self.first[0]) & (column < self.first[0] + self.columns - 1)
+        found, there = find_cells(self.occupied, np.where(is_near, self._number(column, row), -1))
+        face = np.where(there, self.face[np.minimum(found, len(self.face) - 1)], -1)
+        outside, reach = np.flatnonzero(~there), within * self.spacing
+        searching = searchers(len(outside))
+        nearest = self.rim.query(plan[outside], distance_upper_bound=reach, workers=searching)[1]
+        face[outside] = self.rim_face[nearest]
+        return face
 
     def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return positions (b, 2) along an outline, and which (b,) are not on a border with another; all if none is."""
@@ -209,12 +233,18 @@ def _eave_heights(
     return np.where(is_plane, planes[:, 0, 0], at_border)
 
 
-def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray) -> float:
-    """Return the mean height of a roof's surface: at nodes (k, 2) of a lattice that of the nearest of its points."""
+def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float) -> float:
+    """Return the mean height of a roof's surface: at positions a spacing apart that of the nearest of its points.
+
+    The positions are those of the lattice of nodes (k, 2) that have even numbers, all of them where none has.
+    """
     defined = np.isfinite(height)
     if not defined.any():
         return float("nan")
-    return float(np.mean(height[defined][spatial.cKDTree(plan[defined]).query(nodes)[1]]))
+    is_even = (np.rint(nodes * (NODES / spacing)).astype(np.int64) % NODES == 0).all(axis=1)
+    places = nodes[is_even] if is_even.any() else nodes
+    tree = spatial.cKDTree(plan[defined], balanced_tree=False)
+    return float(np.mean(height[defined][tree.query(places, workers=searchers(len(places)))[1]]))
 
 
 def _percentile(values: np.ndarray, percent: float) -> float:
