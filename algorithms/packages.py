@@ -9,12 +9,16 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+from collections.abc import Collection
 from types import ModuleType
 
 from .package_versions import too_old
 
-# Import name -> name to install; the only list of what the plugin needs besides numpy.
+# Import name -> name to install; the only list of what the plugin needs besides numpy. Each stage names those that it
+# uses.
 REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn", "laspy": "laspy"}
+# Those that most stages need; the others stop few.
+ESSENTIAL = ("scipy", "laspy")
 # The package for LAZ that is installed where none is there; the libraries break where an old one is.
 _LAZ = "lazrs"
 
@@ -32,10 +36,11 @@ class _Lazy(ModuleType):
         return value
 
 
-def missing() -> list[str]:
-    """Return the packages without which nothing runs, not installed or too old, by the names to install them."""
-    needed = [name for module, name in REQUIRED.items() if importlib.util.find_spec(module) is None or too_old(name)]
-    return [*needed, *([_LAZ] if too_old(_LAZ) else [])]
+def missing(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:
+    """Return those of the needed packages that are not installed or too old, by the names to install them."""
+    wanted = {module: name for module, name in REQUIRED.items() if name in needed}
+    gone = [name for module, name in wanted.items() if importlib.util.find_spec(module) is None or too_old(name)]
+    return [*gone, *([_LAZ] if too_old(_LAZ) else [])]
 
 
 def has_laz() -> bool:

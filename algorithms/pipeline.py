@@ -187,6 +187,11 @@ class Pipeline:
         )
 
     @property
+    def needed_packages(self) -> tuple[str, ...]:
+        """Packages that a step can't run without."""
+        return tuple(dict.fromkeys(name for step in self.steps for name in step.stage.needed_packages))
+
+    @property
     def id(self) -> str:
         """Processing id, ``detectbuildings``."""
         return self.name.replace("_", "")

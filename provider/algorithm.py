@@ -32,8 +32,8 @@ class CheckedAlgorithm(DeclaredAlgorithm):
         return parameters
 
     def canExecute(self) -> tuple[bool, str]:  # noqa: N802 - QGIS asks for these names
-        """Whether all packages are there, and how to install what is missing."""
-        missing = missing_sentence()
+        """Whether the packages that it uses are there, and how to install what is missing."""
+        missing = missing_sentence(self.declared.needed_packages)
         return (False, missing) if missing else super().canExecute()  # type: ignore[misc]
 
     def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
@@ -67,7 +67,7 @@ class CheckedAlgorithm(DeclaredAlgorithm):
         return {}
 
     def _checked(self, parameters: dict, context: QgsProcessingContext) -> None:
-        missing = missing_sentence()
+        missing = missing_sentence(self.declared.needed_packages)
         if missing:
             raise ValueError(missing)
         apply_threads()

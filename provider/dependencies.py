@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import shlex
 import sys
+from collections.abc import Collection
 from pathlib import Path
 
 from qgis.core import QgsApplication
@@ -21,12 +22,13 @@ _DEBIAN = {"scipy": "python3-scipy", "scikit-learn": "python3-sklearn"}
 _DEBIAN_PIP = "python3-pip"
 
 
-def missing_sentence() -> str:
-    """Return which packages are missing and the command that installs them; "" when all are there.
+def missing_sentence(needed: Collection[str] = packages.ESSENTIAL) -> str:
+    """Return which of the needed packages are missing and the command that installs them; "" when all are there.
 
     Without a package for LAZ alone everything but LAZ and COPC works, see :func:`laz_sentence`.
     """
-    return _sentence(packages.missing(), packages.absent())
+    missing = packages.missing(needed)
+    return _sentence(missing, [*missing, *([] if packages.has_laz() else ["lazrs"])])
 
 
 def laz_sentence() -> str:

@@ -58,7 +58,9 @@ def installation_text() -> str:
         f"Folder for packages {package_folder()}",
         f"Folder of the plugin {PLUGIN}",
     ]
-    return "\n".join([*lines, "", missing_sentence() or laz_sentence() or tr("Everything is installed.")])
+    return "\n".join(
+        [*lines, "", missing_sentence(packages.REQUIRED.values()) or laz_sentence() or tr("Everything is installed.")]
+    )
 
 
 def _version(name: str) -> str:
@@ -170,7 +172,7 @@ def _find_new_packages() -> None:
 
 def warn_at_start(iface: Any) -> Callable[[], None]:
     """Show a message with a button where the algorithms can't run; return what takes it away again."""
-    return _StartMessage(iface).remove if packages.missing() else lambda: None
+    return _StartMessage(iface).remove if packages.missing(packages.ESSENTIAL) else lambda: None
 
 
 class _StartMessage:
@@ -181,7 +183,7 @@ class _StartMessage:
 
     def __init__(self, iface: Any) -> None:
         self.iface = iface
-        text = tr("Python packages are missing or too old: {}.").format(", ".join(packages.missing()))
+        text = tr("Python packages are missing or too old: {}.").format(", ".join(packages.missing(packages.ESSENTIAL)))
         self.item = iface.messageBar().createMessage(SOFTWARE, text)
         self.button = QPushButton(tr("Install…"), self.item)
         self.button.clicked.connect(self.install)

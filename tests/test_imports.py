@@ -254,6 +254,57 @@ assert all(STAGES.values())
     assert done.returncode == 0, done.stderr
 
 
+# Lazy modules of ``packages.py`` by the names to install them; threadpoolctl is optional.
+OF_PACKAGE = {
+    **dict.fromkeys(("spatial", "special", "ndimage", "sparse", "csgraph"), "scipy"),
+    "cluster": "scikit-learn",
+}
+
+
+def packages_used(module: str) -> set[str]:
+    """Return the packages that a module of the core and all that it imports use."""
+    found, open_ones, seen = set(), [module], set()
+    while open_ones:
+        path = Path("algorithms", *open_ones.pop().split(".")).with_suffix(".py")
+        path = path if (ROOT / path).is_file() else path.with_suffix("") / "__init__.py"
+        if path in seen or not (ROOT / path).is_file():
+            continue
+        seen.add(path)
+        for node in ast.walk(ast.parse((ROOT / path).read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.level and node.module == "packages":
+                found |= {OF_PACKAGE[alias.name] for alias in node.names if alias.name in OF_PACKAGE}
+        open_ones += modules_imported(str(path))
+    return found
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=lambda stage: stage.name)
+def test_a_stage_names_the_packages_that_it_uses(stage):
+    module = stage.function.__module__.split(".algorithms.")[1]
+    assert set(stage.packages) == packages_used(module)
+
+
+def test_composites_run_without_scikit_learn():
+    """It stopped all 91 algorithms, and one option of one of them used it."""
+    script = """
+import sys
+sys.modules["sklearn"] = None
+import conftest
+import numpy as np
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
+rng = np.random.default_rng(5)
+x, y = rng.uniform(0, 30, (2, 12000))
+z = np.where((abs(x - 15) < 5) & (abs(y - 15) < 4), 8.0 - 0.4 * abs(y - 15), 0.0) + rng.normal(0, 0.02, 12000)
+for name in ("detect_buildings", "model_buildings", "map_footprints"):
+    results = run_pipeline(PIPELINES[name], create_cloud({"xyz": np.column_stack([x, y, z])}))
+    print(len(next(layer for title, layer in results.layers.items() if "footprints" in title)))
+"""
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["1", "1", "1"]
+
+
 def test_a_run_imports_no_stages_but_those_of_its_steps():
     """All stages together take half a second to import, before the first point is read."""
     script = """

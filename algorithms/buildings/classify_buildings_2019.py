@@ -32,6 +32,7 @@ _REACH = 5.0
     reach=_REACH,
     of_whole=MEAN_ENTROPIES,
     cost=2.0,
+    packages=("scipy", "scikit-learn"),
 )
 def classify_buildings_2019(
     xyz,

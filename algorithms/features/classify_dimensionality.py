@@ -24,6 +24,7 @@ class Dimensionality(IntEnum):
     tags="linear,planar,volumetric,linearity,planarity,scattering,structure,dimensionality,wire,power line",
     writes=("dimensionality",),
     cost=0.1,
+    packages=(),
 )
 def classify_dimensionality(linearity, planarity, scattering, *, monitor=None):
     """Classify points as linear, planar or volumetric by the largest of linearity, planarity and scattering.

@@ -28,6 +28,7 @@ _KEPT = {
     writes=("earlier_class",),
     written_if={"earlier_class": "where classes are kept"},
     cost=0.1,
+    packages=(),
 )
 def keep_classes(
     xyz,

@@ -34,6 +34,7 @@ CODES: dict[str, dict[int, int]] = {
     tags="class,code,mapping,remap,translate,AHN,IGN,USGS,LiDAR HD,3DEP,ASPRS,convert",
     writes=("classification",),
     cost=0.1,
+    packages=(),
 )
 def recode_classes(
     xyz,

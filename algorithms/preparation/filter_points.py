@@ -20,6 +20,7 @@ _NO_LIMIT = "no limit; the log gives the range of the cloud."
     group="Preparation",
     tags="select,extract,subset,class,height,range,limits,remove,split,expression,las2las",
     selects=True,
+    packages=(),
 )
 def filter_points(
     xyz,

@@ -52,6 +52,7 @@ class Transform:
     written_if={"previous_source_id": "where PointSourceId was not 0 everywhere"},
     merges=True,
     cost=0.2,
+    packages=(),
 )
 def merge_clouds(
     xyz,

@@ -36,6 +36,7 @@ _SIDES = 16
         ),
     ),
     layers=(Layer("pipes", "Pipes and spheres", "Polygon", _FIELDS, style="pipes"),),
+    packages=(),
 )
 def reconstruct_pipes(
     axes,

@@ -54,6 +54,7 @@ class Stage:
     reach: Reach = 0.0
     #: Processor time (s) per million points of a town, as measured; in a chain, its share of the progress
     cost: float = 1.0
+    packages: tuple[str, ...] = ("scipy",)  #: Packages besides numpy that it uses, by the names to install them
     #: Values that it measures on its results; a part of a cloud takes those of the whole instead of its own, see
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
@@ -99,6 +100,12 @@ class Stage:
     def needs_cloud(self) -> bool:
         """Whether it can't do without a cloud: a report, for example, may be made of layers alone."""
         return any(not name.startswith(REFERENCE_PREFIX) for name in self.reads)
+
+    @property
+    def needed_packages(self) -> tuple[str, ...]:
+        """Packages that it can't run without: those that it uses, and the one that reads and writes clouds."""
+        has_cloud = self.reads_cloud or self.reads_reference or self.makes_cloud
+        return (*self.packages, "laspy") if has_cloud else self.packages
 
     @property
     def samples(self) -> bool:

@@ -19,6 +19,7 @@ _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
     tags="ground,terrain,bare earth,strip,overlap,grass,surface",
     writes=("classification",),
     cost=0.1,
+    packages=(),
 )
 def complete_ground(
     xyz,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from ..help import output_text, paragraphs, pipeline_help, written_by
+from ..packages import ESSENTIAL
 from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
 from ..stage import Layer, Raster, TextFile
@@ -75,6 +76,11 @@ class TiledPipeline:
         return f"{self.pipeline.title} on a survey of any size, tile by tile, in several processes."
 
     @property
+    def needed_packages(self) -> tuple[str, ...]:
+        """Packages that a step can't run without."""
+        return self.pipeline.needed_packages
+
+    @property
     def layers(self) -> list[Output]:
         """The outputs that are layers."""
         return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.layers)]
@@ -111,6 +117,7 @@ class SurveyTool:
     summary: str
     description: str
     group: str = "Preparation"
+    needed_packages: tuple[str, ...] = ESSENTIAL
 
     @property
     def id(self) -> str:

@@ -191,9 +191,20 @@ def test_another_python_that_comes_first_on_the_path_is_not_taken(monkeypatch, t
 
 
 def test_packages_are_looked_up_by_import(monkeypatch):
+    # The requirements are read once, and by what is patched next.
+    assert packages.missing() == []
     monkeypatch.setattr(packages.importlib.util, "find_spec", lambda name: None)
     assert packages.missing() == ["scipy", "scikit-learn", "laspy"]
     assert packages.absent() == ["scipy", "scikit-learn", "laspy", "lazrs"]
+
+
+def test_a_missing_package_stops_only_the_algorithms_that_use_it(provider, monkeypatch):
+    find = packages.importlib.util.find_spec
+    monkeypatch.setattr(packages.importlib.util, "find_spec", lambda name: None if name == "sklearn" else find(name))
+    stopped = {one.name() for one in provider.algorithms() if not one.create().canExecute()[0]}
+    assert stopped == {"classifybuildings2019", "detectbuildings2019", "detectbuildings2019intiles"}
+    assert provider.warningMessage() == ""
+    assert "scikit-learn" in installation.installation_text()
 
 
 @pytest.fixture

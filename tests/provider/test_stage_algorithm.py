@@ -430,14 +430,14 @@ def test_layers_are_named_after_what_they_are_of(provider, context, log, town_fi
 
 
 def test_missing_packages_are_reported_everywhere(provider, context, log, town_file, out, monkeypatch):
-    monkeypatch.setattr(packages, "missing", lambda: ["lazrs"])
+    monkeypatch.setattr(packages, "missing", lambda needed: ["lazrs"])
     algorithm = provider.algorithm("toylift").create()
     parameters = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}
     can, sentence = algorithm.canExecute()
     assert not can
     assert "missing: lazrs" in sentence
-    assert "-m pip install --no-deps --target" in sentence
-    assert sentence.endswith("python lazrs")
+    assert "-m pip install --upgrade --no-deps --target" in sentence
+    assert sentence.endswith("'lazrs>=0.6,<0.9'")
     assert provider.warningMessage() == sentence
     assert algorithm.checkParameterValues(parameters, context) == (False, sentence)
     results, ok = algorithm.run(parameters, context, log)
