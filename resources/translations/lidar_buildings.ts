@@ -4868,7 +4868,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Everything is installed; the algorithms can run.</source>
+        <source>Everything is installed;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7156,7 +7156,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Python packages are missing: {}.</source>
+        <source>Python packages are missing or too old: {}.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8913,6 +8913,14 @@
     </message>
     <message>
         <source>roofer takes a LAS or LAZ file with the classes 2 (ground) and 6 (building), and one polygon for each building with an attribute that names it: &lt;code&gt;roofer --id-attribute identificatie cloud.laz roofprints.gpkg folder&lt;/code&gt;. It writes CityJSONSeq.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>start QGIS again.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>the algorithms can run.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
