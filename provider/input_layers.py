@@ -41,6 +41,9 @@ _TYPES = {
 # How many different vertices a ring, a line and a point have at least.
 _FEWEST = {"Polygon": 3, "LineString": 2, "Point": 1}
 
+# Distance (m) from the origin of the cloud beyond which no vertex is: more than twice around the Earth.
+_FARTHEST = 1e8
+
 # Features read between two reports of progress.
 _BETWEEN_CHECKS = 1000
 
@@ -263,11 +266,14 @@ def _parts(geometry: QgsGeometry, input_layer: InputLayer, transform: QgsCoordin
 
 
 def _is_sound(vertices: np.ndarray, kind: str) -> bool:
-    """Whether vertices (m, 2 or 3) are finite, and enough of them differ for a geometry of a kind; GEOS takes none."""
+    """Whether vertices (m, 2 or 3) are on the Earth, and enough of them differ for a geometry of a kind.
+
+    For GEOS a ring without vertices is valid.
+    """
     left = vertices
     for _ in range(_FEWEST[kind] - 1):
         left = left[(left != left[:1]).any(axis=1)]
-    return len(left) > 0 and bool(np.isfinite(vertices).all())
+    return len(left) > 0 and bool((np.abs(vertices) < _FARTHEST).all())
 
 
 def _vertices(wkb: bytes, place: Place) -> list:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Annotated, Any, Optional
 
 import numpy as np
 
@@ -245,13 +245,21 @@ def _heights(
     footprints: LayerFeatures, earlier: LayerFeatures, maps: tuple[BuildingMap, BuildingMap], monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the heights (m) of the buildings of the new and of the earlier survey, NaN where they are unknown."""
-    layers = (footprints, earlier)
-    known = [name for name in _HEIGHTS if all(name in layer.columns for layer in layers)]
-    if not known:
-        monitor.warn("Heights are not compared: no attribute 'ridge_height' or 'height' is in both layers.")
-        return np.full(len(maps[0].area), np.nan), np.full(len(maps[1].area), np.nan)
-    columns = [np.array(layer.columns[known[0]], float) for layer in layers]
-    return columns[0][maps[0].rows], columns[1][maps[1].rows]
+    for name in _HEIGHTS:
+        new, old = (_numbers(layer.columns.get(name)) for layer in (footprints, earlier))
+        if new is not None and old is not None:
+            return new[maps[0].rows], old[maps[1].rows]
+    monitor.warn("Heights are not compared: no attribute 'ridge_height' or 'height' is in both layers.")
+    return np.full(len(maps[0].area), np.nan), np.full(len(maps[1].area), np.nan)
+
+
+def _numbers(values: Any) -> Optional[np.ndarray]:
+    """Return the values (n,) of an attribute, NaN where there is none; None if it is absent or has other values."""
+    try:
+        found = np.array(values, float)
+    except (TypeError, ValueError):
+        return None
+    return found if found.ndim == 1 else None
 
 
 def _changes(

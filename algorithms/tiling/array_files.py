@@ -11,6 +11,9 @@ import numpy as np
 
 from ..cloud.outputs import DiskFullError, replacing
 
+# The first bytes of an archive.
+_MARK = b"PK\x03\x04"
+
 _FULL = "The disk is full; free some space and start the same run again, which goes on with what was done."
 
 
@@ -42,8 +45,10 @@ def is_as_written(path: Path) -> bool:
     Nothing of it is parsed before: an array that was planted or damaged may have any shape and type.
     """
     try:
-        with ZipFile(path) as archive:
-            return archive.comment == _seal(archive) and archive.testzip() is None
+        # Python's archives may have anything before them, but numpy takes it for a pickle.
+        with path.open("rb") as file, ZipFile(file) as archive:
+            is_ours = archive.comment == _seal(archive) and archive.testzip() is None
+            return is_ours and file.seek(0) == 0 and file.read(len(_MARK)) == _MARK
     except Exception:
         # Python's reader fails on damaged archives in a dozen ways, and all of them mean the same.
         return False

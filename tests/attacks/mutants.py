@@ -9,6 +9,7 @@ import json
 import struct
 from dataclasses import dataclass, field
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Callable
@@ -17,9 +18,12 @@ import numpy as np
 
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.tests.attacks.other_mutants import RESULT, block_files, layer_files
 from lidar_buildings.tests.las_files import RECORD_SIZES, descriptor, evlr, made_las, random_records, vlr
 
-KINDS = ("las", "laz", "copc", "vpc", "geokeys", "wkt", "extra")
+KINDS = ("las", "laz", "copc", "vpc", "geokeys", "wkt", "extra", "block")
+# Layers are read by QGIS.
+KINDS += ("layer",) if find_spec("qgis") else ()
 
 # Formats of points that sound files have: old and new ones, with colors, and with waveforms (not in LAZ and COPC).
 _FORMATS = {"las": (0, 1, 3, 4, 5, 6, 7, 8, 9, 10), "laz": (0, 1, 3, 6, 7, 8), "copc": (6, 7, 8)}
@@ -393,6 +397,13 @@ _HREFS = (
         "file:///one.las",
         "s3://a/b.laz",
         "/vsicurl/http://a/b.las",
+        "//host/share/one.las",
+        "\\\\host\\share\\one.las",
+        "file://host/one.las",
+        "%2F%2Fhost/one.las",
+        "one%2Elas",
+        "one.las%00",
+        "./%6Fne.las?query#part",
         "\0.las",
         "\ud800.las",
     ),
@@ -496,9 +507,14 @@ def _text_damaged(rng: np.random.Generator, raw: bytes) -> bytes:
     return choices[rng.integers(len(choices))]()
 
 
+def _layer(rng: np.random.Generator) -> Mutant:
+    files = layer_files(rng)
+    return Mutant(next(iter(files)), files)
+
+
 _MAKERS: dict[str, Callable[[np.random.Generator], Mutant]] = {
     "las": _of_bytes("las"), "laz": _of_bytes("laz"), "copc": _of_bytes("copc"), "vpc": _vpc, "geokeys": _geokeys,
-    "wkt": _wkt, "extra": _extra,
+    "wkt": _wkt, "extra": _extra, "block": lambda rng: Mutant(RESULT, block_files(rng)), "layer": _layer,
 }  # fmt: skip
 
 

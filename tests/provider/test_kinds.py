@@ -242,6 +242,7 @@ def test_geometries_that_are_not_sound_are_counted(read):
         ("Polygon", True, "PolygonZ ((85000 446000 5, 85000 446000 9, 85000 446000 5, 85000 446000 5))"),
         ("LineString", False, "LineStringZ (85000 446000 5, 85000 446000 5, 85000 446000 5)"),
         ("LineString", True, "LineStringZ (85000 446000 5)"),
+        ("Polygon", True, "PolygonZ ((85000 446000 5, 85001 446000 1e300, 85001 446001 5, 85000 446000 5))"),
     ],
 )
 def test_rings_without_corners_are_not_sound(read, kind, upright, wkt):

@@ -100,9 +100,11 @@ def test_unknown_heights_are_no_change():
     assert np.isnan(rows[0]["height_change"])
 
 
-def test_layers_without_heights_are_compared_by_their_outlines():
+@pytest.mark.parametrize("heights", [None, (["high"], ["low"]), ([[1, 2]], [[1, 2]])])
+def test_layers_without_heights_are_compared_by_their_outlines(heights):
+    """Text in the field of the height ended with an error of numpy."""
     monitor = Monitor()
-    rows, _ = compared([box(0, 0)], [box(0, 0)], monitor=monitor)
+    rows, _ = compared([box(0, 0)], [box(0, 0)], heights, monitor=monitor)
     assert rows[0]["status"] == UNCHANGED
     assert monitor.warnings == ["Heights are not compared: no attribute 'ridge_height' or 'height' is in both layers."]
 

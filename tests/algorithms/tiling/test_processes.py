@@ -335,6 +335,7 @@ DAMAGES = (
     other_shape,
     locked,
     flipped,
+    lambda path: path.write_bytes(b"not ours" + path.read_bytes()),
     lambda path: np.savez_compressed(path, source=np.zeros(10_000_000)),
 )
 
