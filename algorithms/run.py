@@ -110,7 +110,7 @@ def run_stage(
     used = [_used(one) for one in clouds]
     arrays = [_argument(stage, name, clouds, reference, used, arguments) for name in (*stage.reads, *stage.optional)]
     layers = given_layers(stage.name, stage.input_layers, input_layers or {})
-    own = sampling_of(clouds[0]) if stage.samples and sampling is None else None
+    own = sampling_of(clouds[0]) if stage.samples and clouds and sampling is None else None
     if stage.samples:
         arguments[SAMPLING] = sampling or own
     with one_blas_thread():

@@ -1,7 +1,7 @@
 """Coordinate reference systems of clouds, made and compared by the libraries of QGIS.
 
 QGIS's own class has no way to leave out the third axis of a system, knows no GeoKeys, and loses its definition with the
-thread that made it (see :func:`.crs.is_hollow`): GDAL, by which QGIS reads and writes layers, has none of these faults.
+thread that made it (see :func:`.crs.is_hollow`). GDAL, by which QGIS reads and writes layers, has none of these faults.
 """
 
 from __future__ import annotations

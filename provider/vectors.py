@@ -41,7 +41,7 @@ SOURCE_TYPES = {
     "Point": Qgis.ProcessingSourceType.VectorPoint,
 }
 
-# What is written to find out whether a format holds geometries and attributes: near the origin, which each system has.
+# Written to find out whether a format holds geometries and attributes: near the origin, which each system has.
 _SAMPLES = {
     Qgis.ProcessingSourceType.VectorPolygon: "Polygon ((0 0, 1 0, 1 1, 0 0))",
     Qgis.ProcessingSourceType.VectorLine: "LineString (0 0, 1 1)",

@@ -12,6 +12,7 @@ from ..neighborhoods.wide_in_plan import Wide
 from ..params import MinBuildingArea, PointDensity, PointSource, nearest_points
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.sufficiency import doubted, why_doubtful
 from ..sampling.surface_noise import plane_roughness
 from ..stage import Monitor, Param, stage
 from .cluster_decisions import Decisions, decide_by_entropy, no_clusters, written_to_points
@@ -160,7 +161,8 @@ def classify_buildings(
     their means differ by 0.1 or more. Greenness is the normalized excess green, which shadow hardly changes.
 
     Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as
-    small objects such as cars can look like a roof by chance. This changes no decision.
+    small objects such as cars can look like a roof by chance. This changes no decision. Nor does a cloud that can
+    hardly show buildings, as it is thin, small or without ground: a warning says so, and no confidence is over 0.65.
 
     References
     ----------
@@ -179,6 +181,9 @@ def classify_buildings(
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
+    doubt = why_doubtful(xyz, classification, sampling)
+    if doubt:
+        monitor.warn(doubt)
     density = sampling.effective_density if density is None else density
     around = _surface_neighborhood(sampling, density) if n_neighbors is None else Nearest(n_neighbors)
     monitor.resolved(density=density, n_neighbors=around.count)
@@ -208,7 +213,9 @@ def classify_buildings(
 
     # 3. All points of a cluster are the same.
     report = build_report(Clusters(entropies.means, decided.reasons, split, through, max_penetration))
-    return written_to_points(classification, reason, entropies, decided, min_area * density, report)
+    found = written_to_points(classification, reason, entropies, decided, min_area * density, report)
+    classes, entropy, cluster_entropy, confidence, *rest = found
+    return classes, entropy, cluster_entropy, doubted(confidence) if doubt else confidence, *rest
 
 
 @dataclass(frozen=True)

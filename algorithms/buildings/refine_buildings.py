@@ -16,6 +16,7 @@ from ..params import PointDensity, PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..sampling.kinds import IMAGES, LASER
+from ..sampling.sufficiency import doubted, why_doubtful
 from ..stage import Monitor, Param, stage
 from .building_columns import column_size
 from .cell_features import CellFeatures, CellPoints
@@ -196,10 +197,13 @@ def refine_buildings(
     becomes, ceases, nearest = scene.changes(probability[used], density)
     becomes, ceases = used[becomes], used[ceases]
     monitor.resolved(points_added=len(becomes), points_removed=len(ceases))
+    sure = probability[becomes]
+    if why_doubtful(xyz, classification, sampling):
+        sure = doubted(sure)
     return (
         _with(classification, PointClass.BUILDING, becomes, PointClass.UNCLASSIFIED, ceases),
         _numbered(_with(cluster_id, nearest, becomes, 0, ceases)),
-        None if confidence is None else _with(confidence, probability[becomes], becomes, probability[ceases], ceases),
+        None if confidence is None else _with(confidence, sure, becomes, probability[ceases], ceases),
         None if reason is None else _with(reason, Reason.LIKE_BUILDINGS, becomes, Reason.UNLIKE_BUILDINGS, ceases),
         probability.astype(np.float32),
     )

@@ -13,6 +13,8 @@ from ..report.building_views import Views, boxes_around, draw_views
 from ..report.charts import BLUE, GRAY, RED, YELLOW, draw_bars
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
+from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.sufficiency import why_doubtful
 from ..stage import InputLayer, LayerFeatures, Measure, Report, feature_names, stage
 
 # Clusters of simulated towns with at least this confidence were all buildings, and 70 % of those below, down to 0.5.
@@ -58,7 +60,9 @@ def _shown(footprints: LayerFeatures) -> np.ndarray:
     shows=_shown,
     cost=0.5,
 )
-def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=None):
+def report_buildings(
+    xyz=None, classification=None, footprints=None, *, sampling: Optional[CloudSampling] = None, monitor=None
+):
     """Write a page on the buildings found: number, areas, heights, volumes, a map, and the doubtful ones.
 
     The map shows footprints colored by their confidence over a hillshade of the points. The ten buildings of the least
@@ -79,6 +83,11 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
     Report
         Number of buildings and of doubtful ones, total area (m²) and volume (m³, NaN if unknown), and the page.
 
+    Notes
+    -----
+    In a cloud that can hardly show buildings, as it is thin, small or without ground, all are doubtful that have a
+    confidence; the page says why.
+
     Examples
     --------
     >>> from lidar_buildings.algorithms.stage import LayerFeatures
@@ -88,13 +97,17 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
     1.0
     """
     facts = _Facts.of(footprints)
+    doubt = "" if xyz is None or sampling is None else why_doubtful(xyz, classification, sampling)
+    # In a chain, the step that classified them has said so.
+    if doubt and doubt not in monitor.warnings:
+        monitor.warn(doubt)
     monitor.progress(0.1)
     shown = facts.least_sure()
     values = {
         "buildings": len(facts.area),
         "area": float(facts.area.sum()),
         "volume": float(facts.volume.sum()),
-        "doubtful": int((facts.confidence < SURE).sum()),
+        "doubtful": int((facts.confidence < (np.inf if doubt else SURE)).sum()),
     }
     # Birds would be the highest points. Without other points there is no hillshade.
     is_shown = np.zeros(0, bool) if xyz is None else ~np.isin(classification, NOISE)
@@ -107,7 +120,10 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
     monitor.progress(1.0)
     summary = summary_of(values)
     monitor.inform(summary)
-    return Report(values, build_page("Buildings", summary, {"In all": _totals(facts, values)}, "\n".join(parts)))
+    return Report(
+        values,
+        build_page("Buildings", f"{summary} {doubt}".strip(), {"In all": _totals(facts, values)}, "\n".join(parts)),
+    )
 
 
 def summary_of(values: dict) -> str:

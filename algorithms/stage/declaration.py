@@ -248,7 +248,7 @@ def _check_declaration(declared: Stage) -> None:
         raise TypeError(f"{declared.name} selects and merges; make it two stages.")
     if "xyz" in declared.writes and not (declared.selects or declared.merges):
         raise TypeError(f"{declared.name} moves points, so it must select them: withheld points would stay behind.")
-    if declared.samples and (declared.merges or "xyz" not in declared.reads):
+    if declared.samples and (declared.merges or "xyz" not in (*declared.reads, *declared.optional)):
         raise TypeError(f"{declared.name} asks how its cloud was sampled, so it must read the xyz of one cloud.")
     if declared.of_whole and not declared.samples:
         raise TypeError(f"{declared.name} takes {declared.of_whole[0]!r} of the whole, so it must take its sampling.")

@@ -26,11 +26,14 @@ class SeedRules:
     pit_slope: float = rule(5.0, "tangent", "physics: sides of pits of multipath, 5 m deep in a cell of 1 m")
     pit_share: float = rule(0.1, "share", "physics: more pulses reach the ground of dense forest")
     most_turned: float = rule(2.5, "ratio", "of the box of a turned cloud to its own; narrow strips have more")
+    most_empty: float = rule(20.0, "cells per point", "nearly empty clouds have one grid: four cells are usual")
     grids: int = rule(3, "grids of cells", "turned, decide together: on bushes it matters which points share a cell")
 
 
 SEEDS = SeedRules()
 
+# Cells that take no time worth saving, however empty they are.
+_FEW_CELLS = 200_000
 # Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
 USUAL_BUILDING = 60.0
 
@@ -116,7 +119,7 @@ def seeds_by_opening(
     coarse one first; the return of smoothly joined regions is this project's, and so are the free-standing segments. By
     these, low houses with large roofs on a slope are found, which windows shave down little by little, and halls that
     no window is large enough for. All this is done on cells that are laid in three directions, which decide together,
-    so that less depends on where cells fall. Narrow strips have one direction.
+    so that less depends on where cells fall. Narrow strips and nearly empty clouds have one direction.
 
     References
     ----------
@@ -125,7 +128,7 @@ def seeds_by_opening(
     """
     refuse_sparse(xyz, cell_size)
     box = plan_box(xyz)
-    angles = _turns() if _is_compact(box) else np.zeros(1)
+    angles = _turns() if _is_compact(box) and not _is_nearly_empty(box, cell_size, len(xyz)) else np.zeros(1)
 
     count = len(angles)
 
@@ -245,6 +248,11 @@ def _is_compact(box: np.ndarray) -> bool:
     sides = np.ptp(box, axis=0)
     turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_turns()))
     return all((cos * sides + sin * sides[::-1]).prod() <= SEEDS.most_turned * sides.prod() for cos, sin in turns)
+
+
+def _is_nearly_empty(box: np.ndarray, cell_size: float, count: int) -> bool:
+    """Return whether cells (m) over a ``box`` (2, 2) are many, and far more than its ``count`` points."""
+    return np.prod(np.ptp(box, axis=0) / cell_size) > max(_FEW_CELLS, SEEDS.most_empty * count)
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:

@@ -57,7 +57,9 @@ class SurveySteps:
             monitor = settings.monitor.part(JOINED, JOINED, f"{step.name}_")
             cloud = self._shown(view) if step.stage.shows else None
             layers = self._layers_of(step, given)
-            made = run_stage(step.stage, cloud, monitor=monitor, input_layers=layers, **chosen[step.name])
+            # The points that are shown are no sample of the survey.
+            sampling = outcome.sampling if step.stage.samples else None
+            made = run_stage(step.stage, cloud, None, monitor, layers, sampling, **chosen[step.name])
             outcome.layers.update({self._names[step.name, of]: features for of, features in made.layers.items()})
             if made.report is not None:
                 outcome.reports[self._names[step.name, REPORT]] = made.report

@@ -4492,7 +4492,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as small objects such as cars can look like a roof by chance. This changes no decision.</source>
+        <source>Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as small objects such as cars can look like a roof by chance. This changes no decision. Nor does a cloud that can hardly show buildings, as it is thin, small or without ground: a warning says so, and no confidence is over 0.65.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5505,6 +5505,10 @@
     </message>
     <message>
         <source>Ignored classes</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>In a cloud that can hardly show buildings, as it is thin, small or without ground, all are doubtful that have a confidence; the page says why.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
