@@ -27,8 +27,8 @@ except ImportError:  # all others
 
 LAS, LAZ, COPC, VPC = ".las", ".laz", ".copc.laz", ".vpc"
 
-# Working folders, hidden beside the targets: their names, which say what computer made them, the file that a running
-# program keeps open and locked in each, and the folder in it for old files while new ones take their places.
+# Working folders, hidden beside the targets: their names, which say what computer made them. Then the file that a
+# running program keeps open and locked in each, and the folder in it for old files while new ones take their places.
 _PREFIX, _SUFFIX = ".lb-", ".part"
 _NAME = re.compile(r"\.lb-([0-9a-f]{8})-.+\.part")
 LOCK = "lock"
