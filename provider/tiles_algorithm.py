@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, Optional
 
@@ -24,7 +25,7 @@ from qgis.core import (
 )
 
 from ..algorithms.cloud.outputs import COPC, replacing, stem_of
-from ..algorithms.pipeline import Output
+from ..algorithms.pipeline import CLOUD, Output
 from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
 from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster
@@ -258,6 +259,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 compressed=self.parameterAsBool(parameters, COMPRESSED, context),
                 read=crs_reader(self.crs),
                 extent=self.extent,
+                wanted=self._wanted(parameters),
                 find_layers=find_layers,
                 take_raster=take_raster if wanted else None,
                 take_file=take_file,
@@ -265,6 +267,12 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             ),
             **self.tunables,
         )
+
+    def _wanted(self, parameters: dict) -> tuple[str, ...]:
+        """Return the names of the outputs that are asked for besides the tiles."""
+        tiled = self.tiled
+        outputs = [*tiled.layers, *tiled.rasters, *tiled.files, *([tiled.report] if tiled.report else [])]
+        return tuple(one.name for one in outputs if parameters.get(one.name.upper()) not in UNWANTED)
 
     def _given_layers(
         self, survey: Survey, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
@@ -289,13 +297,16 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         rows = about_run(self.displayName(), self.paths, outcome.points, self.plane)
         blocks = f"{outcome.blocks:,} of {outcome.side:g} m"
         rows.append(Row("Blocks", blocks, f"Tiles written: {len(outcome.tiles):,}. Sampling: {outcome.sampling}."))
-        complete_page(Path(target), rows, self._steps(outcome), "In all processes together.")
+        steps = self._steps(outcome, self._wanted(parameters))
+        complete_page(Path(target), rows, steps, "In all processes together.")
         return {REPORT: target}
 
-    def _steps(self, outcome: TilesOutcome) -> list[StepFacts]:
-        """Return the steps with their parameters as used, and their seconds in all processes together."""
-        steps = []
+    def _steps(self, outcome: TilesOutcome, wanted: Collection[str]) -> list[StepFacts]:
+        """Return the steps that were run, their parameters as used and their seconds in all processes together."""
+        steps, run = [], self.tiled.pipeline.steps_for({CLOUD, *wanted})
         for step, chosen in self.tiled.pipeline.by_step(self.tunables):
+            if step not in run:
+                continue
             found = {name: outcome.values.get(f"{step.name}_{name}") for name in step.stage.tunables}
             used = {name: values for name, values in found.items() if values}
             seconds = outcome.seconds.get(step.name, 0.0)

@@ -69,6 +69,7 @@ class BlockTask:
     survey: Survey  #: The files that may have points around the block
     numbers: tuple[int, ...]  #: Their numbers in the whole survey
     pipeline: str  #: Name of the composite
+    steps: tuple[str, ...]  #: Names of the steps that are run
     tunables: dict[str, Any]  #: Its tunables by name
     samplings: dict[str, CloudSampling]  #: Samplings of the survey, see :func:`.run_pipeline`
     halo: float  #: How far (m) around the block points are read, at least
@@ -173,7 +174,8 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     """Run the chain on a window; return the results of the block, and on which sides (2, 2) a feature was cut off."""
     pipeline = in_blocks(PIPELINES[task.pipeline])
     positions = _positions(task.survey, window)
-    made = run_pipeline(pipeline, window.cloud, monitor, samplings=task.samplings, **task.tunables)
+    wanted = [output.name for output in pipeline.outputs if output.step.name in task.steps]
+    made = run_pipeline(pipeline, window.cloud, monitor, None, wanted, task.samplings, **task.tunables)
     seconds = monitor.seconds()
     point, stays = _result_points(window, made)
     values = _written(pipeline, made, point, task.survey.origin)
@@ -185,6 +187,8 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     _number(result, window, values, stays, positions, task.block)
     cuts = _keep_layers(result, pipeline, made, task, box)
     for name, (file, of) in files_of(pipeline).items():
+        if name not in made.files:
+            continue
         kept = set(_names(result.layers[of].columns["id"]))
         if file.item.__name__ not in result.items:
             items = made.files[name].items

@@ -16,23 +16,28 @@ from .joining import new_names
 from .tiled_steps import files_of
 
 
-def join_files(pipeline: Pipeline, results: list[Path], kept: dict[str, np.ndarray]) -> dict[str, FileContent]:
+def join_files(
+    pipeline: Pipeline, steps: Collection[str], results: list[Path], kept: dict[str, np.ndarray]
+) -> dict[str, FileContent]:
     """Return the text files of a composite, by its names: each item once, block by block.
 
     Parameters
     ----------
     pipeline : Pipeline
         The composite.
+    steps : collection of str
+        Names of its steps that were run.
     results : list of Path
         Files of :meth:`.BlockResult.write`, which stay until the text is written.
     kept : dict of str to ndarray of shape (m, 3), int64
         Of each layer, from :func:`.join_features`: of the features that stay their position among ``results``, their
         number in that block, and their number in the survey.
     """
+    made = [output.name for output in pipeline.outputs if output.step.name in steps]
     return {
         name: FileContent(_Items(results, file.item, new_names(kept[of])), file.write)
         for name, (file, of) in files_of(pipeline).items()
-        if of in kept
+        if name in made and of in kept
     }
 
 

@@ -89,7 +89,8 @@ def feature_numbers(pipeline: Pipeline, results: list[BlockResult]) -> dict[str,
         if layer.numbers:
             before = found.get(layer.numbers, [_NO_NUMBERS] * len(results))
             own = [
-                np.asarray(one.layers[name].columns[_ID], np.int64) if one.layers else before[0][:0] for one in results
+                np.asarray(one.layers[name].columns[_ID], np.int64) if name in one.layers else _NO_NUMBERS
+                for one in results
             ]
             found[layer.numbers] = [np.union1d(*both) for both in zip(before, own)]
     return found

@@ -156,8 +156,9 @@ class _Run:
     def _plan(self) -> _Plan:
         """Measure how the survey is sampled and choose the side of its blocks; cut files that are too large."""
         settings = self.settings
-        halo = settings.pipeline.reach(settings.tunables)
-        samplings = samplings_of(settings.pipeline, self.survey, settings.tunables, self.monitor.part(0.0, SAMPLED))
+        working = settings.working
+        halo = working.reach(tunables_of(working, settings.tunables))
+        samplings = samplings_of(working, self.survey, settings.tunables, self.monitor.part(0.0, SAMPLED))
         side = settings.options.block_side or side_of_blocks(samplings[""].density, halo)
         self.monitor.resolved(sampling=samplings[""])
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
@@ -181,7 +182,7 @@ class _Run:
             for mosaic in join_rasters(paths, blocks.found):
                 options.take_raster(self.survey, mosaic)
         if options.take_file:
-            for name, content in join_files(settings.pipeline, paths, kept).items():
+            for name, content in join_files(settings.pipeline, settings.steps, paths, kept).items():
                 options.take_file(self.survey, name, content)
         self._warn_of_blocks(blocks.found)
 
@@ -222,7 +223,7 @@ class _Run:
         """Return a name for the result of files in the state at the start, of facts, tunables and this version."""
         settings = self.settings
         states = [[str(source.path.resolve()), *source.state] for source in sources]
-        described = [states, settings.pipeline.name, settings.tunables, _version(), facts]
+        described = [states, settings.pipeline.name, settings.steps, settings.tunables, _version(), facts]
         return hashlib.sha256(json.dumps(described, default=str, sort_keys=True).encode()).hexdigest()[:16]
 
     def _work_on_blocks(self, executor: Any, plan: _Plan) -> WorkedOn:
@@ -266,7 +267,16 @@ class _Run:
         result = settings.work / f"block-{block.name}-{key}.npz"
         tunables = tunables_of(in_blocks(settings.pipeline), settings.tunables)
         return BlockTask(
-            block, part, tuple(near), settings.pipeline.name, tunables, samplings, halo, result, settings.stop
+            block,
+            part,
+            tuple(near),
+            settings.pipeline.name,
+            settings.steps,
+            tunables,
+            samplings,
+            halo,
+            result,
+            settings.stop,
         )
 
     def _block_log(self, blocks: int, points: float) -> Callable[[int], None]:

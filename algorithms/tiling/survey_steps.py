@@ -21,7 +21,7 @@ class SurveySteps:
 
     def __init__(self, settings: RunSettings, outcome: TilesOutcome) -> None:
         self.settings, self.outcome = settings, outcome
-        steps = afterwards(settings.pipeline)
+        steps = afterwards(settings.working)
         self._others = [step for step in steps if not step.stage.shows]
         self._paged = [step for step in steps if step.stage.shows]
         self._names = {(output.step.name, output.of): output.name for output in settings.pipeline.outputs}

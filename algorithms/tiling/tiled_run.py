@@ -10,13 +10,14 @@ import numpy as np
 
 from ..cloud.crs import CrsReader, read_crs
 from ..cloud.outputs import LAS, LAZ
-from ..pipeline import Pipeline
+from ..pipeline import CLOUD, Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import FileContent, LayerFeatures, Monitor, Report
 from .block_result import BlockResult
 from .blocks import Block
 from .mosaics import RasterMosaic
 from .survey import Survey
+from .tiled_steps import part_of
 from .workers import Workers
 
 # Progress when the survey is sampled, large files are cut, blocks are worked on, and layers are joined; the rest is
@@ -45,6 +46,8 @@ class TilesOptions:
     extent: Optional[np.ndarray] = None
     #: As for :func:`.read_cloud`
     read: CrsReader = read_crs
+    #: Names of the outputs besides the tiles that are made; None is all of them
+    wanted: Optional[tuple[str, ...]] = None
     #: Tiles as LAZ, or as LAS
     compressed: bool = True
     #: Write each tile as COPC too, into a folder "shown" among the tiles: QGIS shows the points of no other tiles
@@ -72,6 +75,18 @@ class RunSettings:
     monitor: Monitor
     options: TilesOptions
     tunables: dict[str, Any]
+
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """Names of the steps that are run: those that the tiles and the wanted outputs need."""
+        names = [output.name for output in self.pipeline.outputs]
+        wanted = names if self.options.wanted is None else self.options.wanted
+        return tuple(step.name for step in self.pipeline.steps_for({CLOUD, *wanted}))
+
+    @property
+    def working(self) -> Pipeline:
+        """The part of the composite that is run; the names of its outputs may be others."""
+        return part_of(self.pipeline, [step for step in self.pipeline.steps if step.name in self.steps])
 
     @property
     def stop(self) -> Path:

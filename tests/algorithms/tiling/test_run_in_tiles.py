@@ -489,3 +489,24 @@ def test_a_window_grows_where_a_feature_ends_nearer_to_its_edge_than_points_deci
     made = run(tiles_of(tmp_path, *points[:2], slice(None)), tmp_path / "out", pipeline=boxes)
     assert len(next(iter(made.layers.values()))) == 1
     assert made.tries[:, 0].max() == (10.0 if grows else 5.0)
+
+
+def test_only_steps_that_the_wanted_outputs_need_are_run_in_tiles(tmp_path):
+    """Tiles without footprints had them drawn in every block, and measured on the whole survey before."""
+    rng = np.random.default_rng(3)
+    x, y = rng.uniform(0, 60, (2, 30_000))
+    z = np.where((abs(x - 30) < 5) & (abs(y - 30) < 4), 6.0, 0.0) + rng.normal(0, 0.02, len(x))
+    write_cloud(create_cloud({"xyz": np.column_stack([x, y, z])}), tmp_path / "a.las")
+    pipeline, made = PIPELINES["detect_buildings"], {}
+    for name, wanted in (("all", None), ("cloud", ()), ("footprints", ("footprints",))):
+        options = TilesOptions(workers=Workers(1), block_side=40.0, wanted=wanted)
+        made[name] = run_in_tiles(pipeline, [tmp_path / "a.las"], tmp_path / name, options=options)
+    classes = [read_cloud(tmp_path / name / "a.laz").get("classification") for name in made]
+    assert (classes[0] == classes[1]).all()
+    assert (classes[0] == classes[2]).all()
+    assert not made["cloud"].layers
+    assert "footprints" not in made["cloud"].seconds
+    assert not made["cloud"].reports
+    assert len(made["footprints"].layers["footprints"]) == len(made["all"].layers["footprints"]) == 1
+    # Its numbers are given with the footprints.
+    assert made["footprints"].reports["report"].values["buildings"] == 1
