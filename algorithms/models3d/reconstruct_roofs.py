@@ -222,6 +222,9 @@ def reconstruct_roofs(
     >>> len(buildings), len(walls), len(roofs)
     (1, 4, 1)
     """
+    if not len(footprints):
+        monitor.none_found("There are no footprints, so there are no models.")
+        return _building_layer([]), _face_layer([], WALL), _face_layer([], ROOF), [], []
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)
     sampling = sampling or CloudSampling.of(xyz, classification)

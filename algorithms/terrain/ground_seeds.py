@@ -128,14 +128,15 @@ def seeds_by_opening(
     """
     refuse_sparse(xyz, cell_size)
     box = plan_box(xyz)
-    angles = _turns() if _is_compact(box) and not _is_nearly_empty(box, cell_size, len(xyz)) else np.zeros(1)
+    is_nearly_empty = _is_nearly_empty(box, cell_size, len(xyz))
+    angles = _turns() if _is_compact(box) and not is_nearly_empty else np.zeros(1)
 
     count = len(angles)
 
     def look(number: int, part: Monitor) -> tuple[_Surface, Optional[_View]]:
         # Points are moved a third of a cell farther east and south for each: no edges of cells meet on a whole side.
         begin = np.array([number, -number, 0.0]) / count % 1
-        cells = _Cells(box, angles[number], cell_size, spacing, low_uphill)
+        cells = _Cells(box, angles[number], cell_size, spacing, low_uphill, is_nearly_empty)
         turned = turned_in_plan(xyz, angles[number]) + begin * cell_size
         surface = _lowest_surface(turned, cells, max_building_size, part.part(0, 0.3))
         return surface, None if number else _view(surface, xyz[:, 2], None, part.part(0.3, 1))
@@ -176,6 +177,7 @@ class _Cells:
     size: float
     spacing: float
     low_uphill: bool = False  #: Whether the uphill eaves of halls may be as low as those of any roof
+    is_nearly_empty: bool = False  #: Whether there are far more cells than points
 
     def outside(self, lowest: Lowest) -> np.ndarray:
         """Return which cells lie outside the box."""
@@ -210,7 +212,8 @@ def _lowest_surface(
     is_free, found = find_free_standing(
         seen, cells.size, size, largest, cells.spacing, monitor.part(0.3, 1), cells.low_uphill
     )
-    return _Surface(cells, lowest, unknown, ObjectRemoval(surface, is_free, size, cells.size, cells.spacing), found)
+    removal = ObjectRemoval(surface, is_free, size, cells.size, cells.spacing, cells.is_nearly_empty)
+    return _Surface(cells, lowest, unknown, removal, found)
 
 
 def _view(seen: _Surface, z: np.ndarray, slope: Optional[np.ndarray], monitor: Monitor) -> _View:

@@ -42,8 +42,8 @@ class RemovalRules:
 REMOVAL = RemovalRules()
 
 # Widest standard deviation (cells) of a Gaussian mean that is taken of all cells, which gaps of buildings need; wider
-# ones are means of blocks, half of it in blocks.
-_WIDEST = 16
+# ones are means of blocks, half of it in blocks. Nearly empty clouds, which are mostly gaps, have a narrower one.
+_WIDEST, _WIDEST_IN_EMPTY = 16, 4
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,7 @@ class ObjectRemoval:
     #: cell_size, spacing: Size of the cells, and spacing of the points where that is more, m
     cell_size: float
     spacing: float = 0.0
+    is_nearly_empty: bool = False  #: Whether there are far more cells than points
     _lowered: list[tuple[int, np.ndarray, np.ndarray]] = field(default_factory=list, init=False, repr=False)
 
     @property
@@ -137,7 +138,7 @@ class ObjectRemoval:
         """
         candidates = np.where(objects & ~self.is_free_standing, self.surface, np.nan)
         part = smooth_segments(candidates, REMOVAL.join_slope * max(self.cell_size, self.spacing))
-        above = self.surface - _interpolated(self.surface, objects)
+        above = self.surface - self._interpolated(objects)
         level, area = np.bincount(part.ravel(), (above <= REMOVAL.step).ravel()), np.bincount(part.ravel())
         is_terrain = level >= REMOVAL.level_share * area
         is_terrain[0] = False
@@ -145,7 +146,11 @@ class ObjectRemoval:
 
     def _slope_without(self, objects: np.ndarray) -> np.ndarray:
         """Return the slope of the surface across these cells, as if they were not there."""
-        return _slope(_interpolated(self.surface, objects), self.cell_size)
+        return _slope(self._interpolated(objects), self.cell_size)
+
+    def _interpolated(self, objects: np.ndarray) -> np.ndarray:
+        """Return the surface across these cells, as if they were not there."""
+        return _interpolated(self.surface, objects, _WIDEST_IN_EMPTY if self.is_nearly_empty else _WIDEST)
 
 
 @dataclass(frozen=True)
@@ -217,7 +222,7 @@ def _windows(largest: float) -> list[int]:
     return radii
 
 
-def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
+def _interpolated(surface: np.ndarray, unknown: np.ndarray, widest_exact: int) -> np.ndarray:
     """Fill unknown cells with means of the known ones around, over ever larger surroundings."""
     filled = np.where(unknown, np.nan, surface)
     weight = (~unknown).astype(float)
@@ -226,7 +231,7 @@ def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
     scale, widest = 1.0, 4.0 * max(surface.shape)
     row, column = np.nonzero(unknown)
     while len(row) and scale < widest:
-        share, mean = (_smoothed(raster, scale, row, column) for raster in (weight, weighted))
+        share, mean = (_smoothed(raster, scale, widest_exact, row, column) for raster in (weight, weighted))
         # Far from known cells the share is all rounding.
         is_reached = share > 1e-3
         filled[row[is_reached], column[is_reached]] = mean[is_reached] / share[is_reached]
@@ -235,14 +240,14 @@ def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
     return nearest_known(filled, np.isnan(filled)) if np.isfinite(filled).any() else surface
 
 
-def _smoothed(raster: np.ndarray, scale: float, row: np.ndarray, column: np.ndarray) -> np.ndarray:
-    """Return the Gaussian means (m,) of a raster at some cells; of a wide standard deviation, by means of blocks.
+def _smoothed(raster: np.ndarray, scale: float, widest_exact: int, row: np.ndarray, column: np.ndarray) -> np.ndarray:
+    """Return the Gaussian means (m,) of a raster at some cells; of a wider standard deviation, by means of blocks.
 
     A filter takes time in proportion to its width: over gaps of hundreds of meters, more than everything else.
     """
-    if scale <= _WIDEST:
+    if scale <= widest_exact:
         return ndimage.gaussian_filter(raster, scale, mode="nearest")[row, column]
-    side = round(2 * scale / _WIDEST)
+    side = round(2 * scale / widest_exact)
     padded = np.pad(raster, [(0, -length % side) for length in raster.shape], mode="edge")
     blocks = padded.reshape(padded.shape[0] // side, side, -1, side).mean(axis=(1, 3))
     smooth = ndimage.gaussian_filter(blocks, scale / side, mode="nearest")

@@ -1,9 +1,17 @@
 """No format of an output decides whether a run works: what can't be written is refused before it, and nothing else."""
 
+import itertools
+import shutil
+from pathlib import Path
+
+import numpy as np
 import pytest
-from qgis.core import QgsVectorFileWriter, QgsVectorLayer
+from qgis.core import QgsVectorFileWriter
 
 from lidar_buildings.algorithms.cloud import laz
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import write_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.provider.vectors import SOURCE_TYPES, check_layer
 from lidar_buildings.tests.las_files import made_las, vlr
 from lidar_buildings.tests.provider.helpers import run
@@ -80,10 +88,56 @@ def test_a_laz_that_no_package_writes_is_refused_before_the_work(
     assert check({inputs: plain, "OUTPUT": str(out / "a.laz")}, context)[0]
 
 
-def test_what_is_empty_is_written_in_every_format(provider, context, log, town_file, out, tmp_path):
+@pytest.fixture
+def meadow(tmp_path, rng):
+    """A level meadow of 40 by 40 m, with nothing on it that any composite looks for."""
+    path = tmp_path / "meadow.las"
+    xyz = np.column_stack([rng.uniform(0, 40, (6400, 2)) + (85_000, 447_000), rng.normal(0, 0.02, 6400)])
+    write_cloud(create_cloud({"xyz": xyz}, wkt="EPSG:28992"), path)
+    return path
+
+
+# Endings of outputs that are no layers, by their names; of all others, the page's.
+ENDINGS = {"OUTPUT": "las", "CITYJSON": "city.json", "OBJ": "obj", "DTM": "tif", "DSM": "tif", "NDSM": "tif"}
+
+
+def run_on(meadow, pipeline, layer_endings, provider, context, log, out):
+    """Run a composite with all outputs but kept clouds; return the files of its layers."""
+    given, algorithm = {}, provider.algorithm(pipeline.id).create()
+    for definition in algorithm.parameterDefinitions():
+        name = definition.name()
+        if definition.type() in ("pointcloud", "multilayer"):
+            given[name] = str(meadow) if name != "REFERENCE" else str(shutil.copy(meadow, meadow.with_name("2.las")))
+        elif definition.type() == "sink":
+            given[name] = str(out / f"{name}.{next(layer_endings)}")
+        elif definition.isDestination() and not name.endswith("_OUTPUT"):
+            given[name] = str(out / f"{name}.{ENDINGS.get(name, 'html')}")
+    result = run(pipeline.id, given, context, log)
+    layers = {
+        output.name.upper() for output in pipeline.outputs if output.of in {x.name for x in output.step.stage.layers}
+    }
+    assert layers
+    return [Path(result[name]) for name in sorted(layers)]
+
+
+COMPOSITES = [name for name, pipeline in PIPELINES.items() if any(step.stage.layers for step in pipeline.steps)]
+
+
+@pytest.mark.parametrize("name", COMPOSITES)
+def test_every_composite_writes_that_it_found_nothing(provider, context, log, meadow, out, name):
+    """*Detect buildings* kept nothing of a meadow if its footprints went to a GeoJSON, *Model buildings* never did."""
+    endings = itertools.cycle(("geojson", "gpkg", "geojsonl", "shp", "kml", "fgb", "gml"))
+    for path in run_on(meadow, PIPELINES[name], endings, provider, context, log, out):
+        assert path.exists()
+    assert (out / "OUTPUT.las").exists()
+
+
+def test_a_composite_finds_nothing_in_every_format(provider, context, log, meadow, out, tmp_path):
     for extension in layer_formats(tmp_path):
-        target = out / f"a.{extension}"
-        given = {"INPUT": str(town_file), "CLASSES": "6", "FOOTPRINTS": str(target)}
-        assert run("toyoutline", given, context, log)["FOOTPRINTS"] == str(target)
-        assert target.exists()
-    assert QgsVectorLayer(str(out / "a.gpkg"), "a", "ogr").isValid()
+        folder = out / extension
+        folder.mkdir()
+        endings = itertools.repeat(extension)
+        (path,) = run_on(meadow, PIPELINES["detect_buildings"], endings, provider, context, log, folder)
+        assert path == folder / f"FOOTPRINTS.{extension}"
+        assert path.exists()
+        assert "0 buildings, 0 m\u00b2" in (folder / "REPORT.html").read_text(encoding="utf-8")
