@@ -143,6 +143,8 @@ def crs_of_text(text: str, authority: Optional[Authority] = None) -> Crs:
         return Crs(text, warnings=(f"The WKT of the file can't be read ({shown(text, 40)}); assign its CRS again.",))
     if units is None:
         warnings = (*warnings, _without_unit(text))
+    elif authority and not (known and known.plane):
+        warnings = (*warnings, _UNNAMED)
     wkt = known.wkt if known and is_code else "" if is_code else mended
     return _crs(text, wkt, known, _identity(known, text), units, warnings)
 
@@ -156,7 +158,8 @@ def _crs_of_keys(header: Header, authority: Optional[Authority]) -> Crs:
     code = code_of_keys(keys)
     known = authority.define("", geokey_records(header)) if authority else None
     if authority and known is None and code:
-        known = authority.define(text_of_keys(keys))
+        # Many files have the code of a datum in place of that of the heights.
+        known = authority.define(text_of_keys(keys)) or authority.define(f"EPSG:{code}")
     of_system = units_of_wkt(known.wkt) if known else None
     units, warnings = units_of_geokeys(keys, of_system)
     stated = f"EPSG:{code}" if code else ""
@@ -180,11 +183,12 @@ def _with_heights(wkt: str, units: Units) -> str:
     """Return the WKT of a system with heights in their unit where it has others; "" where that can't be written."""
     if units_of_wkt(wkt) == units or np.allclose(units_of_wkt(wkt), units, rtol=_SAME_UNIT):
         return wkt
-    if not wkt.startswith("PROJCS["):
+    plane = wkt[wkt.find("PROJCS[") :].partition(",VERT_CS[")[0]
+    if not plane.startswith("PROJCS["):
         return ""
-    unit = name_of_length(units.vertical)
-    name, height = wkt.split('"')[1], f'UNIT["{unit}",{units.vertical!r}],AXIS["Up",UP]'
-    return f'COMPD_CS["{name} + heights",{wkt},VERT_CS["heights",VERT_DATUM["unknown",2005],{height}]]'
+    height = f'UNIT["{name_of_length(units.vertical)}",{units.vertical!r}],AXIS["Up",UP]'
+    name = plane.split('"')[1]
+    return f'COMPD_CS["{name} + heights",{plane},VERT_CS["heights",VERT_DATUM["unknown",2005],{height}]]'
 
 
 def _crs(

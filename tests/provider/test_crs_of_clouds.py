@@ -29,6 +29,8 @@ from lidar_buildings.tests.las_files import made_las, vlr
 from lidar_buildings.tests.provider.helpers import run
 
 FOOT = 1200 / 3937
+# NAVD88 as a datum, which has its own key.
+DATUM_OF_HEIGHTS = geokeys((1024, 1), (3072, 26915), (3076, 9001), (4096, 5103), (4099, 9003))
 FEET_OF_HEIGHTS = geokeys((1024, 1), (3072, 26915), (3076, 9001), (4099, 9003))
 # UTM zone 15 in US survey feet, which has no code: meridian, latitude, eastings, northings, scale.
 OWN = geokeys(
@@ -103,8 +105,9 @@ def test_user_defined_geokeys_become_a_system_of_their_parameters(qgis_applicati
     assert twice.identity == found.identity
 
 
-def test_copc_of_geokeys_shows_its_system_with_the_unit_of_heights(provider, context, log, square, out):
-    run("toylift", {"INPUT": str(square(FEET_OF_HEIGHTS)), "OUTPUT": str(out / "a.copc.laz")}, context, log)
+@pytest.mark.parametrize("header", [FEET_OF_HEIGHTS, DATUM_OF_HEIGHTS], ids=["unit", "datum"])
+def test_copc_of_geokeys_shows_its_system_with_the_unit_of_heights(provider, context, log, square, out, header):
+    run("toylift", {"INPUT": str(square(header)), "OUTPUT": str(out / "a.copc.laz")}, context, log)
     layer = QgsPointCloudLayer(str(out / "a.copc.laz"), "a", "copc")
     assert plane_of(layer) == "EPSG:26915"
     assert layer.crs().verticalCrs().isValid()

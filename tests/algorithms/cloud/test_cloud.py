@@ -12,6 +12,7 @@ from lidar_buildings.algorithms.cloud.crs import crs_of_text
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.tests.algorithms.cloud.crs_texts import ETRS_32
 from lidar_buildings.tests.las_files import RECORD_SIZES, descriptor, random_records, vlr
 from lidar_buildings.tests.monitors import Listening
 
@@ -213,7 +214,8 @@ def test_unknown_units_are_warned_of_and_known_ones_not(make_las):
     assert any("taken as meters" in sentence for sentence in monitor.warnings)
     assert monitor.infos == []
     monitor = Monitor()
-    read_cloud(make_las("b.las", vlrs=(wkt_vlr(IN_FEET),)), monitor)
+    in_feet = ETRS_32.replace(',UNIT["metre",1],AUTHORITY["EPSG","25832"]', f',UNIT["US survey foot",{SURVEY_FOOT!r}]')
+    read_cloud(make_las("b.las", vlrs=(wkt_vlr(in_feet),)), monitor)
     assert monitor.warnings == []
     assert monitor.infos == [
         "A unit of the coordinates is 0.304801 m, of heights 0.304801 m; parameters, the log and attributes are in "

@@ -133,6 +133,14 @@ def test_a_code_whose_unit_is_another_is_not_taken_for_the_system():
     assert "results name none" in found.warnings[0]
 
 
+def test_a_datum_in_place_of_a_system_of_heights_leaves_the_plane_and_the_unit(known):
+    """Key 4096 of many clouds of the USGS is 5103, the datum NAVD88."""
+    found = read_crs(geokeys((1024, 1), (3072, 25832), (3076, 9001), (4096, 5103), (4099, 9003)), known)
+    assert (found.plane, found.vertical) == ("EPSG:25832", pytest.approx(SURVEY_FOOT))
+    again = crs_of_text(found.wkt, known)
+    assert (again.plane, again.vertical) == ("EPSG:25832", pytest.approx(SURVEY_FOOT))
+
+
 def test_what_geokeys_do_not_say_is_said():
     assert read_crs(Header()).warnings == (NO_CRS,)
     only_unit = read_crs(geokeys((1024, 1), (3076, 9003)))
@@ -141,6 +149,12 @@ def test_what_geokeys_do_not_say_is_said():
     own = read_crs(geokeys((1024, 1), (3072, 32767), (3075, 1), (3076, 9001)), OneAuthority())
     assert "has no definition that can be written" in own.warnings[0]
     assert own.identity
+
+
+def test_wkt_without_a_definition_is_said_to_have_none(known):
+    found = crs_of_text('PROJCS["a",UNIT["metre",1]]', known)
+    assert "has no definition that can be written" in found.warnings[0]
+    assert found.identity == 'PROJCS["a",UNIT["metre",1]]'
 
 
 def test_wkt_that_can_not_be_read_gives_way_to_what_else_is_there():

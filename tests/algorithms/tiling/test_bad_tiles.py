@@ -76,7 +76,7 @@ def test_a_tile_that_names_no_system_is_in_that_of_the_others(make_las, tmp_path
     monitor = Monitor()
     assert open_survey(files, monitor=monitor).crs.identity == "EPSG:28992"
     warned = "0.las names no coordinate reference system; it is taken to be in that of 1.las."
-    assert monitor.warnings == [warned]
+    assert [one for one in monitor.warnings if "taken to be in" in one] == [warned]
 
 
 def test_other_coordinate_systems_and_units_are_refused_by_name(make_las, tmp_path):
