@@ -58,8 +58,7 @@ class _Gdal:
     def to_radians(self, plane: str, positions: np.ndarray) -> tuple[np.ndarray, Optional[Area]]:
         nowhere = np.full(np.shape(positions), np.inf)
         with _errors():
-            system = osr.SpatialReference()
-            system.SetFromUserInput(plane)
+            system = _system(plane)
             if not system.IsProjected():
                 return nowhere, None
             found = system.GetAreaOfUse()
@@ -86,14 +85,20 @@ def _defined(text: str, keys: tuple[tuple[int, bytes], ...]) -> Optional[Definit
     """Return the system of a text or of GeoKeys, as texts, which outlive the thread."""
     try:
         with _errors():
-            whole = osr.SpatialReference()
-            if text:
-                whole.SetFromUserInput(text)
-            else:
-                whole = _of_keys(keys)
+            whole = _system(text) if text else _of_keys(keys)
             return None if whole is None else _definition(whole)
     except RuntimeError:
         return None
+
+
+def _system(text: str) -> osr.SpatialReference:
+    """Return the system of WKT or of a code; WKT is taken for nothing else, such as an address."""
+    system = osr.SpatialReference()
+    if '"' in text:
+        system.ImportFromWkt(text)
+    else:
+        system.SetFromUserInput(text)
+    return system
 
 
 def _definition(whole: osr.SpatialReference) -> Definition:
@@ -104,8 +109,7 @@ def _definition(whole: osr.SpatialReference) -> Definition:
     if not (system.IsProjected() or system.IsLocal()):
         return Definition(_written(whole), "", _code(whole), "")
     own, wkt = _code(system), system.ExportToWkt(_WKT2)
-    bare = osr.SpatialReference()
-    bare.ImportFromWkt(nameless(wkt))
+    bare = _system(nameless(wkt))
     found = [one.GetAuthorityCode(None) for one in _same(bare) if one.GetAuthorityName(None) == "EPSG"]
     identity = identity_of(found, system.ExportToProj4() if system.IsProjected() else wkt)
     own = own or (identity if identity.startswith("EPSG:") else "")

@@ -124,7 +124,7 @@ class _Pyproj:
             return None
         try:
             with _quietly():
-                whole = self.pyproj.CRS.from_user_input(text)
+                whole = self.pyproj.CRS.from_wkt(text) if '"' in text else self.pyproj.CRS.from_user_input(text)
                 return self._defined(whole)
         except self.pyproj.exceptions.CRSError:
             return None

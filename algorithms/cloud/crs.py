@@ -51,6 +51,8 @@ _APART, _CROSS = 50.0, np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
 # Semi-major axis (m) and squared eccentricity of the ellipsoid of GRS 1980: all others are within 0.02 % of it.
 _AXIS, _ECCENTRICITY = 6378137.0, 0.00669438
 
+# A code, with that of the heights.
+_CODE = re.compile(r"[A-Za-z]{3,}:\w+(\+\d+)?")
 # Units of two readings of a system are one if they differ by no more than this share: US and international feet are.
 _SAME_UNIT = 1e-5
 
@@ -136,17 +138,24 @@ def crs_of_text(text: str, authority: Optional[Authority] = None) -> Crs:
     """Return the coordinate reference system of WKT, "EPSG:code" or "", see :func:`read_crs`."""
     if not text:
         return Crs(warnings=(NO_CRS,))
+    if '"' not in text and not _CODE.fullmatch(text):
+        # Libraries take such texts for addresses and names of files, too, and would open them.
+        return _unread(text)
     mended, warnings = with_named_units(text)
     known, is_code = authority.define(mended) if authority else None, '"' not in text
     units = units_of_wkt(mended) or (units_of_wkt(known.wkt) if known else None)
     if units is None and not is_code:
-        return Crs(text, warnings=(f"The WKT of the file can't be read ({shown(text, 40)}); assign its CRS again.",))
+        return _unread(text)
     if units is None:
         warnings = (*warnings, _without_unit(text))
     elif authority and not (known and known.plane):
         warnings = (*warnings, _UNNAMED)
     wkt = known.wkt if known and is_code else "" if is_code else mended
     return _crs(text, wkt, known, _identity(known, text), units, warnings)
+
+
+def _unread(text: str) -> Crs:
+    return Crs(text, warnings=(f"The WKT of the file can't be read ({shown(text, 40)}); assign its CRS again.",))
 
 
 def _crs_of_keys(header: Header, authority: Optional[Authority]) -> Crs:

@@ -10,6 +10,7 @@ import pytest
 from osgeo import gdal
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointCloudLayer, QgsRasterLayer, QgsVectorLayer
 
+from lidar_buildings.algorithms.cloud.authority import authority_here
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.crs import crs_of_text, read_crs
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
@@ -159,6 +160,11 @@ def test_areas_in_web_mercator_are_those_on_the_ground(provider, context, log, t
     assert [one for one in log.warnings if "m on the map of EPSG:3857" in one]
     local = read_cloud(tmp_path / "m.las").get("xyz")
     assert np.ptp(local[:, :2], axis=0) == pytest.approx([19, 19], rel=0.003)
+
+
+def test_this_process_has_one_authority(qgis_application):
+    assert authority_here() is GDAL
+    assert GDAL.define('http://127.0.0.1/"x"') is None
 
 
 def test_gdal_is_left_as_it_was(qgis_application):

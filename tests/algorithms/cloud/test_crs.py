@@ -157,6 +157,18 @@ def test_wkt_without_a_definition_is_said_to_have_none(known):
     assert found.identity == 'PROJCS["a",UNIT["metre",1]]'
 
 
+@pytest.mark.parametrize("text", ["http://127.0.0.1/x.wkt", "/etc/passwd", "+init=/etc/passwd", "C:x", "file.wkt"])
+def test_addresses_and_names_of_files_are_never_looked_up(text):
+    """GDAL opens them where it is asked for the system of any text."""
+
+    class Nosy(OneAuthority):
+        def define(self, text, keys=()):
+            raise AssertionError(text)
+
+    assert "can't be read" in read_crs(wkt_header(text), Nosy()).warnings[0]
+    assert read_crs(Header(named=text), Nosy()).identity == ""
+
+
 def test_wkt_that_can_not_be_read_gives_way_to_what_else_is_there():
     header = geokeys((1024, 1), (3072, 25832), (3076, 9001))
     header.vlrs.append(Vlr(b"LASF_Projection", 2112, b'PROJCS["a",UNIT["metre",1]]]\0'))
