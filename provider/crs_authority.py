@@ -174,7 +174,8 @@ def _errors() -> Iterator[None]:
         yield
     finally:
         gdal.PopErrorHandler()
-        if not before[0]:
-            osr.DontUseExceptions()
+        # In the reverse order, or GDAL refuses.
         if not before[1]:
             gdal.DontUseExceptions()
+        if not before[0]:
+            osr.DontUseExceptions()

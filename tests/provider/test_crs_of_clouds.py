@@ -7,7 +7,7 @@ import struct
 
 import numpy as np
 import pytest
-from osgeo import gdal
+from osgeo import gdal, osr
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointCloudLayer, QgsRasterLayer, QgsVectorLayer
 
 from lidar_buildings.algorithms.cloud.authority import authority_here
@@ -16,7 +16,7 @@ from lidar_buildings.algorithms.cloud.crs import crs_of_text, read_crs
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.header import WKT_BIT, Vlr, read_header
 from lidar_buildings.algorithms.cloud.point_formats import Layout
-from lidar_buildings.provider.crs_authority import GDAL
+from lidar_buildings.provider.crs_authority import GDAL, _errors
 from lidar_buildings.provider.layer_outputs import _UNDEFINED
 from lidar_buildings.tests.algorithms.cloud.crs_texts import (
     COMPOUND_FEET,
@@ -87,7 +87,7 @@ def test_rasters_and_layers_get_the_horizontal_part(provider, context, log, squa
         layer = QgsVectorLayer(str(out / file))
         assert layer.crs().isValid()
         if plane:
-            assert layer.crs().authid() == plane
+            assert (file, layer.crs().authid()) == (file, plane)
     run("toyheights", {"INPUT": given["INPUT"], "TOP": str(out / "a.tif")}, context, log)
     raster = QgsRasterLayer(str(out / "a.tif"))
     assert raster.crs().authid() == plane if plane else raster.crs().isValid()
@@ -172,3 +172,16 @@ def test_gdal_is_left_as_it_was(qgis_application):
     assert GDAL.define("", ((34735, struct.pack("<4H", 1, 1, 0, 0)),)) is None
     assert GDAL.define("nonsense") is None
     assert (gdal.GetConfigOption("GTIFF_REPORT_COMPD_CS"), gdal.GetUseExceptions()) == before
+
+
+def test_exceptions_are_switched_off_in_the_reverse_order(qgis_application, monkeypatch):
+    """GDAL refuses any other order, and no system was known where exceptions had not been in use before."""
+    calls = []
+    for name, library in (("gdal", gdal), ("osr", osr)):
+        monkeypatch.setattr(library, "GetUseExceptions", lambda: False)
+        for call in ("UseExceptions", "DontUseExceptions"):
+            monkeypatch.setattr(library, call, lambda one=f"{name}.{call}": calls.append(one))
+    with _errors():
+        pass
+    first, second, third, last = calls
+    assert (first.split(".")[0], second.split(".")[0]) == (last.split(".")[0], third.split(".")[0])
