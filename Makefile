@@ -4,7 +4,7 @@
 #   TILE=path.laz    let "make demo" look for buildings in your own tile
 #   MINUTES=5 SEED=7 KINDS="laz vpc" how long "make fuzz" looks (5), with which damage (another one each time), at what
 #   GUIDED=1         let "make fuzz" choose the damage by the lines that it reaches, which needs atheris
-#   SIZES="0.1 1 10" million points that "make bench" measures (0.1 1); STAGES="…" only these stages
+#   SIZES="0.1 1 10" million points that "make bench" measures (0.1 1); STAGES="…" only these stages; CLOUD=tile.laz a cloud of yours
 
 .DEFAULT_GOAL := help
 SHELL := /bin/bash
@@ -64,7 +64,7 @@ lint: $(VENV)/made ## ruff, mypy, spelling, and words that make text hard to rea
 	@$(PYTHON) scripts/measured_tables.py --check
 
 bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks/times.json)
-	@scripts/offscreen.sh $(VENV)/bin/python tests/benchmarks/benchmark.py $(if $(SIZES),--sizes $(SIZES)) $(if $(STAGES),--stages $(STAGES))
+	@scripts/offscreen.sh $(VENV)/bin/python tests/benchmarks/benchmark.py $(if $(SIZES),--sizes $(SIZES)) $(if $(STAGES),--stages $(STAGES)) $(if $(CLOUD),--cloud "$(abspath $(CLOUD))")
 
 fuzz: $(VENV)/made ## read damaged files for MINUTES, with the damage of SEED (findings in benchmarks/fuzz)
 	@$(VENV)/bin/python tests/attacks/fuzz.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) \

@@ -4,6 +4,7 @@
     make bench                                  0.1 and 1 million points
     make bench SIZES="0.1 1 10"                 10 million too, for which some stages take minutes
     make bench STAGES="classify_ground_tin"     one stage, with the steps before it, which prepare its input
+    make bench CLOUD=tile.laz                   "Detect buildings" of a cloud, as users run it, beside other programs
 
 How to read the table
 ---------------------
@@ -22,6 +23,9 @@ peak MB     The most memory that the process held, with Python, the packages and
 B/point     The same without what was there before the cloud was read, by points: what to plan memory with. For few
             points it is mostly workspace of a fixed size.
 ==========  ==========================================================================================================
+
+Lines with "qgis_process" are the whole command, as users run it, with the start of QGIS and all files. Their memory
+is that of the whole process.
 
 Nothing is judged here: times depend on the machine. The results of each commit are kept in ``benchmarks/history``; at
 the end the change since those kept last, or else since the published ones, is printed, in processor time in units of
@@ -43,12 +47,13 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.cloud.files import count_points  # noqa: E402
 from lidar_buildings.algorithms.pipeline import Step  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.algorithms.threads import n_threads  # noqa: E402
 from lidar_buildings.tests.benchmarks.history import FLOOR, keep_copy, sentences  # noqa: E402
-from lidar_buildings.tests.benchmarks.measured import PEERS  # noqa: E402
+from lidar_buildings.tests.benchmarks.measured import IN_QGIS, PEERS  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, machine, write  # noqa: E402
 
 CHAIN = PIPELINES["detect_buildings"]
@@ -67,20 +72,17 @@ HEADER = f"{'':28s} {'points':>11s} {'s':>8s} {'cpu':>8s} {'ratio':>7s} {'peak M
 class Bench:
     """The measurements on one town: ``rows`` has everything that was measured, with its name."""
 
-    def __init__(self, millions: float, cache: Path, states: Path) -> None:
+    def __init__(self, millions: float, cache: Path, states: Path, cloud: Path | None = None) -> None:
         self.millions = millions
         stem = f"town-{millions:g}M-{_fingerprint()}"
-        self.cloud, self.truth = cache / f"{stem}.laz", cache / f"{stem}.npy"
+        self.cloud, self.truth = cloud or cache / f"{stem}.laz", cache / f"{stem}.npy"
         self.states = states
         self.rows: list[dict[str, Any]] = []
 
     def run(self, wanted: list[str]) -> None:
         """Measure what is wanted, and whatever prepares its input."""
         self._scene("simulate_town" in wanted)
-        self._row("read", "read")
-        self._row("neighbors", "neighbors")
-        self._sum(FLOOR, self.rows[-2:])
-        print(flush=True)
+        self.floor()
         others = [name for name in wanted if name in STAGES and name not in _steps() and name != "simulate_town"]
         needed = max((_place(name) for name in wanted if name in STAGES), default=0)
         states: list[str] = []
@@ -97,25 +99,33 @@ class Bench:
         if "write" in wanted:
             self._row("write", "write", states, str(self.states / "written.laz"))
         if "files" in wanted:
-            self._row(FILES, "files", state=str(self.states / "detected.laz"))
-            for peer in PEERS:
-                self._row(peer, peer, state=str(self.states / "by-peer.laz"))
-            self._compare()
+            self.whole()
 
-    def _compare(self) -> None:
-        """Print "Detect buildings" from file to file beside the floor, the cores and the programs of others."""
+    def floor(self) -> None:
+        """Measure what reading the cloud, and one search for neighbors, take."""
+        self._row("read", "read")
+        self._row("neighbors", "neighbors")
+        self._sum(FLOOR, self.rows[-2:])
+        print(flush=True)
+
+    def whole(self) -> None:
+        """Measure "Detect buildings" from file to file, in QGIS and in Python, beside the programs of others."""
+        for name in (FILES, *IN_QGIS, *PEERS):
+            what = "files" if name == FILES else name
+            self._row(name, what, state=str(self.states / f"{what.split()[0]}.laz"))
         rows = {row["name"]: row for row in self.rows}
-        own, floor = rows[FILES], rows[FLOOR]
-        per_million, least = own["seconds"] / self.millions, floor["seconds"] / self.millions
-        print(
-            f"\nDetect buildings, from file to file: {per_million:.1f} s per million points, "
-            f"{per_million / least:.1f} times {floor['name']} ({least:.1f} s) and "
-            f"{own['cpu_seconds'] / floor['cpu_seconds']:.1f} times its processor time, "
-            f"{own['busy']:.0%} of the cores busy, {own['bytes_per_point']:.0f} bytes per point"
-        )
-        for peer in PEERS:
-            if peer in rows:
-                print(f"{peer}: {rows[peer]['seconds'] / own['seconds']:.1f} times as long", flush=True)
+        floor = rows[FLOOR]
+        for name in (FILES, *IN_QGIS):
+            own = rows[name]
+            peers = {peer: rows[peer]["seconds"] / own["seconds"] for peer in PEERS if peer in rows}
+            print(
+                f"\nDetect buildings, {name}: {own['seconds'] / floor['seconds']:.1f} times {floor['name']}, "
+                f"{own['cpu_seconds'] / floor['cpu_seconds']:.1f} times its processor time, {own['busy']:.0%} of the "
+                f"cores busy, {own['bytes_per_point']:.0f} bytes per point",
+                *(f"{peer} {times:.1f} times as long" for peer, times in peers.items()),
+                sep="; ",
+                flush=True,
+            )
 
     def _scene(self, wanted: bool) -> None:
         if wanted or not all(path.exists() for path in (self.cloud, self.truth)):
@@ -193,6 +203,7 @@ def options() -> argparse.Namespace:
     )
     parser.add_argument("--sizes", nargs="+", type=float, default=[0.1, 1.0], help="million points (0.1 1)")
     parser.add_argument("--stages", nargs="+", choices=names, default=names, help="stages and chains (all)")
+    parser.add_argument("--cloud", type=Path, help="measure the whole of this cloud instead of towns")
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON file (benchmarks)")
     parser.add_argument("--cache", type=Path, default=Path(__file__).with_name(".cache"), help="where towns are kept")
     return parser.parse_args()
@@ -204,12 +215,18 @@ def main() -> None:
     chosen.cache.mkdir(parents=True, exist_ok=True)
     print(", ".join(f"{key} {value}" for key, value in machine().items()))
     rows: list[dict[str, Any]] = []
-    for millions in chosen.sizes:
+    for millions in chosen.sizes if chosen.cloud is None else [count_points(chosen.cloud, None) / 1e6]:
         print(f"\n{HEADER}", flush=True)
         with tempfile.TemporaryDirectory() as states:
-            bench = Bench(millions, chosen.cache, Path(states))
-            bench.run(chosen.stages)
+            bench = Bench(millions, chosen.cache, Path(states), chosen.cloud)
+            if chosen.cloud is None:
+                bench.run(chosen.stages)
+            else:
+                bench.floor()
+                bench.whole()
         rows += bench.rows
+    if chosen.cloud is not None:
+        return
     path = write(chosen.output, "times", rows)
     print("", *sentences(keep_copy(path), PUBLISHED), "", path, sep="\n")
 

@@ -9,6 +9,7 @@ import contextlib
 import json
 import pickle
 import resource
+import subprocess
 import sys
 import time
 from importlib import import_module
@@ -16,13 +17,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Callable
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms import packages  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
-from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # noqa: E402
+from lidar_buildings.algorithms.cloud.files import count_points, read_cloud, write_cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town  # noqa: E402
@@ -44,10 +46,11 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
     Parameters
     ----------
     job : dict
-        ``what``: "simulate", "read", "neighbors", "write", "files" (a chain from file to file), the name of a peer, or
-        that of a stage or chain; ``cloud``: file; ``truth``: array file with the true classes; ``states``: files with
-        what the steps before left; ``state``: where to leave what this one wrote; ``step``: what the chain calls the
-        stage; ``layers``: those that it reads, by name as ``<step>.<layer>``; ``tunables``: of the stage.
+        ``what``: "simulate", "read", "neighbors", "write", "files" (a chain from file to file in this process), one of
+        ``IN_QGIS``, the name of a peer, or that of a stage or chain; ``cloud``: file; ``truth``: array file with the
+        true classes; ``states``: files with what the steps before left; ``state``: where to leave what this one wrote;
+        ``step``: what the chain calls the stage; ``layers``: those that it reads, by name as ``<step>.<layer>``;
+        ``tunables``: of the stage.
 
     Returns
     -------
@@ -63,6 +66,9 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
     if what == "read":
         found, cloud = _timed(lambda: read_cloud(path), base)
         return {"points": len(cloud), **found}
+    if what in IN_QGIS:
+        found, _ = _timed(lambda: _in_qgis(path, Path(job["state"]), IN_QGIS[what]), base, of_children=True)
+        return {"points": count_points(path, None), **found}
     if what == "files" or what in PEERS:
         return _from_file_to_file(job, path, base)
     cloud, layers = _before(path, job["states"])
@@ -98,7 +104,7 @@ def _work(job: dict[str, Any], cloud: Cloud, layers: dict[str, LayerFeatures]) -
 
 def _from_file_to_file(job: dict[str, Any], path: Path, base: int) -> dict[str, Any]:
     """Measure "Detect buildings" or a peer with reading and writing, or print that the peer is not installed."""
-    what, truth, target = job["what"], job["truth"], Path(job["state"])
+    what, target = job["what"], Path(job["state"])
     if what == "files":
         found, points = _timed(lambda: _detected(path, target), base)
         return {"points": points, **found}
@@ -109,7 +115,7 @@ def _from_file_to_file(job: dict[str, Any], path: Path, base: int) -> dict[str, 
         found, _ = _timed(lambda: classify(path, target), base)
     except Exception as error:  # Programs of others fail in ways of their own, which is no reason to stop.
         return {"refused": f"{package}: {error}"}
-    return {"points": len(np.load(truth, mmap_mode="r")), **found}
+    return {"points": count_points(path, None), **found}
 
 
 def _detected(path: Path, target: Path) -> int:
@@ -121,6 +127,21 @@ def _detected(path: Path, target: Path) -> int:
 def _classified_by_whitebox(path: Path, target: Path) -> None:
     lidar = import_module("whitebox_workflows").WbEnvironment().lidar
     lidar.filtering_classification.classify_lidar(input=str(path), output=str(target))
+
+
+# "Detect buildings" as users run it, by what the table calls it: the outputs besides the cloud.
+IN_QGIS: dict[str, dict[str, str]] = {
+    "qgis_process": {"FOOTPRINTS": "footprints.gpkg", "REPORT": "report.html"},
+    "qgis_process, cloud alone": {},
+}
+
+
+def _in_qgis(path: Path, target: Path, outputs: dict[str, str]) -> None:
+    """Run "Detect buildings" of the installed plugin on the command line."""
+    given = {"INPUT": path, "OUTPUT": target, **{name: target.parent / file for name, file in outputs.items()}}
+    command = ["scripts/offscreen.sh", "qgis_process", "run", "lidarbuildings:detectbuildings", "--"]
+    command += [f"{name}={value}" for name, value in given.items()]
+    subprocess.run(command, cwd=ROOT, stdout=sys.stderr, check=True)
 
 
 # Programs that classify buildings from file to file, by what the table calls them: their package, and the call.
@@ -170,16 +191,24 @@ def _reference(path: Path, truth: str) -> Cloud:
     return cloud
 
 
-def _timed(work: Callable[[], Any], base: int) -> tuple[dict[str, Any], Any]:
-    """Return what ``work`` took, and what it made."""
-    start, start_cpu = time.perf_counter(), time.process_time()
+def _timed(work: Callable[[], Any], base: int, of_children: bool = False) -> tuple[dict[str, Any], Any]:
+    """Return what ``work`` took in this process, or in the processes that it starts, and what it made."""
+    who = resource.RUSAGE_CHILDREN if of_children else resource.RUSAGE_SELF
+    start, start_cpu = time.perf_counter(), _cpu(who)
     made = work()
-    seconds, cpu = time.perf_counter() - start, time.process_time() - start_cpu
-    return {"seconds": seconds, "cpu_seconds": cpu, "peak_bytes": _peak(), "base_bytes": base}, made
+    seconds, cpu = time.perf_counter() - start, _cpu(who) - start_cpu
+    return {"seconds": seconds, "cpu_seconds": cpu, "peak_bytes": _peak(who), "base_bytes": base}, made
 
 
-def _peak() -> int:
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _PEAK_UNIT
+def _cpu(who: int) -> float:
+    """Return the processor time so far, s."""
+    used = resource.getrusage(who)
+    return used.ru_utime + used.ru_stime
+
+
+def _peak(who: int = resource.RUSAGE_SELF) -> int:
+    """Return the most memory that this process, or one of those it started, has held, bytes."""
+    return resource.getrusage(who).ru_maxrss * _PEAK_UNIT
 
 
 if __name__ == "__main__":
