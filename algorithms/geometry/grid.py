@@ -15,6 +15,9 @@ EIGHT = np.ones((3, 3), bool)
 # Cells of a raster that are no burden however few points they hold: tens of megabytes for an array of them.
 _MOST_CELLS = 10_000_000
 
+# Cells that take no time worth saving, however empty they are.
+_FEW_CELLS = 200_000
+
 # Cells for each point beyond which a larger raster is refused: nearly empty, it is due to wrong coordinates.
 _MOST_CELLS_PER_POINT = 20
 
@@ -141,6 +144,15 @@ class SparsePointsError(ValueError):
     """Points lie too far apart for a raster of cells over them."""
 
 
+def is_nearly_empty(xyz: np.ndarray, size: float, most_cells: int = _FEW_CELLS) -> bool:
+    """Return whether a raster of cells of ``size`` (m) over points (n, 2 or 3) has many and nearly only empty cells.
+
+    Many are more than ``most_cells``, and nearly empty is a raster with more than twenty cells for each point.
+    """
+    width, height = np.ptp(plan_box(xyz), axis=0)
+    return bool((width / size + 1) * (height / size + 1) > max(most_cells, _MOST_CELLS_PER_POINT * len(xyz)))
+
+
 def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -> None:
     """Refuse points that lie too far apart for a raster of cells, which would be nearly empty.
 
@@ -158,8 +170,8 @@ def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -
     SparsePointsError
         If the raster had more cells than that and more than twenty for each point.
     """
-    width, height = np.ptp(plan_box(xyz), axis=0)
-    if (width / size + 1) * (height / size + 1) > max(most_cells, _MOST_CELLS_PER_POINT * len(xyz)):
+    if is_nearly_empty(xyz, size, most_cells):
+        width, height = np.ptp(plan_box(xyz), axis=0)
         raise SparsePointsError(
             f"The {len(xyz)} points are spread over {width:,.0f} m by {height:,.0f} m, which is nearly empty in cells "
             f"of {size:.2g} m; remove points that lie far off in plan, cut the cloud into pieces, or set larger cells."

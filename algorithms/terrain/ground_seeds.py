@@ -7,8 +7,9 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import lattice, plan_box, refuse_sparse, turned_in_plan
+from ..geometry.grid import is_nearly_empty, lattice, plan_box, refuse_sparse, turned_in_plan
 from ..geometry.groups import least_of
+from ..geometry.raster_filling import nearest_known
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
@@ -16,7 +17,7 @@ from ..sampling.kinds import MATCHING, SCENE
 from ..stage import Monitor
 from ..threads import made_ahead
 from .free_standing import find_free_standing
-from .removed_objects import ObjectRemoval, nearest_known
+from .removed_objects import ObjectRemoval
 
 
 @dataclass(frozen=True)
@@ -26,14 +27,11 @@ class SeedRules:
     pit_slope: float = rule(5.0, "tangent", "physics: sides of pits of multipath, 5 m deep in a cell of 1 m")
     pit_share: float = rule(0.1, "share", "physics: more pulses reach the ground of dense forest")
     most_turned: float = rule(2.5, "ratio", "of the box of a turned cloud to its own; narrow strips have more")
-    most_empty: float = rule(20.0, "cells per point", "nearly empty clouds have one grid: four cells are usual")
     grids: int = rule(3, "grids of cells", "turned, decide together: on bushes it matters which points share a cell")
 
 
 SEEDS = SeedRules()
 
-# Cells that take no time worth saving, however empty they are.
-_FEW_CELLS = 200_000
 # Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
 USUAL_BUILDING = 60.0
 
@@ -128,15 +126,15 @@ def seeds_by_opening(
     """
     refuse_sparse(xyz, cell_size)
     box = plan_box(xyz)
-    is_nearly_empty = _is_nearly_empty(box, cell_size, len(xyz))
-    angles = _turns() if _is_compact(box) and not is_nearly_empty else np.zeros(1)
+    nearly_empty = is_nearly_empty(xyz, cell_size)
+    angles = _turns() if _is_compact(box) and not nearly_empty else np.zeros(1)
 
     count = len(angles)
 
     def look(number: int, part: Monitor) -> tuple[_Surface, Optional[_View]]:
         # Points are moved a third of a cell farther east and south for each: no edges of cells meet on a whole side.
         begin = np.array([number, -number, 0.0]) / count % 1
-        cells = _Cells(box, angles[number], cell_size, spacing, low_uphill, is_nearly_empty)
+        cells = _Cells(box, angles[number], cell_size, spacing, low_uphill, nearly_empty)
         turned = turned_in_plan(xyz, angles[number]) + begin * cell_size
         surface = _lowest_surface(turned, cells, max_building_size, part.part(0, 0.3))
         return surface, None if number else _view(surface, xyz[:, 2], None, part.part(0.3, 1))
@@ -251,11 +249,6 @@ def _is_compact(box: np.ndarray) -> bool:
     sides = np.ptp(box, axis=0)
     turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_turns()))
     return all((cos * sides + sin * sides[::-1]).prod() <= SEEDS.most_turned * sides.prod() for cos, sin in turns)
-
-
-def _is_nearly_empty(box: np.ndarray, cell_size: float, count: int) -> bool:
-    """Return whether cells (m) over a ``box`` (2, 2) are many, and far more than its ``count`` points."""
-    return np.prod(np.ptp(box, axis=0) / cell_size) > max(_FEW_CELLS, SEEDS.most_empty * count)
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:

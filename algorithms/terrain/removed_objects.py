@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..geometry.adjacent_cells import adjacent_cells
+from ..geometry.raster_filling import filled_by_means
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
@@ -40,10 +41,6 @@ class RemovalRules:
 
 
 REMOVAL = RemovalRules()
-
-# Widest standard deviation (cells) of a Gaussian mean that is taken of all cells, which gaps of buildings need; wider
-# ones are means of blocks, half of it in blocks. Nearly empty clouds, which are mostly gaps, have a narrower one.
-_WIDEST, _WIDEST_IN_EMPTY = 16, 4
 
 
 @dataclass(frozen=True)
@@ -150,7 +147,7 @@ class ObjectRemoval:
 
     def _interpolated(self, objects: np.ndarray) -> np.ndarray:
         """Return the surface across these cells, as if they were not there."""
-        return _interpolated(self.surface, objects, _WIDEST_IN_EMPTY if self.is_nearly_empty else _WIDEST)
+        return filled_by_means(self.surface, objects, self.is_nearly_empty)
 
 
 @dataclass(frozen=True)
@@ -205,14 +202,6 @@ def _region_edges(region: np.ndarray, count: int, objects: np.ndarray, sides: It
     return _RegionEdges(*counts)
 
 
-def nearest_known(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
-    """Fill unknown cells with the value of the nearest known one."""
-    if not unknown.any():
-        return surface
-    row, column = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)
-    return surface[row, column]
-
-
 def _windows(largest: float) -> list[int]:
     """Return radii in cells from 1 to ``largest``, each larger than the one before by the factor of growth."""
     radii = [1]
@@ -220,39 +209,6 @@ def _windows(largest: float) -> list[int]:
     while radii[-1] < last:
         radii.append(min(last, max(radii[-1] + 1, round(radii[-1] * REMOVAL.growth))))
     return radii
-
-
-def _interpolated(surface: np.ndarray, unknown: np.ndarray, widest_exact: int) -> np.ndarray:
-    """Fill unknown cells with means of the known ones around, over ever larger surroundings."""
-    filled = np.where(unknown, np.nan, surface)
-    weight = (~unknown).astype(float)
-    weighted = np.where(unknown, 0.0, surface)
-    # Standard deviation in cells, doubled until every unknown cell is reached or rounding is all that is left.
-    scale, widest = 1.0, 4.0 * max(surface.shape)
-    row, column = np.nonzero(unknown)
-    while len(row) and scale < widest:
-        share, mean = (_smoothed(raster, scale, widest_exact, row, column) for raster in (weight, weighted))
-        # Far from known cells the share is all rounding.
-        is_reached = share > 1e-3
-        filled[row[is_reached], column[is_reached]] = mean[is_reached] / share[is_reached]
-        row, column = row[~is_reached], column[~is_reached]
-        scale *= 2
-    return nearest_known(filled, np.isnan(filled)) if np.isfinite(filled).any() else surface
-
-
-def _smoothed(raster: np.ndarray, scale: float, widest_exact: int, row: np.ndarray, column: np.ndarray) -> np.ndarray:
-    """Return the Gaussian means (m,) of a raster at some cells; of a wider standard deviation, by means of blocks.
-
-    A filter takes time in proportion to its width: over gaps of hundreds of meters, more than everything else.
-    """
-    if scale <= widest_exact:
-        return ndimage.gaussian_filter(raster, scale, mode="nearest")[row, column]
-    side = round(2 * scale / widest_exact)
-    padded = np.pad(raster, [(0, -length % side) for length in raster.shape], mode="edge")
-    blocks = padded.reshape(padded.shape[0] // side, side, -1, side).mean(axis=(1, 3))
-    smooth = ndimage.gaussian_filter(blocks, scale / side, mode="nearest")
-    at = [(cell + 0.5) / side - 0.5 for cell in (row, column)]
-    return ndimage.map_coordinates(smooth, at, order=1, mode="nearest")
 
 
 def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:

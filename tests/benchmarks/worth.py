@@ -70,6 +70,8 @@ TECHNICAL = (
     "neighborhoods.optimal_size",
     # When Newton's method ends, and the rows of a product: a fifth more or less of each changes no point.
     "buildings.logistic_regression",
+    # What a cloud can't show: a warning, and confidences; decisions stay.
+    "sampling.sufficiency",
     # The last step of the chain: colors and length of a page on buildings that are final.
     "quality.report_buildings",
 )
