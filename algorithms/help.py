@@ -89,6 +89,16 @@ def step_title(step: Step) -> str:
     return step.name.replace("_", " ").capitalize()
 
 
+def step_label(step: Step, title: str, label: str) -> str:
+    """Return the composite's label of a parameter of a step: "Ground: cell size (m)", "Look for water".
+
+    ``title`` is what the composite calls the step; a label that has its name already goes without.
+    """
+    names = {word.rstrip("s") for word in re.findall(r"\w+", label.lower())}
+    is_named = step.name.split("_")[-1].rstrip("s") in names
+    return label if is_named else f"{title}: {lower_first(label)}"
+
+
 def lower_first(text: str) -> str:
     """Return ``text`` as it goes on after a colon; an acronym keeps its capitals."""
     return text[:1].lower() + text[1:] if text[1:2].islower() else text

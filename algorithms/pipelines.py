@@ -119,8 +119,8 @@ _PIPELINES = (
     Pipeline(
         name="detect_buildings_2019",
         title="Detect buildings, published 2019",
-        group="Models",
-        tags="building,detection,entropy,k-means,region growing,Santos",
+        group="Models as published",
+        tags="building,detection,entropy,k-means,kmeans,region growing,Santos",
         summary="Find the buildings in a point cloud by the steps of the paper of 2019, to compare with.",
         description=(
             "The published chain without this project's additions: cell histogram filter, progressive TIN "

@@ -46,6 +46,7 @@ from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
 from .inputs import (
     CRS,
+    INPUT,
     OUTPUT,
     REFERENCE,
     REPORT,
@@ -55,6 +56,7 @@ from .inputs import (
     given_crs,
     input_parameter,
     input_paths,
+    name_of_layer,
     reference_parameter,
     refuse_same,
     subject_of,
@@ -142,6 +144,7 @@ class Job:
     tunables: dict[str, Any]
     wanted: list[Made]
     clouds: list[Path] = field(default_factory=list)
+    layer: str = ""  #: Name of the layer that gives the cloud, "" for a file
     reference: Optional[Path] = None
     box: Optional[np.ndarray] = None
     crs: QgsCoordinateReferenceSystem = field(default_factory=QgsCoordinateReferenceSystem)
@@ -239,6 +242,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         job = Job(self.tunables(parameters, context), wanted)
         if inputs.clouds:
             job.clouds = input_paths(self, inputs.several, parameters, context)
+            job.layer = name_of_layer(parameters.get(INPUT))
         if inputs.compared is not None and (inputs.needs_reference or parameters.get(REFERENCE) not in UNWANTED):
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
@@ -261,7 +265,8 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Read, compute, write; all or nothing. What was cancelled has no results."""
         self.alone = not is_step(feedback)
         warn_unknown_parameters(self, parameters, feedback)
-        definitions, subject = self.destinationParameterDefinitions(), subject_of(self.job.paths, feedback)
+        definitions = self.destinationParameterDefinitions()
+        subject = subject_of(self.job.paths, self.job.layer, feedback)
         title = self.displayName() if self.alone else ""
         log = RunLog()
         with (

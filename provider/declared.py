@@ -15,11 +15,14 @@ from ..algorithms.stage import Stage
 from .paths import GROUP_ICONS, HELP, ICON, PICTURES
 from .texts import tr
 
-# The group that the toolbox shows first.
-FIRST_GROUP = "Models"
+# The groups that the toolbox shows first.
+_FIRST_GROUPS = ("Models", "Models in tiles", "Models as published")
 
-# Search words that apply to every algorithm.
-_TAGS_OF_ALL = ("las", "laz", "copc", "pdal", "lidar", "point cloud")
+# The icon of these.
+_MODELS = "models"
+
+# Search words that apply to every algorithm; formats find those that are about files.
+_TAGS_OF_ALL = ("lidar", "point cloud")
 
 
 class DeclaredAlgorithm:
@@ -40,7 +43,8 @@ class DeclaredAlgorithm:
 
         QGIS sorts groups by it; the space has the models come first.
         """
-        return f" {tr(FIRST_GROUP)}" if self.declared.group == FIRST_GROUP else tr(self.declared.group)
+        group = tr(self.declared.group)
+        return f" {group}" if self.declared.group in _FIRST_GROUPS else group
 
     def groupId(self) -> str:  # noqa: N802
         """Return the group's id."""
@@ -56,7 +60,8 @@ class DeclaredAlgorithm:
 
     def svgIconPath(self) -> str:  # noqa: N802
         """Return the file of the group's icon, or of the plugin's where the group has none."""
-        icon = GROUP_ICONS / f"{self.groupId()}.svg"
+        group = _MODELS if self.declared.group in _FIRST_GROUPS else self.groupId()
+        icon = GROUP_ICONS / f"{group}.svg"
         return str(icon if icon.is_file() else ICON)
 
     def shortDescription(self) -> str:  # noqa: N802

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 from qgis.core import (
     Qgis,
     QgsCoordinateReferenceSystem,
+    QgsMapLayer,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExtent,
+    QgsProject,
 )
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
@@ -139,9 +141,18 @@ def refuse_same(clouds: Sequence[Path], reference: Path) -> None:
         raise ValueError(f"{reference.name} is the point cloud and its reference at once; choose two clouds.")
 
 
-def subject_of(clouds: Sequence[Path], feedback: QgsProcessingFeedback) -> str:
-    """Return what the results of a run are of, the name of its first cloud; "" for a step, which reads temporaries."""
-    return subject_of_file(clouds[0]) if clouds and not is_step(feedback) else ""
+def name_of_layer(given: Any) -> str:
+    """Return the name of the project's layer that a parameter gives, "" for files; asked in the main thread only."""
+    layer = given if isinstance(given, QgsMapLayer) else QgsProject.instance().mapLayer(str(given))
+    return layer.name() if layer is not None else ""
+
+
+def subject_of(clouds: Sequence[Path], layer: str, feedback: QgsProcessingFeedback) -> str:
+    """Return what the results of a run are of: its layer, or else the file of its first cloud.
+
+    It is "" for a step of a user's chain, which reads temporaries.
+    """
+    return (layer or subject_of_file(clouds[0])) if clouds and not is_step(feedback) else ""
 
 
 def cloud_title(stages: Sequence[Stage]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -16,7 +17,7 @@ from ..algorithms.stage import Layer, LayerFeatures, Monitor
 from .crs import crs_of
 from .outputs import target_path, through_memory
 from .places import Place
-from .styles import layer_style, show_on_load, switch_off
+from .styles import layer_style, show_on_load, store_styles, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
 
 # Values of an optional output that is not wanted: None where it is left out, "" where the command line gives none.
@@ -26,6 +27,9 @@ UNWANTED = (None, "")
 _BY_CODE = (".geojson", ".json")
 # What GeoPackage calls a plane of which nothing is known (srs_id -1).
 _UNDEFINED = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1],AXIS["Easting",EAST],AXIS["Northing",NORTH]]'
+
+# The format whose files hold the styles of their layers.
+GPKG = ".gpkg"
 
 # Features, or pieces of a text, that are written between two looks at whether to stop.
 BETWEEN_CHECKS = 1000
@@ -57,6 +61,8 @@ def write_layer(
     place = replace(place, crs=_crs_in_file(path.name.lower() if path else "", place.crs, monitor))
     with through_memory(parameters, name, context) as (redirected, final):
         target = _fill_sink(algorithm, name, layer, features, place, redirected, context, monitor)
+        if Path(target.split("|")[0]).suffix.lower() == GPKG:
+            store_styles(target, layer_style(layer), layer.fields)
     target = final(target)
     show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
     if not len(features):

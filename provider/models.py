@@ -20,7 +20,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QPointF, QSizeF
 from qgis.PyQt.QtGui import QColor
 
-from ..algorithms.help import lower_first, pipeline_help, step_title
+from ..algorithms.help import lower_first, pipeline_help, step_label, step_title
 from ..algorithms.pipeline import Output, Pipeline, Step
 from . import PROVIDER_ID, paths
 from .clouds import FILTER
@@ -29,8 +29,8 @@ from .inputs import INPUT, INPUTS, OUTPUT, REFERENCE, cloud_title
 from .parameters import parameter, parameter_name
 
 
-def step_label(step: Step, label: str) -> str:
-    """Return the composite's label of a step's parameter or output, "Ground: cell size (m)"."""
+def output_label(step: Step, label: str) -> str:
+    """Return the composite's label of a step's output, "Openings: facades with openings"."""
     return f"{step_title(step)}: {lower_first(label)}"
 
 
@@ -45,7 +45,7 @@ def pipeline_parameters(pipeline: Pipeline) -> dict[str, QgsProcessingParameterD
         definition = parameter(tunable)
         definition.setName(name.upper())
         if name not in pipeline.shared:
-            definition.setDescription(step_label(step, definition.description()))
+            definition.setDescription(step_label(step, step_title(step), definition.description()))
         if tunable.name in step.tunables:
             default = step.tunables[tunable.name]
             definition.setDefaultValue(list(default) if isinstance(default, tuple) else default)
@@ -138,8 +138,9 @@ def output_title(pipeline: Pipeline, output: Output) -> str:
         title = cloud_title(makers if output.name == "output" else [stage])
     else:
         titles = {made.name: made.title for made in (*stage.layers, *stage.rasters, *stage.files)}
-        title = titles.get(output.of, "Report")
-    return title if output.name == output.of else step_label(output.step, title)
+        title = titles.get(output.of, stage.report_title)
+    is_alone = output.name == output.of or (output.of == "report" and title != "Report")
+    return title if is_alone else output_label(output.step, title)
 
 
 def _layers_taken(pipeline: Pipeline, step: Step) -> list[str]:

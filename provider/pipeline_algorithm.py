@@ -14,7 +14,7 @@ from ..algorithms.stage import Monitor, TextFile
 from .cloud_algorithm import CLOUD, CloudAlgorithm, Inputs, Made, Read, outputs_of
 from .feedback import ChainMonitor
 from .inputs import REPORT
-from .models import model_file, output_title, pipeline_parameters, step_label
+from .models import model_file, output_label, output_title, pipeline_parameters
 from .parameters import automatic_numbers, number_outputs, tunable_values, used_name
 from .run_log import RunLog
 from .styles import switch_off
@@ -88,7 +88,7 @@ class PipelineAlgorithm(CloudAlgorithm):
     def number_titles(self) -> dict[str, str]:
         """Return the titles of the numbers of all steps (used values, measures) by name."""
         return {
-            step_output_name(step, name): step_label(step, title)
+            step_output_name(step, name): output_label(step, title)
             for step in self.pipeline.steps
             for name, title in number_outputs(step.stage).items()
         }

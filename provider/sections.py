@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Optional
 
-from ..algorithms.help import lower_first, step_title
-from ..algorithms.pipeline import Pipeline
+from ..algorithms.help import step_label, step_title
+from ..algorithms.pipeline import Pipeline, Step
 from ..algorithms.stage import DIMENSION, Tunable
 from ..algorithms.tiling.settings import SETTINGS
 from .inputs import CRS
@@ -33,10 +33,10 @@ class Section:
     unset: dict[str, str] = field(default_factory=dict)
     pickers: dict[str, str] = field(default_factory=dict)
 
-    def add(self, name: str, tunable: Tunable, prefix: str = "") -> None:
-        """Add a parameter; a prefix says which step it is of."""
+    def add(self, name: str, tunable: Tunable, step: Optional[Step] = None) -> None:
+        """Add a parameter; where its group does not name the step, its label does."""
         label = plain_label(tunable)
-        self.labels[name] = f"{prefix}: {lower_first(label)}" if prefix else label
+        self.labels[name] = step_label(step, tr(step_title(step)), label) if step is not None else label
         if tunable.name == DIMENSION:
             self.pickers[name] = DIMENSION
         elif tunable.name in _CLASSES:
@@ -84,6 +84,6 @@ def _of_steps(pipeline: Pipeline) -> list[Section]:
     for name, (step, tunable) in pipeline.parameters.items():
         is_shared = name in pipeline.shared
         # Parameters that are shown at once have no group that names their step.
-        prefix = step_title(step) if name in pipeline.shown and not is_shared else ""
-        sections["" if is_shared else step.name].add(name.upper(), tunable, prefix)
+        named = step if name in pipeline.shown and not is_shared else None
+        sections["" if is_shared else step.name].add(name.upper(), tunable, named)
     return [section for section in sections.values() if section.labels]

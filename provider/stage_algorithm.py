@@ -101,7 +101,7 @@ def _made(stage: Stage) -> list[Made]:
     for name, declared in outputs_of(stage):
         is_one_of_several = isinstance(declared, Raster) and len(stage.rasters) > 1
         optional = declared != CLOUD and (has_other or bool(made) or is_one_of_several)
-        title = cloud_title([stage]) if name == CLOUD else tr("Report")
+        title = cloud_title([stage]) if name == CLOUD else tr(stage.report_title)
         if not isinstance(declared, str):
             title = tr(declared.title)
         made.append(Made(name.upper(), title, stage, declared, optional))

@@ -16,6 +16,7 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingLayerPostProcessorInterface,
     QgsRasterLayer,
+    QgsVectorLayer,
 )
 from qgis.PyQt import sip
 
@@ -31,6 +32,7 @@ from ..algorithms.stage import Field, Layer, Raster, Stage
 from .crs import crs_of
 from .named_styles import add_named_styles, fit_ramp
 from .paths import STYLES
+from .texts import tr
 
 # Kinds of results from the bottom of the map to the top: QGIS would stack them by the names of their files.
 _DRAWN = ("Raster", "Cloud", "Polygon", "LineString", "Point")
@@ -40,6 +42,14 @@ _BELOW = (QgsRasterLayer, QgsPointCloudLayer)
 
 # Decimals of numbers in tables: millimeters.
 _DECIMALS = 3
+
+# Attributes that a map tip shows, in this order, the most of them, and their decimals where these are not one.
+_IN_TIPS = ("status", "kind", "roof_type", "height", "area", "length", "width", "radius", "confidence")
+_MOST_IN_TIPS = 4
+_DECIMALS_IN_TIPS = {"area": 0, "confidence": 2, "radius": 2}
+
+# Sentences that it shows below.
+_TEXTS_IN_TIPS = ("reason",)
 
 
 class Styler(QgsProcessingLayerPostProcessorInterface):
@@ -67,10 +77,23 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         # The system that QGIS takes for a virtual point cloud is that of the catalog entry, not of the points.
         if self.crs and (not layer.crs().isValid() or layer.providerType() == "vpc"):
             layer.setCrs(crs_of(self.crs))
+        message = self.apply(layer)
+        if message:
+            feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
+        layer.triggerRepaint()
+        stack_results(context)
+        if len(context.layersToLoadOnCompletion()) == 1:
+            put_below(layer, context)
+        node = context.project().layerTreeRoot().findLayer(layer.id()) if self.is_off else None
+        if node is not None:
+            node.setItemVisibilityChecked(False)
+
+    def apply(self, layer: QgsMapLayer) -> str:
+        """Give a layer the style, its tables and tips, and the named styles; return why the style can't be loaded."""
+        why = ""
         if self.stem is not None:
             message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
-            if not loaded:
-                feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
+            why = "" if loaded else message
         if isinstance(layer, QgsRasterLayer):
             fit_ramp(layer)
         if self.fields:
@@ -87,28 +110,60 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         add_named_styles(layer)
         if isinstance(layer, QgsPointCloudLayer):
             show_in_3d(layer)
-        layer.triggerRepaint()
-        stack_results(context)
-        if len(context.layersToLoadOnCompletion()) == 1:
-            put_below(layer, context)
-        node = context.project().layerTreeRoot().findLayer(layer.id()) if self.is_off else None
-        if node is not None:
-            node.setItemVisibilityChecked(False)
+        return why
 
 
 def _map_tip(fields: Sequence[Field]) -> str:
-    """Return the table of all attributes that QGIS shows where the mouse rests on a feature."""
-    rows = []
-    for field in fields:
-        value = f'round("{field.name}", {_DECIMALS - 1})' if field.type is float else f'"{field.name}"'
-        shown = f"{value} || ' {field.unit}'" if field.unit else value
-        rows.append(f"<tr><td>{field.name}</td><td>[% coalesce({shown}, '') %]</td></tr>")
-    return f"<table>{''.join(rows)}</table>"
+    """Return what QGIS shows where the mouse rests on a feature: its number, what matters most, and the reason."""
+    names = {field.name: field for field in fields}
+    main = [names[name] for name in _IN_TIPS if name in names] or [one for one in fields[1:] if one.type is float]
+    facts = [f'to_string("{fields[0].name}")', *(_shown_in_tip(field) for field in main[:_MOST_IN_TIPS])]
+    tip = f"<b>[% array_to_string(array_filter(array({', '.join(facts)}), @element is not null), ' · ') %]</b>"
+    texts = [name for name in _TEXTS_IN_TIPS if name in names]
+    return tip + "".join(f"<br>[% coalesce(\"{name}\", '') %]" for name in texts)
+
+
+def _shown_in_tip(field: Field) -> str:
+    """Return the expression of a field's value with its unit, or its name where it has none; NULL where it is."""
+    value = f'format_number("{field.name}", {_DECIMALS_IN_TIPS.get(field.name, 1)})'
+    value = value if field.type is not str else f'"{field.name}"'
+    return f"{value} || ' {field.unit}'" if field.unit else f"'{field.name.replace('_', ' ')} ' || {value}"
 
 
 # QGIS deletes post processors with the run's context, but keeps no reference until then: one that Python forgets
 # is never called.
 _KEPT: list[Styler] = []
+
+
+def store_styles(source: str, stem: Optional[str], fields: Sequence[Field]) -> None:
+    """Store the styles of a layer in the GeoPackage that holds it: QGIS shows it so wherever it is opened.
+
+    Parameters
+    ----------
+    source : str
+        The layer, as QGIS opens it.
+    stem : str, optional
+        Its style, which becomes the one that QGIS takes.
+    fields : sequence of Field
+        Its fields, for names, units and tips.
+
+    Raises
+    ------
+    ValueError
+        If the file can't be written.
+    """
+    layer = QgsVectorLayer(source, "stored", "ogr")
+    if not layer.isValid():
+        return
+    Styler(stem, fields).apply(layer)
+    manager = layer.styleManager()
+    first = manager.currentStyle()
+    for name in manager.styles():
+        manager.setCurrentStyle(name)
+        title = tr("Default") if name == first else name
+        error = layer.saveStyleToDatabase(title, "", name == first, "")
+        if error:
+            raise ValueError(f"The styles can't be stored in {Path(source.split('|', maxsplit=1)[0]).name}: {error}")
 
 
 def show_in_3d(layer: QgsPointCloudLayer) -> None:
@@ -230,20 +285,21 @@ def _key_of(layer: QgsMapLayer, keys: dict[str, int]) -> Optional[int]:
 
 
 def name_after(context: QgsProcessingContext, titles: Collection[str], subject: str, run: str = "") -> None:
-    """Name the layers of a run after its input, "Footprints (delft)", unless the user has; several make a group.
+    """Put the layers of a run in a group that is named after its input, "Delft: Detect buildings".
 
-    The group is named after the input and the ``run``, and has a number where there is one of that name.
+    A single one, where there is no other group, is named after the input itself, "Footprints (Delft)", unless the user
+    has named it. A group has a number where there is one of that name.
     """
     layers = context.layersToLoadOnCompletion()
     group, is_group = _new_group(context, ": ".join(part for part in (subject, run) if part))
     for path, details in layers.items():
         loaded = context.layerToLoadOnCompletionDetails(path)
         _SUBJECTS[path] = subject
-        if subject and details.name in titles:
-            loaded.name = f"{details.name} ({subject})"
-        # Beside groups QGIS would put a single layer into the current one.
-        if (len(layers) > 1 or is_group) and not details.groupName:
+        # Next to groups QGIS would put a single layer into the current one.
+        if group and (len(layers) > 1 or is_group) and not details.groupName:
             loaded.groupName = group
+        elif subject and details.name in titles:
+            loaded.name = f"{details.name} ({subject})"
 
 
 # Subject of each loaded file by its path: results of runs on it get that name, as temporary files have no plain ones.

@@ -210,7 +210,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         title = cloud_title([step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud])
         # Without the hint QGIS takes it for polygons in JSON.
         hint = QgsProcessingUtils.LayerHint.PointCloud
-        details = QgsProcessingContext.LayerDetails(f"{title} ({self._subject(folder)})", context.project(), VPC, hint)
+        details = QgsProcessingContext.LayerDetails(title, context.project(), VPC, hint)
         context.addLayerToLoadOnCompletion(shown, details)
         show_on_load(context, shown, "Cloud", self._cloud_style(), crs=self.plane)
 

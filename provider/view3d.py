@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+from itertools import islice
 from typing import Any
 
 from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsLayerTree,
     QgsMapLayer,
+    QgsPoint,
     QgsProject,
     QgsRectangle,
     QgsVector3D,
     QgsVectorLayer,
+    QgsWkbTypes,
 )
+from qgis.gui import QgsProjectionSelectionDialog
+from qgis.PyQt.QtWidgets import QPushButton
 
+from .named_clouds import SIMULATED_CRS
 from .texts import tr
 
 # Angle (°) of the camera from straight down: seen from above, walls would be lines.
@@ -21,6 +31,15 @@ _PITCH = 55.0
 
 # Angle (°) of the camera from south: seen from south, walls from south to north would be lines.
 _YAW = 35.0
+
+# The same in front of facades, seen nearly level.
+_PITCH_OF_FRONT = 75.0
+
+# Share of the area of polygons that looks to one side, from which on they are facades: walls of solids cancel out.
+_ONE_SIDED = 0.4
+
+# Features of a layer that are looked at: some hundred show how high it lies, and where it looks.
+_LOOKED_AT = 500
 
 # Distance of the camera, in sides of the extent that is shown.
 _AWAY = 1.8
@@ -32,26 +51,104 @@ def show_view(iface: Any) -> None:
     if not layers:
         iface.messageBar().pushInfo(tr("3D"), tr("There is no layer to show; run a model first."))
         return
+    _give_metric_system(iface, layers)
     canvas = iface.createNewMapCanvas3D(tr("3D: {}").format(layers[0].name()))
     settings = canvas.mapSettings()
     settings.setLayers(layers)
+    # The flat terrain of a new view lies at 0 and hides what lies below.
+    settings.setTerrainRenderingEnabled(False)
     extent = QgsRectangle()
     for layer in layers:
         change = QgsCoordinateTransform(layer.crs(), settings.crs(), QgsProject.instance())
         extent.combineExtentWith(change.transformBoundingBox(layer.extent()))
     middle, origin = extent.center(), settings.origin()
-    at = QgsVector3D(middle.x() - origin.x(), _elevation(layers) - origin.z(), -(middle.y() - origin.y()))
-    canvas.cameraController().setLookingAtPoint(at, _AWAY * max(extent.width(), extent.height(), 1.0), _PITCH, _YAW)
+    low, high = heights_of(layers)
+    at = QgsVector3D(middle.x() - origin.x(), (low + high) / 2 - origin.z(), -(middle.y() - origin.y()))
+    away = _AWAY * max(extent.width(), extent.height(), high - low, 1.0)
+    canvas.cameraController().setLookingAtPoint(at, away, *view_angles(layers))
 
 
-def _elevation(layers: list[QgsMapLayer]) -> float:
-    """Return the elevation of a corner of the first layer with heights, 0 without."""
+def _give_metric_system(iface: Any, layers: list[QgsMapLayer]) -> None:
+    """Give the project the system of a layer, or local meters, where it has none or degrees: views would be empty."""
+    project = QgsProject.instance()
+    if project.crs().isValid() and not project.crs().isGeographic():
+        return
+    systems = (layer.crs() for layer in layers)
+    found = next((crs for crs in systems if crs.isValid() and not crs.isGeographic()), None)
+    project.setCrs(found or QgsCoordinateReferenceSystem(SIMULATED_CRS))
+    if found is not None:
+        return
+    item = iface.messageBar().createMessage(
+        tr("3D"), tr("The layers name no coordinate reference system; they are shown in local meters.")
+    )
+    button = QPushButton(tr("Choose a system…"))
+    button.clicked.connect(lambda: _choose_system(iface))
+    item.layout().addWidget(button)
+    iface.messageBar().pushWidget(item, Qgis.MessageLevel.Info)
+
+
+def _choose_system(iface: Any) -> None:
+    """Let the user choose the coordinate reference system of the project."""
+    dialog = QgsProjectionSelectionDialog(iface.mainWindow())
+    dialog.setCrs(QgsProject.instance().crs())
+    if dialog.exec():
+        QgsProject.instance().setCrs(dialog.crs())
+
+
+def heights_of(layers: list[QgsMapLayer]) -> tuple[float, float]:
+    """Return the least and the greatest elevation of the first layer with heights; 0 and 0 without."""
     for layer in layers:
-        feature = next(layer.getFeatures(), None) if isinstance(layer, QgsVectorLayer) else None
-        corner = next(feature.geometry().vertices(), None) if feature is not None else None
-        if corner is not None and corner.is3D():
-            return float(corner.z())
-    return 0.0
+        corners = [corner.z() for corner in _corners(layer) if corner.is3D()]
+        if corners:
+            return min(corners), max(corners)
+    return 0.0, 0.0
+
+
+def view_angles(layers: list[QgsMapLayer]) -> tuple[float, float]:
+    """Return pitch and yaw (°) of the camera: in front of facades, from aside of everything else.
+
+    Facades are upright polygons that look to one side, which the order of their corners says; walls of solids look to
+    all sides.
+    """
+    fronts = [normal for layer in layers for normal in _normals(layer)]
+    if not fronts:
+        return _PITCH, _YAW
+    east, north, up = (sum(normal[axis] for normal in fronts) for axis in range(3))
+    total = sum(math.sqrt(sum(part * part for part in normal)) for normal in fronts)
+    if math.hypot(east, north) < _ONE_SIDED * total or abs(up) > math.hypot(east, north):
+        return _PITCH, _YAW
+    return _PITCH_OF_FRONT, math.degrees(math.atan2(east, -north)) % 360.0
+
+
+def _corners(layer: QgsMapLayer) -> Iterator[QgsPoint]:
+    """Yield the corners of the first features of a vector layer."""
+    if isinstance(layer, QgsVectorLayer):
+        for feature in islice(layer.getFeatures(), _LOOKED_AT):
+            yield from feature.geometry().vertices()
+
+
+def _normals(layer: QgsMapLayer) -> Iterator[tuple[float, float, float]]:
+    """Yield the normals of the first polygons of a layer in space, as long as their areas (Newell's method)."""
+    if not isinstance(layer, QgsVectorLayer) or not QgsWkbTypes.hasZ(layer.wkbType()):
+        return
+    for feature in islice(layer.getFeatures(), _LOOKED_AT):
+        for part in feature.geometry().constParts():
+            ring = part.exteriorRing() if hasattr(part, "exteriorRing") else None
+            if ring is not None:
+                corners = [(corner.x(), corner.y(), corner.z()) for corner in ring.points()]
+                yield _newell(corners)
+
+
+def _newell(corners: list[tuple[float, float, float]]) -> tuple[float, float, float]:
+    """Return the normal of a closed ring of corners, as long as the area."""
+    x, y, z = corners[0]
+    moved = [(one[0] - x, one[1] - y, one[2] - z) for one in corners]
+    pairs = list(zip(moved, moved[1:]))
+    return (
+        sum((a[1] - b[1]) * (a[2] + b[2]) for a, b in pairs) / 2,
+        sum((a[2] - b[2]) * (a[0] + b[0]) for a, b in pairs) / 2,
+        sum((a[0] - b[0]) * (a[1] + b[1]) for a, b in pairs) / 2,
+    )
 
 
 def layers_to_show(group: QgsLayerTree, visible: list[QgsMapLayer]) -> list[QgsMapLayer]:

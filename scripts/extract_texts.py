@@ -89,7 +89,7 @@ def _of_module(path: Path) -> Iterator[str]:
 
 def _of_stage(stage: Stage) -> Iterator[str]:
     """Yield the texts of a stage in its dialog."""
-    yield from (stage.title, stage.group, stage.summary)
+    yield from (stage.title, stage.group, stage.summary, stage.report_title)
     yield from (stage.input_title, stage.reference_title, stage.reference)
     for tunable in stage.tunables.values():
         yield from (tunable.param.label, tunable.param.help, tunable.param.unset, tunable.param.unset_text)

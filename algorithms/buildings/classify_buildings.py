@@ -71,6 +71,7 @@ _MinShareAround = Annotated[
     reach=5.0,
     of_whole=MEAN_ENTROPIES,
     cost=3.0,
+    report_title="Why clusters are buildings",
 )
 def classify_buildings(
     xyz,

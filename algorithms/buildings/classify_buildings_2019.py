@@ -26,7 +26,7 @@ _REACH = 5.0
 @stage(
     "Classify buildings (as published 2019)",
     group="Buildings",
-    tags="building,entropy,k-means,unsupervised,classification,Santos",
+    tags="building,entropy,k-means,kmeans,unsupervised,classification,Santos",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
     measures=MEASURES,
     reach=_REACH,

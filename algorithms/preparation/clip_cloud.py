@@ -14,7 +14,7 @@ from ..stage import InputLayer, LayerFeatures, Param, stage
 @stage(
     "Clip cloud",
     group="Preparation",
-    tags="clip,crop,cut,polygon,mask,extent,window,area,subset,extract,outside,erase,lasclip",
+    tags="las,laz,copc,pdal,clip,crop,cut,polygon,mask,extent,window,area,subset,extract,outside,erase,lasclip",
     selects=True,
     input_layers=(
         InputLayer(

@@ -47,7 +47,7 @@ class _Sorted:
 @stage(
     "Downsample to voxels",
     group="Preparation",
-    tags="thin,decimate,subsample,reduce,voxel grid,center of gravity,centroid,even density,lasthin",
+    tags="las,laz,copc,pdal,thin,decimate,subsample,reduce,voxel grid,center of gravity,centroid,even density,lasthin",
     writes=("xyz", "classification", "voxel_count"),
     selects=True,
     reach=lambda tunables: tunables["voxel_size"],

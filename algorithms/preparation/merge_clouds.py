@@ -46,7 +46,7 @@ class Transform:
 @stage(
     "Merge point clouds",
     group="Preparation",
-    tags="combine,append,join,union,tiles,scans,register,lasmerge,"
+    tags="las,laz,copc,pdal,combine,append,join,union,tiles,scans,register,lasmerge,"
     "relative orientation,transform,rotate,shift,matrix,4x4",
     writes=("xyz", "point_source_id", "previous_source_id"),
     written_if={"previous_source_id": "where PointSourceId was not 0 everywhere"},

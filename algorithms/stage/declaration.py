@@ -59,6 +59,7 @@ class Stage:
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
     input_title: str = "Point cloud"  #: Label of the cloud that it reads
+    report_title: str = "Report"  #: What its page is called
     reference_title: str = "Reference point cloud"  #: Label of the second cloud of a stage that reads one
     #: Description of that second cloud
     reference: str = "The same points with the true values, to compare with."

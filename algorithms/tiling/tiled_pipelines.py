@@ -62,8 +62,8 @@ class TiledPipeline:
 
     @property
     def group(self) -> str:
-        """The group of the toolbox: a composite and its twin in tiles are neighbors."""
-        return self.pipeline.group
+        """The group of the toolbox: the composites in tiles stand together."""
+        return "Models in tiles"
 
     @property
     def tags(self) -> str:
@@ -128,7 +128,7 @@ class SurveyTool:
 CUT_INTO_TILES = SurveyTool(
     name="cut_into_tiles",
     title="Cut into tiles",
-    tags="tile,tiles,split,grid,folder,survey,large,retile,lastile",
+    tags="las,laz,copc,pdal,tile,tiles,split,grid,folder,survey,large,retile,lastile",
     summary="Cut point clouds of any size into square tiles.",
     description=(
         "The tiles are those of a lattice that starts at the origin of the coordinates; each is named by its lower "

@@ -4252,6 +4252,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Choose a system…</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>CityJSON</source>
         <translation type="unfinished"></translation>
     </message>
@@ -4581,6 +4585,10 @@
     </message>
     <message>
         <source>Decks are looked for among all points of the bare earth, as the paper does, in eight directions instead of four. Unlike in the paper, beams must not pass through them and both ends must be joined, since crowns over the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns and forests roofs and crowns are connected with the terrain by pieces of walls and leaves. Run a ground filter first there; its ground points are then the terrain. 'Classify bridges' works on the ground of a filter alone.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Default</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6321,6 +6329,14 @@
     </message>
     <message>
         <source>Models</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Models as published</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Models in tiles</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8160,6 +8176,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>The layers name no coordinate reference system; they are shown in local meters.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>The lowest point of each cell as large as the largest building makes a first TIN. In each round at most one point per facet joins it: the one with the smallest angle to the facet's nodes, if angle and distance to the facet are under the thresholds. Both thresholds are estimated in each round from the nodes: 8 robust standard deviations of their distances from the plane of their neighbors, and of the angles under which these appear from the nearest node. A point that lies too high above its facet is tried again at its mirror image about the facet's highest node, if that is one of the first nodes. Rounds go on until no point qualifies, and every point is tried in each.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8777,6 +8797,10 @@
     </message>
     <message>
         <source>Whose points are wanted. Run twice with one scanner each, the same flight gives two clouds to be merged.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Why clusters are buildings</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

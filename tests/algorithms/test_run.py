@@ -228,7 +228,7 @@ def test_optional_dimensions_leave_withheld_points_out_too(cloud):
 
 
 def test_a_missing_dimension_names_itself_and_the_stage_that_writes_it(cloud):
-    with pytest.raises(ValueError, match=r"^The cloud has no ClusterID dimension; run 'Segment regions' first\.$"):
+    with pytest.raises(ValueError, match=r"^The cloud has no ClusterID dimension; run 'Segment roofs' first\.$"):
         run_stage(STAGES["classify_buildings"], cloud)
     with pytest.raises(ValueError, match=r"no HeightAboveGround dimension; run 'Height above ground' first\.$"):
         run_stage(STAGES["segment_roofs"], cloud)

@@ -162,22 +162,39 @@ def test_the_toolbox_has_all_and_nothing_else(provider):
 def test_the_algorithm_is_the_stage(stage, algorithm):
     assert (algorithm.name(), algorithm.displayName(), algorithm.group()) == (stage.id, stage.title, stage.group)
     own = [tag.strip() for tag in stage.tags.split(",") if tag.strip()]
-    assert algorithm.tags() == [*own, "las", "laz", "copc", "pdal", "lidar", "point cloud"]
+    assert algorithm.tags() == [*own, "lidar", "point cloud"]
     assert not algorithm.icon().isNull()
 
 
 def test_every_group_has_an_icon(provider):
     groups = {one.groupId(): one.svgIconPath() for one in provider.algorithms() if one.group() != "Toys"}
-    assert {name: Path(path).stem for name, path in groups.items()} == {name: name for name in groups}
+    models = ("modelsintiles", "modelsaspublished")
+    assert {name: Path(path).stem for name, path in groups.items()} == {
+        name: "models" if name in models else name for name in groups
+    }
+
+
+GROUPS = (" Models", " Models as published", " Models in tiles")
 
 
 def test_the_toolbox_begins_with_the_models_and_these_with_detect_buildings(provider):
     assert min(one.group() for one in provider.algorithms()) == " Models"
-    models = sorted(one.displayName() for one in provider.algorithms() if one.group() == " Models")
-    assert models[:2] == ["Detect buildings", "Detect buildings, in tiles"]
-    twins = [name for name in models if name.endswith(", in tiles")]
-    assert len(twins) == len(TILED_PIPELINES)
-    assert all(models[models.index(name) - 1] == name[: -len(", in tiles")] for name in twins)
+    named = {group: [one.displayName() for one in provider.algorithms() if one.group() == group] for group in GROUPS}
+    assert sorted(named[" Models"])[0] == "Detect buildings"
+    assert len(named[" Models"]) == 8
+    assert not [name for name in named[" Models"] if name.endswith(", in tiles")]
+    assert named[" Models as published"] == ["Detect buildings, published 2019"]
+    assert all(name.endswith(", in tiles") for name in named[" Models in tiles"])
+    assert len(named[" Models in tiles"]) == len(TILED_PIPELINES)
+
+
+def test_a_format_finds_algorithms_on_files_and_not_all():
+    """Each of four formats found all 91."""
+    for word in ("las", "laz", "copc", "pdal"):
+        found = [one.id for one in (*STAGES.values(), *PIPELINES.values()) if word in one.tags.split(",")]
+        assert "mergeclouds" in found
+        assert "clipcloud" in found
+        assert len(found) < 10
 
 
 @pytest.mark.parametrize(
@@ -192,8 +209,9 @@ def test_the_toolbox_begins_with_the_models_and_these_with_detect_buildings(prov
         ("iou", "assessbuildings"),
         ("wire", "interpretstructure"),
         ("normalize", "computeheightaboveground"),
-        ("copc", "detectbuildings"),
-        ("pdal", "detectbuildings"),
+        ("copc", "clipcloud"),
+        ("pdal", "mergeclouds"),
+        ("kmeans", "classifybuildings2019"),
     ],
 )
 def test_words_that_users_type_find_it(provider, word, wanted):

@@ -5,7 +5,8 @@ from qgis.core import QgsProject, QgsVectorLayer
 
 from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.provider.sample import PROJECT, TOWN, TRUTH, fill_project, make_sample
-from lidar_buildings.provider.view3d import layers_to_show
+from lidar_buildings.provider.view3d import heights_of, layers_to_show, view_angles
+from lidar_buildings.tests.provider.helpers import vector
 
 
 def test_the_sample_is_small_has_no_classes_and_is_a_project(provider, tmp_path):
@@ -52,3 +53,21 @@ def test_models_of_the_current_group_are_shown_alone(context):
     visible = [layers[0], layers[2], layers[3]]
     assert layers_to_show(group, visible) == [layers[0]]
     assert layers_to_show(root.addGroup("empty"), visible) == [layers[0], layers[2]]
+
+
+FRONT = "PolygonZ ((10 0 0, 10 8 0, 10 8 6, 10 0 6, 10 0 0))"
+BACK = "PolygonZ ((0 8 0, 0 0 0, 0 0 6, 0 8 6, 0 8 0))"
+
+
+def test_the_camera_stands_in_front_of_facades_and_aside_of_solids(context):
+    """A facade was seen from behind, dark, whichever way it looked."""
+    plain = view_angles([vector("PolygonZ", [(BACK, [1, 1.0, ""]), (FRONT, [2, 1.0, ""])])])
+    pitch, yaw = view_angles([vector("PolygonZ", [(FRONT, [1, 1.0, ""])])])
+    assert (pitch, yaw) == (75.0, 90.0), "counterclockwise from the east: it looks east, as does the camera's place"
+    assert view_angles([vector("PolygonZ", [(BACK, [1, 1.0, ""])])])[1] == 270.0
+    assert plain == view_angles([]) != (pitch, yaw)
+
+
+def test_the_view_looks_at_the_middle_of_the_heights(context):
+    assert heights_of([vector("Polygon", [("Polygon ((0 0, 1 0, 1 1, 0 0))", [1, 1.0, ""])])]) == (0.0, 0.0)
+    assert heights_of([vector("PolygonZ", [(FRONT, [1, 1.0, ""])])]) == (0.0, 6.0)

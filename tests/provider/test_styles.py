@@ -17,6 +17,7 @@ from qgis.core import (
     QgsGeometry,
     QgsPointCloudLayer,
     QgsProcessingContext,
+    QgsProcessingOutputLayerDefinition,
     QgsRasterLayer,
     QgsVectorLayer,
 )
@@ -26,7 +27,7 @@ from qgis.PyQt.QtCore import QCoreApplication
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
-from lidar_buildings.algorithms.cloud.files import write_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.features.classify_dimensionality import Dimensionality
 from lidar_buildings.algorithms.quality import assess_footprints as footprints
@@ -48,7 +49,7 @@ from lidar_buildings.provider.styles import (
     subject_of_file,
     switch_off,
 )
-from lidar_buildings.tests.provider.helpers import vector
+from lidar_buildings.tests.provider.helpers import run, vector
 from lidar_buildings.tests.toys import TOYS
 
 OF_CLOUDS = sorted(path.stem for path in STYLES.glob("*.qml") if path.stem in DIMENSIONS)
@@ -144,7 +145,7 @@ def test_footprints_are_labeled(qgis_application):
     assert layer.labelsEnabled()
 
 
-def test_a_feature_is_called_by_its_number_and_shows_all_where_the_mouse_rests(context, log):
+def test_a_feature_is_called_by_its_number_and_shows_what_matters_where_the_mouse_rests(context, log):
     fields = (Field("id", int, "number"), Field("height", float, "height", "m"), Field("reason", str, "why"))
     layer = QgsVectorLayer("Polygon?field=id:int&field=height:double&field=reason:string", "f", "memory")
     Styler(None, fields).postProcessLayer(layer, context, log)
@@ -154,7 +155,10 @@ def test_a_feature_is_called_by_its_number_and_shows_all_where_the_mouse_rests(c
     of_feature.setFeature(feature)
     assert QgsExpression(layer.displayExpression()).evaluate(of_feature) == 7
     tip = QgsExpression.replaceExpressionText(layer.mapTipTemplate(), of_feature)
-    assert "<tr><td>height</td><td>4.23 m</td></tr><tr><td>reason</td><td></td></tr>" in tip
+    assert tip == "<b>7 · 4.2 m</b><br>"
+    feature.setAttributes([8, None, "A solid plane"])
+    of_feature.setFeature(feature)
+    assert QgsExpression.replaceExpressionText(layer.mapTipTemplate(), of_feature) == "<b>8</b><br>A solid plane"
 
 
 @pytest.mark.parametrize(
@@ -231,7 +235,7 @@ def test_styles_of_rasters_load(stem, kind, tmp_path, qgis_application):
     assert layer.renderer().type() == kind
 
 
-def test_the_layers_of_a_run_are_named_after_its_input_and_make_a_group(context):
+def test_the_layers_of_a_run_make_a_group_that_is_named_after_its_input(context):
     from qgis.core import QgsProcessingContext, QgsProject
 
     for path, name in (("a.gpkg", "Footprints"), ("b.laz", "My own name")):
@@ -240,7 +244,7 @@ def test_the_layers_of_a_run_are_named_after_its_input_and_make_a_group(context)
     name_after(context, ["Footprints", "Classified point cloud"], "delft")
     layers = context.layersToLoadOnCompletion()
     assert [(layers[path].name, layers[path].groupName) for path in ("a.gpkg", "b.laz")] == [
-        ("Footprints (delft)", "delft"),
+        ("Footprints", "delft"),
         ("My own name", "delft"),
     ]
 
@@ -252,7 +256,31 @@ def test_a_single_layer_makes_no_group(context):
         "a.gpkg", QgsProcessingContext.LayerDetails("Footprints", QgsProject.instance(), "OUTPUT")
     )
     name_after(context, ["Footprints"], "delft")
-    assert context.layersToLoadOnCompletion()["a.gpkg"].groupName == ""
+    (details,) = context.layersToLoadOnCompletion().values()
+    assert (details.name, details.groupName) == ("Footprints (delft)", "")
+
+
+def test_results_are_named_after_the_layer_that_was_given(provider, context, log, town_file, tmp_path, out):
+    """A layer with a name of its own gave results called after its file, OUTPUT."""
+    write_cloud(read_cloud(town_file), tmp_path / "OUTPUT.copc.laz")
+    layer = QgsPointCloudLayer(str(tmp_path / "OUTPUT.copc.laz"), "Delft", "copc")
+    context.project().addMapLayer(layer)
+    definition = QgsProcessingOutputLayerDefinition(str(out / "f.gpkg"), context.project())
+    run("toyoutline", {"INPUT": layer.id(), "FOOTPRINTS": definition}, context, log)
+    (details,) = context.layersToLoadOnCompletion().values()
+    assert details.name == "Footprints (Delft)"
+
+
+def test_styles_are_stored_in_a_geopackage(provider, context, log, town_file, out):
+    """A GeoPackage that the command line had written came plain and pink."""
+    run("toychain", {"INPUT": str(town_file), "FOOTPRINTS": str(out / "f.gpkg")}, context, log)
+    layer = QgsVectorLayer(str(out / "f.gpkg"), "f", "ogr")
+    count, _, names, *_ = layer.listStylesInDatabase()
+    assert count == 2
+    assert set(names) == {"Default", "Height"}
+    assert layer.labelsEnabled(), "the style of footprints is the one that QGIS takes"
+    assert "confidence" not in layer.mapTipTemplate()
+    assert layer.displayExpression() == '"id"'
 
 
 def test_a_layer_that_another_step_has_taken_further_is_loaded_switched_off(context):

@@ -367,8 +367,8 @@ def test_the_tiles_are_loaded_with_points_style_and_the_layers_in_one_group(algo
     layers = context.layersToLoadOnCompletion()
     shown = str(out / "shown" / "shown.vpc")
     assert {path: (one.name, one.groupName) for path, one in layers.items()} == {
-        shown: ("Classified point cloud (tiles)", "tiles: Detect buildings, in tiles"),
-        target: ("Footprints (tiles)", "tiles: Detect buildings, in tiles"),
+        shown: ("Classified point cloud", "tiles: Detect buildings, in tiles"),
+        target: ("Footprints", "tiles: Detect buildings, in tiles"),
     }
     assert layers[shown].layerTypeHint == QgsProcessingUtils.LayerHint.PointCloud, "QGIS took it for polygons"
     assert layers[shown].layerSortKey < layers[target].layerSortKey
