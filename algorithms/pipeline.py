@@ -22,7 +22,7 @@ class Step:
     whose cloud it works on instead. ``layers`` says which of its input layers is a layer of an
     earlier step, ``{"new": "walls.footprints"}``; the composite asks for all others,
     under the input layer's own name. A stage that merges is given all clouds of the composite, one that
-    reads a reference the second cloud.
+    reads a reference the second cloud. ``only_with`` names a layer of the composite without which it is not run.
     """
 
     name: str
@@ -30,6 +30,7 @@ class Step:
     tunables: dict[str, Any] = field(default_factory=dict)
     cloud: str = ""
     layers: dict[str, str] = field(default_factory=dict)
+    only_with: str = ""
 
     @property
     def stage(self) -> Stage:
@@ -164,14 +165,17 @@ class Pipeline:
                 outputs.append(Output(of if is_single else f"{step.name}_{of}", step, of))
         return tuple(outputs)
 
-    def steps_for(self, wanted: Collection[str]) -> tuple[Step, ...]:
+    def steps_for(self, wanted: Collection[str], layers: Optional[Collection[str]] = None) -> tuple[Step, ...]:
         """Return the steps, in order, that the outputs of these names are made by or depend on.
 
-        A step that only measures runs with the layers that it measures: their numbers are given with them.
+        A step that only measures runs with the layers that it measures: their numbers are given with them. ``layers``
+        are those that the composite is given, by name; None is all that it can be given.
         """
         asked = {(output.step.name, output.of) for output in self.outputs if output.name in wanted}
         needed, steps = set(asked), []
         for step in reversed(self.steps):
+            if step.only_with and layers is not None and step.only_with not in layers:
+                continue
             made = {(step.name, of) for of in _made(step)}
             read = {made_by(layer) for layer in step.layers.values()}
             only_measures = made == {(step.name, REPORT)}

@@ -212,7 +212,12 @@ _PIPELINES = (
             Step("roofs", "classify_roofs"),
             Step("walls", "classify_walls"),
             Step("footprints", "extract_wall_footprints"),
-            Step("comparison", "compare_corners", layers={"footprints": "footprints.wall_footprints"}),
+            Step(
+                "comparison",
+                "compare_corners",
+                layers={"footprints": "footprints.wall_footprints"},
+                only_with="old_map",
+            ),
         ),
         shared={"min_area": ("roofs", "footprints"), "source": ("ground", "roofs")},
         shown=("min_area", "voxels_voxel_size", "ground_max_building_size", "roofs_min_height", "footprints_min_seen"),

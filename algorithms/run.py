@@ -357,10 +357,10 @@ def run_pipeline(
     """Run the steps on ``cloud``, changing it as the steps do, and return their results.
 
     ``cloud`` is several clouds where the pipeline merges. ``input_layers`` are the layers that the pipeline
-    is given, by name, in meters relative to the cloud's origin. Steps that no ``wanted`` output depends on are not run;
-    what the others make besides is among the results. ``tunables`` are named
-    ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share is
-    named ``<tunable>``.
+    is given, by name, in meters relative to the cloud's origin. Steps that no ``wanted`` output depends on are not run,
+    nor those that compare with a layer that is not given; what the others make besides is among the results.
+    ``tunables`` are named ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share
+    is named ``<tunable>``.
 
     How the cloud was sampled is measured once for all steps, and again where a step has changed the points that it is
     measured on: those that are neither withheld nor noise. ``samplings`` are measured before, on the survey that the
@@ -397,7 +397,7 @@ def run_pipeline(
     chosen = {step.name: of_step for step, of_step in pipeline.by_step(tunables)}
     given = given_layers(pipeline.name, pipeline.input_layers.values(), input_layers or {})
     names = [output.name for output in pipeline.outputs] if wanted is None else wanted
-    steps = pipeline.steps_for(names)
+    steps = pipeline.steps_for(names, [name for name, layer in given.items() if layer is not None])
     # Later steps change the cloud that they work on: a cloud that is kept as it was is copied when it is made.
     kept = {
         output.step.name for output in pipeline.outputs if output.name in names and output.of == CLOUD != output.name

@@ -89,6 +89,7 @@ class Made:
     declared: Union[Layer, Raster, TextFile, str]
     optional: bool = True
     by_default: bool = True  #: Whether the dialog makes it unless told otherwise
+    only_with: str = ""  #: Name of the layer without which it is not made
 
     @property
     def key(self) -> str:
@@ -144,6 +145,7 @@ class Job:
     tunables: dict[str, Any]
     wanted: list[Made]
     clouds: list[Path] = field(default_factory=list)
+    unmade: list[Made] = field(default_factory=list)  #: Outputs that need a layer which is not given
     layer: str = ""  #: Name of the layer that gives the cloud, "" for a file
     reference: Optional[Path] = None
     box: Optional[np.ndarray] = None
@@ -239,7 +241,11 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Return what a run needs; refuse with a ValueError what can be refused before it."""
         inputs = self.inputs
         wanted = [made for made in self.made if parameters.get(made.name) not in UNWANTED]
+        given = [one.name for one in inputs.layers if find_input_layer(self, one, parameters, context) is not None]
+        unmade = [made for made in wanted if made.only_with and made.only_with not in given]
+        wanted = [made for made in wanted if made not in unmade]
         job = Job(self.tunables(parameters, context), wanted)
+        job.unmade = unmade
         if inputs.clouds:
             job.clouds = input_paths(self, inputs.several, parameters, context)
             job.layer = name_of_layer(parameters.get(INPUT))
@@ -274,6 +280,9 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             all_in_place(definitions, parameters, context, subject, title) as run,
         ):
             monitor = self.monitor(feedback, log)
+            if self.job.unmade:
+                titles = ", ".join(made.title for made in self.job.unmade)
+                monitor.inform(f"Not made, as the layer that they compare with is not given: {titles}.")
             read = self._read(parameters, context, monitor.part(0.0, self.shares[0]))
             results = self.compute(read, monitor.part(*self.shares))
             monitor.end_steps()

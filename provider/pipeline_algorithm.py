@@ -157,4 +157,5 @@ def _made(pipeline: Pipeline, output: Output) -> Made:
     # Layers, such as footprints, may be all that is wanted.
     optional = output.name != CLOUD or any(other.of != CLOUD for other in pipeline.outputs)
     title, is_result = output_title(pipeline, output), output.name == CLOUD or _rank(output) < _INTERMEDIATE
-    return Made(output.name.upper(), title, output.step.stage, declared, optional, is_result)
+    only_with = output.step.only_with
+    return Made(output.name.upper(), title, output.step.stage, declared, optional, is_result, only_with)

@@ -118,7 +118,7 @@ def _tile(path: Path, href: str) -> Path:
         why = "is no LAS, LAZ or COPC file; leave it out and"
     else:
         for name in names:
-            if os.path.isfile(path.parent / name):  # noqa: PTH113 - a name that the system can't look up is missing, too
+            if os.path.isfile(path.parent / name):  # noqa: PTH113 - names too long are missing
                 return path.parent / name
         why = "is missing; put it back or"
     raise ValueError(f"{path.name} names the tile {shown(href)}, which {why} build {path.name} again.")

@@ -182,8 +182,10 @@ def test_footprints_mapped_in_qgis_are_those_mapped_in_memory(with_map, provider
     assert edges.featureCount() == len(expected.layers["wall_edges"]) > 0
     values, wanted = values_of(opened(result["DTM"])), expected.rasters["dtm"].values
     np.testing.assert_array_equal(np.where(values == -9999, np.nan, values), wanted)
-    assert result["COMPARISON_FOUND"] == with_map
+    assert ("COMPARISON_FOUND" in result) == ("REPORT" in result) == with_map
+    assert (out / "r.html").exists() == with_map
     if with_map:
+        assert result["COMPARISON_FOUND"] == 1
         shift = [result[f"COMPARISON_MEAN_{axis}"] for axis in ("DX", "DY")]
         wanted_shift = [expected.report.values[name] for name in ("mean_dx", "mean_dy")]
         assert shift == pytest.approx(wanted_shift, abs=2e-3)
