@@ -73,6 +73,7 @@ from .styles import cloud_style, layer_style, show_on_load
 from .text_files import file_parameter, write_text
 from .texts import tr
 from .vectors import SOURCE_TYPES
+from .web import check_sizes, tell_sizes
 
 # Files and layers go by these names among the outputs of a stage or chain.
 CLOUD = OUTPUT.lower()
@@ -261,6 +262,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             refuse_same(job.clouds, job.reference)
         for path in job.paths:
             check_readable(path)
+        check_sizes(job.paths, job.box)
         if job.clouds:
             refuse_elsewhere(self, inputs.layers, job.clouds, parameters, context)
         return job
@@ -307,6 +309,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         job = self.job
         # Before reading: a process that runs out of memory is ended without a message.
         warn_if_memory_is_short(job.points, monitor)
+        tell_sizes(job.paths, job.box, monitor)
         count = max(1, len(job.paths))
         parts = [monitor.part(i / count, (i + 1) / count) for i in range(count)]
         clouds = read_clouds(job.paths, parts, job.crs, job.box)

@@ -23,6 +23,7 @@ from qgis.core import (
 
 from ..algorithms.cloud.outputs import VPC, kind_of
 from ..algorithms.cloud.vpc import tiles_of
+from .web import web_file
 
 SUFFIXES = (".las", ".laz", ".vpc")
 FILTER = "Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC)"
@@ -156,6 +157,8 @@ def _flat(value: Any) -> list:
 def _path(title: str, name: str, value: Any, context: QgsProcessingContext) -> Path:
     if isinstance(value, str) and Path(value).is_file():
         return _known(title, Path(value))
+    if isinstance(value, str) and (on_web := web_file(value)):
+        return _known(title, on_web)
     layer = value if isinstance(value, QgsMapLayer) else QgsProcessingUtils.mapLayerFromString(value, context, False)
     if layer is None:
         raise ValueError(f"{title} ({name}) must be a point cloud file or layer; nothing was found at {value}.")
@@ -163,11 +166,21 @@ def _path(title: str, name: str, value: Any, context: QgsProcessingContext) -> P
         raise ValueError(
             f"{title} ({name}) must be a point cloud, got the layer {layer.name()!r}; choose a point cloud."
         )
-    if not Path(layer.source()).is_file():
-        raise ValueError(
-            f"The layer {layer.name()!r} has no file on this computer ({layer.source()}); save it as LAZ first."
-        )
-    return _known(title, Path(layer.source()))
+    file = file_of_layer(layer)
+    if file is None:
+        raise ValueError(f"The layer {layer.name()!r} has no file ({layer.source()}); save it as LAZ first.")
+    return _known(title, file)
+
+
+def file_of_layer(layer: QgsPointCloudLayer) -> Optional[Path]:
+    """Return the file of a point cloud layer, on this computer or on the web, None where it has none.
+
+    Raises
+    ------
+    ValueError
+        If the address of one on the web has a password in it.
+    """
+    return web_file(layer.source()) or (Path(layer.source()) if Path(layer.source()).is_file() else None)
 
 
 def _known(title: str, path: Path) -> Path:

@@ -17,6 +17,7 @@ from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QAction
 
 from . import PROVIDER_ID
+from .clouds import file_of_layer
 from .inputs import EXTENT, INPUT
 from .paths import GROUP_ICONS, ICON
 from .texts import tr
@@ -94,9 +95,17 @@ def view_parameters(iface: Any) -> dict[str, Any]:
 
 
 def _cloud(active: Optional[QgsMapLayer], visible: list[QgsMapLayer]) -> Optional[QgsPointCloudLayer]:
-    """Return the active layer if it is a point cloud with a file, else the first of the visible ones."""
+    """Return the active layer if it is a point cloud with a file, else the first visible one; the web has files too."""
     clouds = (one for one in (active, *visible) if isinstance(one, QgsPointCloudLayer))
-    return next((one for one in clouds if Path(one.source()).is_file()), None)
+    return next((one for one in clouds if _has_file(one)), None)
+
+
+def _has_file(cloud: QgsPointCloudLayer) -> bool:
+    """Whether a layer has a file; where its address is refused, the dialog says so."""
+    try:
+        return file_of_layer(cloud) is not None
+    except ValueError:
+        return True
 
 
 def _visible_part(cloud: QgsPointCloudLayer, canvas: Any) -> Optional[QgsReferencedRectangle]:

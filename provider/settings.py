@@ -52,8 +52,9 @@ SCHEDULERS = Option("LIDARBUILDINGS_SCHEDULERS", "Dask schedulers that may be us
 PRESET = Option("LIDARBUILDINGS_PRESET", "Kind of cloud that dialogs begin with", "automatic", tuple(PRESETS))
 CODES = Option("LIDARBUILDINGS_CODES", "Class codes that dialogs begin with", next(iter(AGENCIES)), tuple(AGENCIES))
 THREADS = Option("LIDARBUILDINGS_THREADS", "Threads (empty = one for each core)")
+WEB_LIMIT = Option("LIDARBUILDINGS_WEB_LIMIT", "Most that a run reads of a point cloud on the web (MB)", "500")
 
-OPTIONS = (PRESET, CODES, THREADS, SCHEDULERS)
+OPTIONS = (PRESET, CODES, THREADS, WEB_LIMIT, SCHEDULERS)
 
 
 def apply_threads() -> None:

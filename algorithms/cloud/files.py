@@ -21,8 +21,9 @@ from .laz import writing_backend
 from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS, Layout
 from .point_records import PointRecords, merged_layout
-from .points import check_count, check_points, open_headers, points_within, read_points, write_points
+from .points import check_count, check_points, open_headers, points_within, read_points, size_within, write_points
 from .vpc import read_tiles, tiles_of
+from .web_file import file_at, is_on_web
 
 # One sentence for every step of a chain.
 _WAVEFORMS_APART = (
@@ -61,7 +62,7 @@ def read_cloud(
     ValueError
         In one sentence, whatever is wrong with the file; or if there are no points in the box.
     """
-    path, monitor = Path(path), monitor or Monitor()
+    path, monitor = file_at(path), monitor or Monitor()
     with readable(path):
         files = files_of(path)
         states = [state_of(file) for file in files]
@@ -104,7 +105,7 @@ def dimension_names(path: Union[str, Path]) -> list[str]:
     ValueError
         In one sentence, what is wrong with the file.
     """
-    path = Path(path)
+    path = file_at(path)
     with readable(path):
         header = next(iter(open_headers(files_of(path)[:1])[1]))
     return Cloud(header, np.zeros(1, header.layout.dtype), Crs()).dimension_names
@@ -118,7 +119,7 @@ def check_readable(path: Union[str, Path], read: CrsReader = read_crs) -> None:
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    path = Path(path)
+    path = file_at(path)
     with readable(path):
         for file, header in zip(*_opened(path)):
             read(header)
@@ -135,7 +136,7 @@ def read_extent(path: Union[str, Path], read: CrsReader = read_crs) -> tuple[np.
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _opened(Path(path))
+    files, headers = _opened(file_at(path))
     crs = crs_of_tiles(headers, [file.name for file in files], read, Monitor())
     low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
     return np.min(low, axis=0), np.max(high, axis=0), crs
@@ -151,7 +152,21 @@ def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None) -> in
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    return round(sum(header.count * _share_in(header, box) for header in _opened(Path(path))[1]))
+    return round(sum(header.count * _share_in(header, box) for header in _opened(file_at(path))[1]))
+
+
+def sizes_within(path: Union[str, Path], box: Optional[np.ndarray] = None) -> list[tuple[Path, tuple[int, int]]]:
+    """Return how many points and bytes of a file on the web, or of each such tile, are read for those in a box (2, 2).
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file or with a tile of it.
+    """
+    files, headers = _opened(file_at(path))
+    found = [(file, header) for file, header in zip(files, headers) if is_on_web(file)]
+    with readable(file_at(path)):
+        return [(file, size_within(file, header, box)) for file, header in found]
 
 
 def _share_in(header: Header, box: Optional[np.ndarray]) -> float:

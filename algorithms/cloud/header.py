@@ -42,7 +42,7 @@ _LARGEST_OLD_COUNT = 2**32 - 1
 _LARGEST_VLR = 65_535
 # Largest coordinate of a record, in steps of the scale from the offset.
 LARGEST_STEP = 2**31 - 1
-# Payloads of more bytes (waveforms) stay in their file until they are copied.
+# Payloads of more bytes (waveforms), and indexes, stay in their file until they are copied.
 _KEPT_IN_MEMORY = 2**24
 # Bytes of a payload that are copied at once.
 _COPIED_AT_ONCE = 2**24
@@ -354,7 +354,7 @@ class _Reader:
             known = f"{name} {record_id} " if name.isascii() and name.isprintable() else ""
             raise truncated(self.path, f"a record {known}of {size} bytes runs past byte {end}")
         record = Vlr(user_id, record_id, None, description, reserved, self.path, start, size)
-        if size > _KEPT_IN_MEMORY:
+        if size > _KEPT_IN_MEMORY or record.key == COPC_HIERARCHY:
             self.stream.seek(start + size)
         else:
             record.data = self.stream.read(size)

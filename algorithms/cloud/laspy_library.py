@@ -12,7 +12,6 @@ from typing import Any, Optional, cast
 
 from ..memory import share_freed
 from ..package_versions import requirement, too_old
-from .outputs import KeptFailure
 
 # What laspy imports where it finds it, and is not needed here: pyproj, whose wheels bring another PROJ into QGIS, and
 # requests, which takes longer to import than laspy itself.
@@ -76,7 +75,7 @@ def has_backend(name: str) -> bool:
 
 
 @contextmanager
-def explained(path: Path, file: Optional[KeptFailure] = None) -> Iterator[None]:
+def explained(path: Path, file: Optional[Any] = None) -> Iterator[None]:
     """Turn whatever a LAZ library raises, panics of Rust included, into one sentence.
 
     Raises
@@ -84,7 +83,7 @@ def explained(path: Path, file: Optional[KeptFailure] = None) -> Iterator[None]:
     ValueError
         If the library failed.
     OSError
-        If it failed as ``file``, which it was reading, could not be read.
+        If it failed as ``file``, which it was reading and which keeps its ``failure``, could not be read.
     """
     try:
         yield
@@ -92,8 +91,8 @@ def explained(path: Path, file: Optional[KeptFailure] = None) -> Iterator[None]:
         # A panic in Rust is no Exception, and its class can't be imported.
         if type(error).__module__.split(".")[0] not in ("laspy", "lazrs", "laszip", "pyo3_runtime"):
             raise
-        if file is not None and file.failure:
-            raise file.failure from None
+        if getattr(file, "failure", None):
+            raise cast(Any, file).failure from None
         raise ValueError(
             f"{path.name} is truncated or damaged: its points can't be decompressed; get the file again."
         ) from None

@@ -113,13 +113,13 @@ class _Laz:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold at most {held}")
 
     def check_chunks(self, table_at: int, record: bytes) -> np.ndarray:
-        """Hold the points and bytes of the chunk table, and the sizes of layers in each chunk, against the file.
+        """Hold the points and bytes of the chunk table against the file.
 
         Return position, bytes and number of points (m, 3) of each chunk, int64.
         """
         lazrs = need_lazrs()
         self.stream.seek(self.header.points_at)
-        with explained(self.path):
+        with explained(self.path, self.stream):
             chunks = lazrs.read_chunk_table(self.stream, lazrs.LazVlr(record))
         points, sizes = zip(*chunks)
         room = table_at - self.chunks_at
@@ -127,9 +127,6 @@ class _Laz:
             raise truncated(self.path, f"its chunks of {sum(sizes)} bytes don't fit into {room} bytes")
         if _chunk_size(record) == _VARIABLE_CHUNKS and sum(points) != self.header.count:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold {sum(points)}")
-        if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
-            n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
-            self._check_layers(np.array(sizes), n_layers)
         ends = self.chunks_at + np.cumsum(sizes, dtype=np.int64)
         return np.column_stack([ends - sizes, sizes, points]).astype(np.int64)
 
@@ -138,13 +135,19 @@ class _Laz:
         if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
             raise truncated(self.path, "its LASzip record describes layered points without chunks")
 
-    def _check_layers(self, sizes: np.ndarray, n_layers: int) -> None:
-        """Hold the sizes of the layers, which are allocated before they are read, against those of their chunks."""
+    def check_layers(self, chunks: np.ndarray, record: bytes, stream: BinaryIO, origin: int = 0) -> None:
+        """Hold the sizes of the layers, which are allocated before they are read, against those of their chunks.
+
+        The stream begins at position ``origin`` of the file.
+        """
+        if self.header.layout.point_format < _FIRST_LAYERED_FORMAT:
+            return
+        n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
         # A chunk begins with one whole record, its number of points and the size of each layer, 4 bytes each.
         head = self.header.layout.dtype.itemsize + 4
-        for start, size in zip(self.chunks_at + np.cumsum(sizes) - sizes, sizes):
-            self.stream.seek(int(start) + head)
-            sizes_read = self.stream.read(n_layers * 4)
+        for start, size in chunks[:, :2]:
+            stream.seek(int(start) - origin + head)
+            sizes_read = stream.read(n_layers * 4)
             if size and len(sizes_read) < n_layers * 4:
                 raise truncated(self.path, f"a chunk of {size} bytes ends before the sizes of its {n_layers} layers")
             layers = np.frombuffer(sizes_read, "<u4", len(sizes_read) // 4)
@@ -267,7 +270,7 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
         table_at = laz.table_at()
         laz.check_number(table_at, _chunk_size(record))
         if has_backend(_LAZRS):
-            laz.check_chunks(table_at, record)
+            laz.check_layers(laz.check_chunks(table_at, record), record, stream)
     if _chunk_size(record) != _VARIABLE_CHUNKS:
         # lazrs reserves the memory of a whole chunk: no chunk has more points than there are.
         record = _with_chunk_size(record, min(header.count, _chunk_size(record)))
@@ -303,6 +306,7 @@ def open_chunks(path: Path, header: Header, stream: BinaryIO) -> tuple[np.ndarra
     def read(some: np.ndarray, out: np.ndarray) -> None:
         stream.seek(int(some[0, 0]))
         raw = stream.read(int(some[:, 1].sum()))
+        laz.check_layers(some, record, io.BytesIO(raw), int(some[0, 0]))
         with explained(path):
             table = [(int(points), int(size)) for _, size, points in some]
             need_lazrs().decompress_points_with_chunk_table(raw, record, out, table)

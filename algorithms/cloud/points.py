@@ -18,6 +18,7 @@ from .header import Header, read_header, truncated
 from .laspy_library import explained, need_laspy
 from .laz import POINTS_PER_CHUNK, first_records, has_variable_chunks, open_chunks, open_laz, writing_backend
 from .outputs import KeptFailure
+from .web_file import WebStream, is_on_web
 
 # Points that are read or written at once. A multiple of the LAZ chunk, so that every call decompresses whole chunks, in
 # well under a second.
@@ -31,6 +32,12 @@ _NAMED = 5
 
 # Points of a file, spread over it, that are held against the bounds in its header before anything is read.
 _PROBES = 16
+
+# A box in plan that all points lie in.
+_EVERYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
+
+# Bytes of chunks on the web that are fetched before they are decompressed.
+_FETCHED = 2**26
 
 # Least share of the stated extent that points take on each axis, or all of them are measured: a bound that was never
 # set is 0, thousands of kilometers from the points.
@@ -91,6 +98,10 @@ def _checked_header(path: Path) -> Header:
     most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize
     if header.count > most:
         raise truncated(path, f"it promises {header.count} points, but {left} bytes hold at most {most}")
+    if is_on_web(path):
+        if not np.isfinite([header.low, header.high]).all():
+            raise truncated(path, "the bounds in its header are no numbers")
+        return header
     state = path.stat()
     if header.count == 0 or (measured := _measured(path, state.st_size, state.st_mtime_ns)) is None:
         return header
@@ -152,13 +163,19 @@ def check_points(path: Path, header: Header) -> None:
     ValueError
         If it is LAZ and its record or chunk table is damaged, or the package for it is missing.
     """
-    if header.is_compressed:
+    if _is_read_by_chunks(path, header):
+        with path.open("rb") as stream:
+            open_chunks(path, header, stream)
+    elif header.is_compressed:
         with path.open("rb") as stream:
             open_laz(path, header, stream)
 
 
 def read_chunks(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
     """Yield (position of the first point, records) until all points are read; the array is used again."""
+    if _is_read_by_chunks(path, header):
+        yield from _indexed(path, header, _EVERYWHERE, monitor)
+        return
     buffer = np.empty(min(AT_ONCE, header.count), header.layout.dtype)
     for start, stop, read in _reads(path, header, monitor):
         points = buffer[: stop - start]
@@ -175,9 +192,29 @@ def read_points(path: Path, header: Header, monitor: Monitor) -> np.ndarray:
         raise ValueError(
             f"{path.name} needs {size:.0f} GB of memory for its points, more than there is; cut it into tiles."
         ) from None
+    if _is_read_by_chunks(path, header):
+        for start, chunk in _indexed(path, header, _EVERYWHERE, monitor):
+            points[start : start + len(chunk)] = chunk
+        return points
     for start, stop, read in _reads(path, header, monitor):
         read(points[start:stop])
     return points
+
+
+def _is_read_by_chunks(path: Path, header: Header) -> bool:
+    """Whether also the whole of a file is read by its index: several ranges of a file on the web come at once."""
+    return is_on_web(path) and has_index(header) and has_variable_chunks(header)
+
+
+def size_within(path: Path, header: Header, box: Optional[np.ndarray]) -> tuple[int, int]:
+    """Return how many points and bytes of a file are read for those in a box (2, 2) in plan, None for all."""
+    if not (has_index(header) and has_variable_chunks(header)):
+        return header.count, path.stat().st_size
+    with path.open("rb") as stream:
+        chunks, _ = open_chunks(path, header, stream)
+        chunks = chunks[chunks[:, 2] > 0]
+        wanted = read_index(path, header, stream, chunks).touch(_EVERYWHERE if box is None else box)
+    return int(chunks[wanted, 2].sum()), int(chunks[wanted, 1].sum())
 
 
 def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> np.ndarray:
@@ -238,12 +275,24 @@ def _indexed(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> I
         chunks = chunks[chunks[:, 2] > 0]
         wanted = np.flatnonzero(read_index(path, header, stream, chunks).touch(box))
         ends = np.cumsum(chunks[:, 2])
+        fetched = 0
         for done, some in enumerate(parts := _portions(wanted, chunks[:, 2])):
+            if isinstance(stream, WebStream) and done == fetched:
+                fetched = _fetch(stream, chunks, parts, done, monitor)
             monitor.progress(done / len(parts))
             records = np.empty(int(chunks[some, 2].sum()), header.layout.dtype)
             read(chunks[some], records.view(np.uint8))
             yield int(ends[some[0]] - chunks[some[0], 2]), records
     monitor.progress(1.0)
+
+
+def _fetch(stream: WebStream, chunks: np.ndarray, parts: list[np.ndarray], first: int, monitor: Monitor) -> int:
+    """Fetch the chunks of portions from the first on, as many as are kept; return the portion behind them."""
+    sizes = np.cumsum([chunks[some, 1].sum() for some in parts[first:]])
+    last = first + max(1, int(np.searchsorted(sizes, _FETCHED, side="right")))
+    ranges = [(int(start), int(start + size)) for some in parts[first:last] for start, size in chunks[some, :2]]
+    stream.prefetch(ranges, monitor.part(first / len(parts), last / len(parts)))
+    return last
 
 
 def _portions(wanted: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
@@ -268,7 +317,10 @@ def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarra
 
 def _reads(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, int, Callable]]:
     """Yield (start, stop, function that fills an array with these points), with progress between."""
-    with KeptFailure(path) as file, BufferedReader(file) as stream:
+    opened: Any = path.open("rb") if is_on_web(path) else KeptFailure(path)
+    with opened as file, BufferedReader(file) as stream:
+        if is_on_web(path):
+            file.prefetch([(0, path.stat().st_size)], monitor.part(0.0, 0.0))
         read = _compressed(path, header, stream, file) if header.is_compressed else _plain(path, header, stream)
         for start in range(0, header.count, AT_ONCE):
             monitor.progress(start / header.count)

@@ -18,6 +18,7 @@ import numpy as np
 from ..cloud.copc_index import has_index
 from ..cloud.laz import writing_backend
 from ..cloud.outputs import LAS
+from ..cloud.web_file import file_at
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
@@ -90,7 +91,7 @@ def run_in_tiles(
     check_can_be_tiled(pipeline)
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
-    given = [Path(path) for path in paths]
+    given = [file_at(path) for path in paths]
     survey = open_survey(given, options.read, monitor, options.extent)
     if options.compressed:
         writing_backend(survey.header.layout.point_format)

@@ -18,6 +18,7 @@ from ..cloud.header import OF_OLD_POINTS, Header
 from ..cloud.outputs import check_not_read, kind_of, made_folder, os_errors_as_messages
 from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
 from ..cloud.vpc import fill_merged, merged_header
+from ..cloud.web_file import file_at
 from ..stage import Monitor
 
 # The folder among the tiles with the COPC files that QGIS shows.
@@ -303,7 +304,7 @@ def _named_files(paths: Iterable[Union[str, Path]]) -> dict[Path, str]:
         If there are no files, or one is no point cloud.
     """
     found: dict[Path, tuple[Path, str]] = {}
-    for path in map(Path, paths):
+    for path in map(file_at, paths):
         inside = sorted(one for one in path.iterdir() if one.is_file() and kind_of(one)) if path.is_dir() else [path]
         for file in inside:
             # A VPC in the folder adds its files: those of the folder count once, and others were meant to be read.

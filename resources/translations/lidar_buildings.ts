@@ -6348,6 +6348,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Most that a run reads of a point cloud on the web (MB)</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it, and its points do not cover it as a floor does. Either other pulses reach the ground between them, or they are closer together than pulses are, or they are fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.</source>
         <translation type="unfinished"></translation>
     </message>

@@ -1,0 +1,78 @@
+"""Addresses on the web: which are read, how they are shown, and where redirections may lead."""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+import socket
+from typing import Any
+from urllib.parse import SplitResult, urljoin, urlsplit
+
+from .printable import shown
+
+_BEGINNING = re.compile(r"https?:/", re.IGNORECASE)
+
+
+def is_address(text: Any) -> bool:
+    """Whether a text is meant as an address on the web."""
+    return isinstance(text, str) and bool(_BEGINNING.match(text))
+
+
+def split_address(address: str) -> SplitResult:
+    """Return the parts of an address that can be read.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or has a user name or password in it, which logs and histories would keep.
+    """
+    try:
+        parts = urlsplit(address)
+        is_known = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        is_known = False
+    if not is_known or not address.isascii() or not address.isprintable() or " " in address:
+        name = re.sub("//.*@", "//…@", address)
+        raise ValueError(f"{shown(name)!r} is no address on the web; give it as https://host/file.copc.laz.")
+    if parts.username is not None or parts.password is not None:
+        raise ValueError(
+            f"The address at {parts.hostname} has a user name or password in it, which logs would keep; choose an "
+            "authentication configuration of QGIS instead (authcfg=… url=https://…)."
+        )
+    return parts
+
+
+def without_query(address: str) -> str:
+    """Return an address as it is shown: without its query, which may be a key."""
+    parts = urlsplit(address)
+    return f"{parts.scheme}://{parts.netloc}{parts.path}"
+
+
+def redirected(address: str, location: str) -> str:
+    """Return the address to which a redirection leads.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or leads from a public address to one of this computer or its network.
+    """
+    leads = urljoin(address, location)
+    try:
+        host = split_address(leads).hostname
+    except ValueError:
+        raise ValueError(f"{without_query(address)} leads to {shown(location)!r}, which is not followed.") from None
+    if _is_private(str(host)) and not _is_private(str(urlsplit(address).hostname)):
+        raise ValueError(
+            f"{without_query(address)} leads to {host}, an address of this computer or its network, which is not "
+            "followed; give the address itself if it is yours."
+        )
+    return leads
+
+
+def _is_private(host: str) -> bool:
+    """Whether a host has an address that is not public; where only a proxy knows its name, it is taken as public."""
+    try:
+        found = {entry[4][0] for entry in socket.getaddrinfo(host, None)}
+    except OSError:
+        return False
+    return any(not ipaddress.ip_address(str(one).partition("%")[0]).is_global for one in found)

@@ -1,0 +1,356 @@
+"""A file on the web, of which only those ranges of bytes are fetched that are read.
+
+It has the methods of a path by which point clouds are read, so that one reader serves both.
+"""
+
+from __future__ import annotations
+
+import io
+import threading
+import time
+import zlib
+from bisect import bisect_right, insort
+from collections.abc import Iterable
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from pathlib import Path, PurePosixPath
+from typing import Any, NamedTuple, Optional, Union, cast
+from urllib.parse import unquote
+
+from ..stage import Monitor
+from .printable import shown
+from .web_addresses import is_address, redirected, split_address, without_query
+from .web_requests import NoAnswerError, Reply, transport
+
+# Least number of bytes that are asked for at once: the header of a COPC file and most pages of its index are shorter.
+_LEAST = 2**14
+# Most bytes of one request, and most that are read in one piece: nothing sound in a point cloud is longer.
+_MOST_AT_ONCE, _MOST_READ = 2**23, 2**29
+# Ranges with no more than this between them (bytes) are fetched as one: a request takes longer than these.
+_GAP = 2**13
+# Requests at once.
+_AT_ONCE = 6
+# Bytes of one file that are kept; those fetched first go first.
+_KEPT = 2**28
+# Seconds for which a file that nobody reads is known.
+_KNOWN_FOR = 600.0
+# Seconds before a request is sent again: each time more, as servers ask.
+_WAITS = (0.5, 1.0, 2.0)
+# Redirections that are followed; browsers follow 20, but no survey needs more than two.
+_MOST_REDIRECTIONS = 5
+_REDIRECTIONS, _AGAIN = (301, 302, 303, 307, 308), (408, 429, 500, 502, 503, 504)
+# Seconds between two looks at whether the run was cancelled.
+_LOOK = 0.1
+
+
+class WebState(NamedTuple):
+    """What the system says of a local file: bytes, and a number that changes with the file."""
+
+    st_size: int
+    st_mtime_ns: int
+    #: Of no disk
+    st_dev: int = -1
+    st_ino: int = 0
+
+
+class _Content:
+    """The content of an address, as far as it is known: size, version, and the parts that were fetched."""
+
+    def __init__(self, address: str, login: str) -> None:
+        self.address, self.login = address, login
+        self.size, self.version = -1, ""
+        self.used = time.monotonic()
+        self.lock = threading.RLock()
+        self._parts: dict[int, bytes] = {}
+        self._starts: list[int] = []
+
+    def take(self, at: int, size: int) -> bytes:
+        """Return bytes from a position on, one at least and ``size`` at most; none behind the end."""
+        with self.lock:
+            self.used = time.monotonic()
+            if not 0 <= at < self._known_size():
+                return b""
+            if self._held_to(at) == at:
+                stop = self._starts[bisect_right(self._starts, at) :][:1] or [self.size]
+                self.fetch(at, min(stop[0], at + min(max(size, _LEAST), _MOST_AT_ONCE)))
+            start = self._starts[bisect_right(self._starts, at) - 1]
+            return self._parts[start][at - start : at - start + size]
+
+    def _held_to(self, at: int) -> int:
+        """Return where the part ends that holds a position, the position itself where none does."""
+        before = bisect_right(self._starts, at) - 1
+        return max(at, self._starts[before] + len(self._parts[self._starts[before]])) if before >= 0 else at
+
+    def _known_size(self) -> int:
+        if self.size < 0:
+            self.fetch(0, _LEAST)
+        return self.size
+
+    def missing(self, ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+        """Return the parts not held of ranges (start, stop), in ascending order, as the ranges to ask for."""
+        found: list[tuple[int, int]] = []
+        for start, stop in ranges:
+            at, end = start, min(stop, self._known_size())
+            while at < end and (held_to := self._held_to(at)) > at:
+                at = held_to
+            while at < end:
+                if found and at - found[-1][1] <= _GAP and end - found[-1][0] <= _MOST_AT_ONCE:
+                    at, found[-1] = end, (found[-1][0], end)
+                else:
+                    found.append((at, min(end, at + _MOST_AT_ONCE)))
+                    at = found[-1][1]
+        return found
+
+    def fetch(self, start: int, stop: int, stopped: Optional[threading.Event] = None) -> int:
+        """Fetch the bytes from ``start`` to ``stop``, and keep them; return how many."""
+        reply = self._answer(start, stop, stopped or threading.Event())
+        name = shown(without_query(self.address), 200)
+        first, total = _content_range(name, reply)
+        with self.lock:
+            if self.size >= 0 and (total, reply.version) != (self.size, self.version):
+                _forget(self)
+                raise ValueError(f"{name} has changed while it was read; run it again.")
+            expected = min(stop, total) - start
+            if first != start or len(reply.data) != expected:
+                raise ValueError(
+                    f"The server of {name} sent {len(reply.data)} bytes from {first} on instead of {expected} from "
+                    f"{start} on; download the file."
+                )
+            self.size, self.version = total, reply.version
+            self._keep(start, reply.data)
+        return len(reply.data)
+
+    def _keep(self, start: int, data: bytes) -> None:
+        if start not in self._parts:
+            insort(self._starts, start)
+        self._parts[start] = data
+        while sum(map(len, self._parts.values())) > _KEPT and len(self._parts) > 1:
+            oldest = next(iter(self._parts))
+            del self._parts[oldest]
+            self._starts.remove(oldest)
+
+    def _answer(self, start: int, stop: int, stopped: threading.Event) -> Reply:
+        """Return the reply to a request that is sent until it is answered, and follows redirections."""
+        address, login, name = self.address, self.login, shown(without_query(self.address), 200)
+        waits, redirections = list(_WAITS), 0
+        while not stopped.is_set():
+            try:
+                reply = transport().get(address, start, stop - 1, login, stopped.is_set)
+                why = f"it answers {reply.status}"
+                is_short = reply.status == 206 and len(reply.data) < min(_promised(reply), stop - start)
+                why = f"it ended after {len(reply.data)} bytes" if is_short else why
+            except NoAnswerError as error:
+                reply, why = Reply(_AGAIN[0]), shown(str(error))
+                is_short = False
+            if reply.status in _REDIRECTIONS and redirections < _MOST_REDIRECTIONS:
+                leads = redirected(address, reply.location)
+                # Who knows the user at one server must not hear of it at another.
+                login = login if split_address(leads).netloc == split_address(address).netloc else ""
+                address, redirections = leads, redirections + 1
+            elif is_short or reply.status in _AGAIN:
+                if not waits:
+                    raise ValueError(f"{name} can't be read ({why}); check the address and the connection.")
+                stopped.wait(waits.pop(0))
+            elif reply.status == 206:
+                return reply
+            else:
+                raise ValueError(_refusal(name, reply.status))
+        raise ValueError(f"Reading {name} was stopped.")
+
+
+def _promised(reply: Reply) -> int:
+    """Return how many bytes a reply says to have, 0 where it does not say."""
+    first, _, last = reply.content_range.partition("/")[0].replace("bytes", "").strip().partition("-")
+    return int(last) - int(first) + 1 if first.isdecimal() and last.isdecimal() else 0
+
+
+def _content_range(name: str, reply: Reply) -> tuple[int, int]:
+    """Return the first byte and the size of the whole file that a reply names."""
+    given, _, total = reply.content_range.partition("/")
+    first = given.replace("bytes", "").strip().partition("-")[0]
+    if not (first.isdecimal() and total.isdecimal() and len(total) < 19):
+        raise ValueError(f"The server of {name} does not say how large the file is; download the file.")
+    return int(first), int(total)
+
+
+def _refusal(name: str, status: int) -> str:
+    """Return the sentence for a status that another try does not mend."""
+    if status == 200:
+        return f"The server of {name} sends whole files only, no ranges of bytes; download the file and choose that."
+    if status in (401, 403):
+        return f"{name} may not be read ({status}); choose an authentication configuration (authcfg=… url=https://…)."
+    if status in (404, 410):
+        return f"There is no file at {name} ({status}); check the address."
+    if status == 416:
+        return f"{name} is shorter than it says, or empty; get another address."
+    return f"{name} can't be read (the server answers {status}); check the address."
+
+
+_known: dict[tuple[str, str], _Content] = {}
+_known_lock = threading.Lock()
+
+
+def _content(address: str, login: str) -> _Content:
+    """Return the content of an address; contents that nobody has read for some minutes are forgotten."""
+    with _known_lock:
+        now = time.monotonic()
+        for key in [key for key, one in _known.items() if now - one.used > _KNOWN_FOR]:
+            del _known[key]
+        return _known.setdefault((address, login), _Content(address, login))
+
+
+def _forget(content: _Content) -> None:
+    with _known_lock:
+        _known.pop((content.address, content.login), None)
+
+
+class WebFile:
+    """A file on the web, with those methods of a path by which point clouds are read.
+
+    Parameters
+    ----------
+    address : str
+        Begins with http:// or https://.
+    login : str
+        How the user is known to the server: in QGIS an authentication configuration, "" for none.
+
+    Raises
+    ------
+    ValueError
+        If it is no such address.
+    """
+
+    def __init__(self, address: str, login: str = "") -> None:
+        parts = split_address(address)
+        self.address, self.login = address.partition("#")[0], login
+        path = PurePosixPath(unquote(parts.path) or "/")
+        self.name, self.suffix = shown(path.name, 200), path.suffix
+        self.host = str(parts.hostname)
+        self.parent = without_query(self.address).rpartition("/")[0]
+
+    def __str__(self) -> str:
+        return without_query(self.address)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, WebFile) and (self.address, self.login) == (other.address, other.login)
+
+    def __hash__(self) -> int:
+        return hash((self.address, self.login))
+
+    def resolve(self) -> WebFile:
+        """Return itself."""
+        return self
+
+    def is_dir(self) -> bool:
+        """Whether it is a folder: never."""
+        return False
+
+    def is_file(self) -> bool:
+        """Whether there is such a file, as far as is known without asking."""
+        return True
+
+    def exists(self) -> bool:
+        """Whether it is on this computer: never."""
+        return False
+
+    def stat(self) -> WebState:
+        """Return its size, and a number for its version."""
+        content = _content(self.address, self.login)
+        content.take(0, 1)
+        return WebState(content.size, zlib.crc32(content.version.encode()))
+
+    def open(self, mode: str = "rb") -> WebStream:  # noqa: ARG002 - as of a path
+        """Return a stream of its bytes."""
+        return WebStream(_content(self.address, self.login))
+
+
+class WebStream(io.RawIOBase):
+    """The bytes of a file on the web; ``failure`` is why the last reading failed, which LAZ libraries don't say."""
+
+    failure: Optional[Exception] = None
+
+    def __init__(self, content: _Content) -> None:
+        super().__init__()
+        self._content, self._at = content, 0
+
+    def readable(self) -> bool:
+        """Return True."""
+        return True
+
+    def seekable(self) -> bool:
+        """Return True."""
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Move as in any file."""
+        end = len(self) if whence == io.SEEK_END else 0
+        self._at = max(0, {io.SEEK_SET: 0, io.SEEK_CUR: self._at, io.SEEK_END: end}[whence] + offset)
+        return self._at
+
+    def tell(self) -> int:
+        """Return the position."""
+        return self._at
+
+    def __len__(self) -> int:
+        self._content.take(0, 1)
+        return self._content.size
+
+    def read(self, size: Optional[int] = -1) -> bytes:
+        """Return the next bytes; fewer than ``size`` at the end only."""
+        left = max(0, len(self) - self._at)
+        size = left if size is None or size < 0 else min(size, left)
+        if size > _MOST_READ:
+            raise ValueError(
+                f"{shown(without_query(self._content.address))} is damaged: {size} bytes should be in one piece."
+            )
+        pieces = []
+        try:
+            while size and (piece := self._content.take(self._at, size)):
+                pieces.append(piece)
+                size -= len(piece)
+                self._at += len(piece)
+        except ValueError as error:
+            self.failure = error
+            raise
+        return b"".join(pieces)
+
+    def readinto(self, buffer: Any) -> int:
+        """Fill a buffer with the next bytes; return how many."""
+        data = self.read(len(buffer))
+        buffer[: len(data)] = data
+        return len(data)
+
+    def prefetch(self, ranges: Iterable[tuple[int, int]], monitor: Monitor) -> None:
+        """Fetch ranges (start, stop) in ascending order, several at once; progress is in bytes.
+
+        Raises
+        ------
+        ValueError
+            If one can't be fetched.
+        Cancelled
+            If the monitor says so, soon after.
+        """
+        wanted = self._content.missing(ranges)
+        stopped, done, total = threading.Event(), 0, sum(stop - start for start, stop in wanted)
+        pool = ThreadPoolExecutor(_AT_ONCE, "web")
+        try:
+            open_ones = {pool.submit(self._content.fetch, *one, stopped) for one in wanted}
+            while open_ones:
+                monitor.progress(done / total)
+                transport().wait()
+                ended, open_ones = wait(open_ones, _LOOK, FIRST_EXCEPTION)
+                done += sum(one.result() for one in ended)
+        finally:
+            stopped.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def file_at(path: Union[str, Path, WebFile]) -> Path:
+    """Return the file that a path or an address names; one on the web goes where a path is only read."""
+    if isinstance(path, WebFile):
+        return cast(Path, path)
+    return cast(Path, WebFile(str(path))) if is_address(path) else Path(path)
+
+
+def is_on_web(path: Any) -> bool:
+    """Whether a file is on the web."""
+    return isinstance(path, WebFile)

@@ -1,0 +1,144 @@
+"""Point clouds on the web, read as QGIS reads layers: through its proxy, certificates and authentication."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Callable, Optional, cast
+
+import numpy as np
+from qgis.core import QgsApplication, QgsDataSourceUri, QgsNetworkAccessManager
+from qgis.PyQt.QtCore import QCoreApplication, QEventLoop, QTimer, QUrl
+from qgis.PyQt.QtNetwork import QNetworkReply, QNetworkRequest
+
+from ..algorithms.cloud.files import sizes_within
+from ..algorithms.cloud.web_addresses import is_address
+from ..algorithms.cloud.web_file import WebFile
+from ..algorithms.cloud.web_requests import TIMEOUT, NoAnswerError, Reply, use_transport
+from ..algorithms.stage import Monitor
+from .crs import is_main_thread
+from .settings import WEB_LIMIT
+
+# Milliseconds between two looks at whether the run was cancelled, and of work of the main thread while it waits.
+_LOOK, _WORK = 100, 20
+
+
+class QgisTransport:
+    """Requests by the network manager of QGIS, which each thread has its own of."""
+
+    def get(self, url: str, first: int, last: int, login: str, is_stopped: Callable[[], bool]) -> Reply:
+        """Ask for the bytes from ``first`` to ``last``; redirections are not followed."""
+        request = QNetworkRequest(QUrl(url))
+        request.setRawHeader(b"Range", f"bytes={first}-{last}".encode())
+        # Qt would unpack what a server packs, whatever its size.
+        request.setRawHeader(b"Accept-Encoding", b"identity")
+        attributes = QNetworkRequest.Attribute
+        request.setAttribute(attributes.RedirectPolicyAttribute, QNetworkRequest.RedirectPolicy.ManualRedirectPolicy)
+        request.setAttribute(attributes.CacheLoadControlAttribute, QNetworkRequest.CacheLoadControl.AlwaysNetwork)
+        request.setAttribute(attributes.CacheSaveControlAttribute, False)
+        request.setTransferTimeout(round(1000 * TIMEOUT))
+        if login and not QgsApplication.authManager().updateNetworkRequest(request, login):
+            raise ValueError(f"There is no authentication configuration {login!r} in QGIS; check its name.")
+        # Before the request: its timers need the event dispatcher of the thread, which a loop makes.
+        loop = QEventLoop()
+        reply = QgsNetworkAccessManager.instance().get(request)
+        try:
+            return _finished(reply, loop, last - first + 2, is_stopped)
+        finally:
+            reply.deleteLater()
+
+    def wait(self) -> None:
+        """Let the main thread answer what other threads ask it: for passwords, say."""
+        if is_main_thread():
+            QCoreApplication.processEvents(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents, _WORK)
+
+
+def _finished(reply: QNetworkReply, loop: QEventLoop, most: int, is_stopped: Callable[[], bool]) -> Reply:
+    """Wait for the end of a reply, which is ended where it has more bytes than asked for; return it."""
+    timer = QTimer()
+
+    def look() -> None:
+        if is_stopped() or reply.bytesAvailable() >= most or _status(reply) not in (0, 206):
+            reply.abort()
+
+    reply.finished.connect(loop.quit)
+    reply.downloadProgress.connect(look)
+    timer.timeout.connect(look)
+    timer.start(_LOOK)
+    if not reply.isFinished():
+        loop.exec()
+    timer.stop()
+    status = _status(reply)
+    if status == 0:
+        raise NoAnswerError(reply.errorString())
+    data = bytes(reply.read(most)) if status == 206 and reply.isOpen() else b""
+    location = reply.header(QNetworkRequest.KnownHeaders.LocationHeader)
+    version = _head(reply, b"ETag") or _head(reply, b"Last-Modified")
+    return Reply(status, data, _head(reply, b"Content-Range"), location.toString() if location else "", version)
+
+
+def _status(reply: QNetworkReply) -> int:
+    """Return the HTTP status of a reply, 0 before there is one."""
+    return int(reply.attribute(QNetworkRequest.Attribute.HttpStatusCodeAttribute) or 0)
+
+
+def _head(reply: QNetworkReply, name: bytes) -> str:
+    return bytes(reply.rawHeader(name)).decode("latin-1")
+
+
+use_transport(QgisTransport())
+
+
+def web_file(source: str) -> Optional[Path]:
+    """Return the file on the web that a text or the source of a layer names, None where it names none.
+
+    With an authentication configuration of QGIS it is ``authcfg=… url=https://…``.
+
+    Raises
+    ------
+    ValueError
+        If the address is none that can be read.
+    """
+    if is_address(source):
+        return cast(Path, WebFile(source))
+    if "url=" not in source:
+        return None
+    uri = QgsDataSourceUri(source)
+    if "&" in source and not is_address(uri.param("url")):
+        uri.setEncodedUri(source)
+    return cast(Path, WebFile(uri.param("url"), uri.authConfigId())) if is_address(uri.param("url")) else None
+
+
+def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray]) -> None:
+    """Refuse to read more from the web than the user has set as limit.
+
+    Raises
+    ------
+    ValueError
+        If it is more; it says how much, and asks for an extent.
+    """
+    text = WEB_LIMIT.value
+    if not (text.isdigit() and int(text)):
+        raise ValueError(f"'{WEB_LIMIT.title}' in the options of Processing must be a whole number, got {text!r}.")
+    for path, (points, size) in _sizes(paths, box):
+        if size > int(text) * 1e6:
+            which = "the whole cloud" if box is None else "what lies within the extent"
+            raise ValueError(
+                f"{path.name} is on the web, and {which} is {size / 1e6:,.0f} MB with {points:,} points, more than the "
+                f"{int(text):,} MB that are read at once; choose {'an' if box is None else 'a smaller'} extent, or set "
+                f"'{WEB_LIMIT.title}' in the options of Processing."
+            )
+
+
+def tell_sizes(paths: Iterable[Path], box: Optional[np.ndarray], monitor: Monitor) -> None:
+    """Tell how many bytes and points are read from the web, before they are."""
+    for path, (points, size) in _sizes(paths, box):
+        host = cast(WebFile, path).host
+        monitor.inform(f"{path.name}: {size / 1e6:,.1f} MB with {points:,} points are read from {host}.")
+
+
+def _sizes(paths: Iterable[Path], box: Optional[np.ndarray]) -> Iterable[tuple[Path, tuple[int, int]]]:
+    for path in paths:
+        for file, found in sizes_within(path, box):
+            if isinstance(file, WebFile):
+                yield cast(Path, file), found

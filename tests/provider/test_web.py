@@ -1,0 +1,139 @@
+"""Point clouds on the web as inputs: addresses and layers, by QGIS's network manager."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+from qgis.core import (
+    QgsApplication,
+    QgsAuthMethodConfig,
+    QgsPointCloudLayer,
+    QgsProcessingException,
+)
+
+from lidar_buildings.algorithms.cloud import web_file
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.web_requests import transport
+from lidar_buildings.provider.clouds import file_of_layer
+from lidar_buildings.provider.settings import WEB_LIMIT
+from lidar_buildings.provider.web import QgisTransport
+from lidar_buildings.tests.provider.helpers import run
+from lidar_buildings.tests.web_server import serving
+
+VIEW = "85000,85300,446000,446300 [EPSG:28992]"
+BOX = np.array([[85_000.0, 446_000.0], [85_300.0, 446_300.0]])
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """200,000 points on a square kilometer."""
+    rng = np.random.default_rng(1)
+    xyz = rng.uniform(0, [1000, 1000, 30], (200_000, 3)) + [85_000, 446_000, 0]
+    folder = tmp_path_factory.mktemp("web")
+    write_cloud(create_cloud({"xyz": xyz}, "EPSG:28992"), folder / "a.copc.laz")
+    return folder
+
+
+@pytest.fixture
+def server(folder, qgis_application, monkeypatch):
+    monkeypatch.setattr(web_file, "_WAITS", (0.01, 0.02))
+    with serving(folder) as server:
+        yield server
+    web_file._known.clear()
+
+
+def test_a_view_of_an_address_is_that_of_the_local_file(provider, context, log, server, folder, out):
+    assert isinstance(transport(), QgisTransport)
+    for name, source in (("a", server.address("a.copc.laz?key=secret")), ("b", str(folder / "a.copc.laz"))):
+        given = {"INPUT": source, "EXTENT": VIEW, "OUTPUT": str(out / f"{name}.las")}
+        run("toylift", given, context, log)
+    assert (out / "a.las").read_bytes() == (out / "b.las").read_bytes()
+    told = [one for one in log.infos if "points are read from 127.0.0.1" in one]
+    assert len(told) == 1
+    assert "a.copc.laz: " in told[0]
+    assert not [one for one in (*log.infos, *log.warnings) if "secret" in one]
+
+
+def test_more_than_the_limit_needs_an_extent(provider, context, log, server, out, monkeypatch):
+    before = WEB_LIMIT.value
+    WEB_LIMIT.set("1")
+    try:
+        given = {"INPUT": server.address("a.copc.laz"), "OUTPUT": str(out / "a.las")}
+        accepted, why = provider.algorithm("toylift").checkParameterValues(given, context)
+        assert not accepted
+        assert "with 200,000 points, more than the 1 MB that are read at once; choose an extent" in why
+        assert server.sent < 70_000
+        WEB_LIMIT.set("nothing")
+        assert "must be a whole number" in provider.algorithm("toylift").checkParameterValues(given, context)[1]
+    finally:
+        WEB_LIMIT.set(before)
+
+
+@pytest.mark.parametrize(
+    ("trouble", "value", "sentence"),
+    [
+        ("whole", True, "sends whole files only"),
+        ("fail", 100, r"it answers 503"),
+        ("cut", 100, "check the address and the connection"),
+        ("missing_from", 0, "There is no file"),
+        ("extra", b"more", "bytes from 0 on instead of"),
+        ("token", "x", "may not be read"),
+        ("redirect", "file:///etc/passwd", "is not followed"),
+    ],
+)
+def test_servers_that_can_not_are_refused(provider, context, server, trouble, value, sentence, out):
+    setattr(server, trouble, value)
+    given = {"INPUT": server.address("a.copc.laz"), "OUTPUT": str(out / "a.las")}
+    with pytest.raises(QgsProcessingException, match=sentence):
+        run("toylift", given, context, None)
+
+
+def test_redirections_are_followed_with_their_ranges(server, folder):
+    with serving(folder) as other:
+        other.redirect = server.address("a.copc.laz")
+        assert len(read_cloud(other.address("a.copc.laz"), box=BOX)) == len(read_cloud(folder / "a.copc.laz", box=BOX))
+
+
+@pytest.fixture
+def login(qgis_application):
+    """A configuration that gives a header, in an authentication database of its own."""
+    manager = QgsApplication.authManager()
+    manager.setMasterPassword("master", True)
+    config = QgsAuthMethodConfig("APIHeader")
+    config.setName("web")
+    config.setConfig("Authorization", "Bearer token")
+    assert manager.storeAuthenticationConfig(config)[0]
+    yield config.id()
+    manager.removeAuthenticationConfig(config.id())
+
+
+def test_an_authentication_configuration_is_used_and_not_shown_to_others(provider, context, log, server, folder, login):
+    server.token = "Bearer token"
+    address = f"authcfg={login} url={server.address('a.copc.laz')}"
+    given = {"INPUT": address, "EXTENT": VIEW, "OUTPUT": "TEMPORARY_OUTPUT"}
+    made = run("toylift", given, context, log)
+    assert len(read_cloud(made["OUTPUT"])) == len(read_cloud(folder / "a.copc.laz", box=BOX))
+    with serving(folder) as other:
+        server.redirect = other.address("a.copc.laz")
+        web_file._known.clear()
+        run("toylift", given, context, log)
+        assert set(other.seen) == {""}
+
+
+def test_a_layer_is_its_address(qgis_application):
+    layer = QgsPointCloudLayer("https://example.invalid/a.copc.laz?x=1", "a", "copc")
+    assert file_of_layer(layer) == web_file.WebFile("https://example.invalid/a.copc.laz?x=1")
+
+
+def test_cancel_ends_within_two_seconds(provider, context, log, server, out):
+    server.pace = 0.4
+    started = time.monotonic()
+    threading.Timer(1.5, log.cancel).start()
+    given = {"INPUT": server.address("a.copc.laz"), "OUTPUT": str(out / "a.las")}
+    run("toylift", given, context, log)
+    assert 1.4 < time.monotonic() - started < 3.5
+    assert not (out / "a.las").exists()
