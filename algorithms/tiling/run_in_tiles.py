@@ -18,7 +18,7 @@ import numpy as np
 from ..cloud.copc_index import has_index
 from ..cloud.laz import writing_backend
 from ..cloud.outputs import LAS
-from ..cloud.web_file import file_at
+from ..cloud.web_file import file_at, is_on_web
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
@@ -135,7 +135,8 @@ class _Run:
 
     def all(self) -> TilesOutcome:
         """Sample, work on the blocks, join what they found, write the tiles."""
-        settings, folders = self.settings, {source.path.parent for source in self.survey.sources}
+        settings = self.settings
+        folders = {source.path.parent for source in self.survey.sources if not is_on_web(source.path)}
         plan = self._plan()
         outcome = TilesOutcome(self.survey, [], sampling=plan.samplings[""], side=plan.side, points=len(self.survey))
         steps = SurveySteps(settings, outcome)

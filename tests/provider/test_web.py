@@ -137,3 +137,23 @@ def test_cancel_ends_within_two_seconds(provider, context, log, server, out):
     run("toylift", given, context, log)
     assert 1.4 < time.monotonic() - started < 3.5
     assert not (out / "a.las").exists()
+
+
+def test_a_survey_on_the_web_is_cut_into_tiles_of_its_extent(provider, context, log, server, folder, out):
+    given = {"INPUT": [server.address("a.copc.laz")], "SIDE": 100.0, "EXTENT": VIEW, "OUTPUT": str(out / "tiles")}
+    made = run("cutintotiles", given, context, log)
+    found, wanted = read_cloud(made["VPC"]), read_cloud(folder / "a.copc.laz", box=BOX)
+    assert made["TILES"] >= 9
+    np.testing.assert_array_equal(*(np.sort(one.to_map(one.get("xyz")), axis=0) for one in (found, wanted)))
+    assert server.sent < 0.6 * (folder / "a.copc.laz").stat().st_size
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_blocks_of_tiles_read_their_own_ranges(provider, context, log, server, folder, out, processes):
+    given = {"EXTENT": VIEW, "PROCESSES": processes, "BLOCK_SIDE": 150.0}
+    points = []
+    for name, source in (("a", server.address("a.copc.laz")), ("b", str(folder / "a.copc.laz"))):
+        made = run("detectbuildingsintiles", {**given, "INPUT": [source], "OUTPUT": str(out / name)}, context, log)
+        cloud = read_cloud(made["VPC"])
+        points.append(np.column_stack([cloud.to_map(cloud.get("xyz")), cloud.get("classification")]))
+    np.testing.assert_array_equal(*points)
