@@ -241,11 +241,12 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def _job(self, parameters: dict, context: QgsProcessingContext) -> Job:
         """Return what a run needs; refuse with a ValueError what can be refused before it."""
         inputs = self.inputs
+        tunables = self.tunables(parameters, context)
         wanted = [made for made in self.made if parameters.get(made.name) not in UNWANTED]
         given = [one.name for one in inputs.layers if find_input_layer(self, one, parameters, context) is not None]
         unmade = [made for made in wanted if made.only_with and made.only_with not in given]
         wanted = [made for made in wanted if made not in unmade]
-        job = Job(self.tunables(parameters, context), wanted)
+        job = Job(tunables, wanted)
         job.unmade = unmade
         if inputs.clouds:
             job.clouds = input_paths(self, inputs.several, parameters, context)

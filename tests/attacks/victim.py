@@ -13,6 +13,7 @@ import resource
 import sys
 import traceback
 import warnings
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -90,7 +91,7 @@ def _read_part(path: Path) -> None:
     if not refused:
         low, high = extent[0][:2], extent[1][:2]
         with np.errstate(all="ignore"):
-            refusal(read_cloud, path, Monitor(), None, np.array([low, low / 2 + high / 2]))
+            refusal(partial(read_cloud, path, box=np.array([low, low / 2 + high / 2])))
 
 
 def _use(cloud: Cloud) -> None:
