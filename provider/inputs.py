@@ -51,8 +51,11 @@ def with_setting(
 def input_parameter(several: bool, title: str = "Point cloud") -> QgsProcessingParameterDefinition:
     """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
     if several:
-        return with_help(CloudsParameter(INPUTS, tr("Point clouds")), tr("Files or layers of points, one or more."))
-    return with_help(CloudParameter(INPUT, tr(title)), tr("File or layer of the points."))
+        return with_help(
+            CloudsParameter(INPUTS, tr("Point clouds")), tr("Files, layers or addresses on the web, one or more.")
+        )
+    of_one = tr("File or layer of the points, or the address of a COPC file on the web (https://…).")
+    return with_help(CloudParameter(INPUT, tr(title)), of_one)
 
 
 def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from io import BufferedReader
+from io import DEFAULT_BUFFER_SIZE, BufferedReader
 from pathlib import Path
 from typing import Any, BinaryIO, Callable, Optional
 
@@ -38,6 +38,9 @@ _EVERYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
 
 # Bytes of chunks on the web that are fetched before they are decompressed.
 _FETCHED = 2**26
+
+# Bytes that are read at once of a file on the web without an index.
+_BUFFER = 2**22
 
 # Least share of the stated extent that points take on each axis, or all of them are measured: a bound that was never
 # set is 0, thousands of kilometers from the points.
@@ -166,7 +169,8 @@ def check_points(path: Path, header: Header) -> None:
     if _is_read_by_chunks(path, header):
         with path.open("rb") as stream:
             open_chunks(path, header, stream)
-    elif header.is_compressed:
+    elif header.is_compressed and not is_on_web(path):
+        # On the web it costs a request for each chunk, unless the whole file is fetched first.
         with path.open("rb") as stream:
             open_laz(path, header, stream)
 
@@ -318,9 +322,9 @@ def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarra
 def _reads(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, int, Callable]]:
     """Yield (start, stop, function that fills an array with these points), with progress between."""
     opened: Any = path.open("rb") if is_on_web(path) else KeptFailure(path)
-    with opened as file, BufferedReader(file) as stream:
+    with opened as file, BufferedReader(file, _BUFFER if is_on_web(path) else DEFAULT_BUFFER_SIZE) as stream:
         if is_on_web(path):
-            file.prefetch([(0, path.stat().st_size)], monitor.part(0.0, 0.0))
+            file.prefetch([(0, min(path.stat().st_size, _FETCHED))], monitor.part(0.0, 0.0))
         read = _compressed(path, header, stream, file) if header.is_compressed else _plain(path, header, stream)
         for start in range(0, header.count, AT_ONCE):
             monitor.progress(start / header.count)

@@ -4960,7 +4960,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>File or layer of the points.</source>
+        <source>File or layer of the points, or the address of a COPC file on the web (https://…).</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4968,7 +4968,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Files or layers of points, one or more.</source>
+        <source>Files, layers or addresses on the web, one or more.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -12,6 +12,8 @@ from qgis.core import (
     QgsAuthMethodConfig,
     QgsPointCloudLayer,
     QgsProcessingException,
+    QgsProject,
+    QgsRectangle,
 )
 
 from lidar_buildings.algorithms.cloud import web_file
@@ -19,9 +21,11 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.web_requests import transport
 from lidar_buildings.provider.clouds import file_of_layer
+from lidar_buildings.provider.menu import view_parameters
 from lidar_buildings.provider.settings import WEB_LIMIT
 from lidar_buildings.provider.web import QgisTransport
 from lidar_buildings.tests.provider.helpers import run
+from lidar_buildings.tests.provider.test_plugin import Interface
 from lidar_buildings.tests.web_server import serving
 
 VIEW = "85000,85300,446000,446300 [EPSG:28992]"
@@ -127,6 +131,19 @@ def test_an_authentication_configuration_is_used_and_not_shown_to_others(provide
 def test_a_layer_is_its_address(qgis_application):
     layer = QgsPointCloudLayer("https://example.invalid/a.copc.laz?x=1", "a", "copc")
     assert file_of_layer(layer) == web_file.WebFile("https://example.invalid/a.copc.laz?x=1")
+
+
+def test_the_view_of_a_layer_on_the_web_is_run(provider, context, log, server, folder, out):
+    layer = QgsPointCloudLayer(server.address("a.copc.laz"), "a", "copc")
+    assert layer.isValid()
+    QgsProject.instance().addMapLayer(layer)
+    try:
+        part = QgsRectangle(BOX[0, 0] - 50, BOX[0, 1] - 50, *BOX[1])
+        given = view_parameters(Interface(layer, [], part, "EPSG:28992"))
+        run("toylift", {**given, "OUTPUT": str(out / "a.las")}, context, log)
+    finally:
+        QgsProject.instance().removeMapLayer(layer)
+    assert len(read_cloud(out / "a.las")) == len(read_cloud(folder / "a.copc.laz", box=BOX))
 
 
 def test_cancel_ends_within_two_seconds(provider, context, log, server, out):

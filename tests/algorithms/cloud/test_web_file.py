@@ -6,9 +6,16 @@ import time
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud import web_file
+from lidar_buildings.algorithms.cloud import points, web_file
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.cloud.files import count_points, dimension_names, read_cloud, read_extent, write_cloud
+from lidar_buildings.algorithms.cloud.files import (
+    check_readable,
+    count_points,
+    dimension_names,
+    read_cloud,
+    read_extent,
+    write_cloud,
+)
 from lidar_buildings.algorithms.cloud.points import open_header, size_within
 from lidar_buildings.algorithms.cloud.web_addresses import redirected
 from lidar_buildings.algorithms.cloud.web_file import WebFile, file_at
@@ -56,6 +63,16 @@ def test_what_is_asked_before_a_run_costs_few_requests_and_is_that_of_the_local_
         np.testing.assert_equal(one, other)
     assert len(server.requests) <= 4
     assert server.sent < 70_000
+
+
+def test_a_file_without_index_is_checked_by_few_requests_and_fetched_once(server, folder, monkeypatch):
+    monkeypatch.setattr(points, "_FETCHED", 500_000)
+    size = (folder / "b.laz").stat().st_size
+    check_readable(server.address("b.laz"))
+    assert len(server.requests) <= 4
+    read_cloud(server.address("b.laz"))
+    assert size > 1_000_000
+    assert server.sent <= 1.1 * size
 
 
 def test_a_view_costs_little_more_than_its_nodes(server, folder):
