@@ -43,3 +43,23 @@ def values_of(image):
     band = image.GetRasterBand(1)
     raw = band.ReadRaster(buf_type=gdal.GDT_Float32)
     return np.frombuffer(raw, np.float32).reshape(image.RasterYSize, image.RasterXSize)
+
+
+class Interface:
+    """What the menu asks of QGIS's windows."""
+
+    def __init__(self, active, visible, extent, crs):
+        self.active, self.visible, self.extent, self.crs = active, visible, extent, QgsCoordinateReferenceSystem(crs)
+
+    def activeLayer(self):
+        return self.active
+
+    def mapCanvas(self):
+        crs = self.crs
+        settings = type("S", (), {"destinationCrs": lambda self: crs})()
+        visible, extent = self.visible, self.extent
+        return type(
+            "C",
+            (),
+            {"layers": lambda self: visible, "extent": lambda self: extent, "mapSettings": lambda self: settings},
+        )()

@@ -10,7 +10,6 @@ import pytest
 from qgis.core import (
     Qgis,
     QgsApplication,
-    QgsCoordinateReferenceSystem,
     QgsPointCloudLayer,
     QgsProcessingOutputLayerDefinition,
     QgsRectangle,
@@ -27,7 +26,7 @@ from lidar_buildings.provider import dependencies, installation, questions
 from lidar_buildings.provider.menu import open_dialog, view_parameters
 from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
 from lidar_buildings.provider.plugin import LOG, Plugin
-from lidar_buildings.tests.provider.helpers import run
+from lidar_buildings.tests.provider.helpers import Interface, run
 
 
 @pytest.fixture
@@ -305,26 +304,6 @@ def test_a_yes_runs_the_command_that_was_shown(qgis_application, monkeypatch, wi
     assert started[0] == (dependencies.python(), dependencies.pip_arguments(["lazrs"]))
     assert "lazrs" in started[1]
     assert "it failed" in started[1]
-
-
-class Interface:
-    """What the menu asks of QGIS's windows."""
-
-    def __init__(self, active, visible, extent, crs):
-        self.active, self.visible, self.extent, self.crs = active, visible, extent, QgsCoordinateReferenceSystem(crs)
-
-    def activeLayer(self):
-        return self.active
-
-    def mapCanvas(self):
-        crs = self.crs
-        settings = type("S", (), {"destinationCrs": lambda self: crs})()
-        visible, extent = self.visible, self.extent
-        return type(
-            "C",
-            (),
-            {"layers": lambda self: visible, "extent": lambda self: extent, "mapSettings": lambda self: settings},
-        )()
 
 
 def test_the_button_fills_in_the_cloud_and_the_view(provider, town, tmp_path):

@@ -24,8 +24,7 @@ from lidar_buildings.provider.clouds import file_of_layer
 from lidar_buildings.provider.menu import view_parameters
 from lidar_buildings.provider.settings import WEB_LIMIT
 from lidar_buildings.provider.web import QgisTransport
-from lidar_buildings.tests.provider.helpers import run
-from lidar_buildings.tests.provider.test_plugin import Interface
+from lidar_buildings.tests.provider.helpers import Interface, run
 from lidar_buildings.tests.web_server import serving
 
 VIEW = "85000,85300,446000,446300 [EPSG:28992]"
