@@ -75,9 +75,12 @@ def _of_layer(path: Path) -> bytes:
     with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
         if database.execute("PRAGMA integrity_check").fetchall() != [("ok",)]:
             raise ValueError("The database is damaged.")
-        tables = [name for (name,) in database.execute("SELECT table_name FROM gpkg_contents")]
+        features = "SELECT table_name FROM gpkg_contents WHERE data_type = 'features'"
+        tables = [name for (name,) in database.execute(features)]
         rows = [database.execute(f'SELECT * FROM "{name}"').fetchall() for name in tables]
-    return repr((tables, rows)).encode()
+        # Styles say when they were stored, and QGIS gives their symbols numbers of their own.
+        styles = database.execute("SELECT f_table_name, styleName, useAsDefault FROM layer_styles").fetchall()
+    return repr((tables, rows, styles)).encode()
 
 
 def _of_raster(path: Path) -> bytes:
