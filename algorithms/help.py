@@ -64,11 +64,12 @@ def output_text(pipeline: Pipeline, output: Output) -> str:
         return f"<b>{name}</b>: the cloud with {written_by(pipeline)}."
     if output.of == "output":
         return f"<b>{name}</b>: the cloud as the step {step_title(output.step)} leaves it."
-    if output.of == "report":
-        return _report_text(stage, name)
-    texts = {layer.name: _layer_text(layer, name) for layer in stage.layers}
-    texts.update({raster.name: _raster_text(raster, name) for raster in stage.rasters})
-    return {**texts, **{file.name: _file_text(file, name) for file in stage.files}}[output.of]
+    declared = output.declared
+    if isinstance(declared, Layer):
+        return _layer_text(declared, name)
+    if isinstance(declared, Raster):
+        return _raster_text(declared, name)
+    return _file_text(declared, name) if isinstance(declared, TextFile) else _report_text(stage, name)
 
 
 def written_by(pipeline: Pipeline) -> str:

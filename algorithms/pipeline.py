@@ -6,11 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import Any, Optional
 
-from .stage import InputLayer, Stage, Tunable
+from .stage import CLOUD, REPORT, Declared, InputLayer, Stage, Tunable
 from .stages import STAGES
-
-# Names of the outputs for a cloud and for a report.
-CLOUD, REPORT = "output", "report"
 
 
 @dataclass(frozen=True)
@@ -48,6 +45,11 @@ class Output:
     name: str
     step: Step
     of: str
+
+    @property
+    def declared(self) -> Declared:
+        """How its stage declares it."""
+        return self.step.stage.outputs[self.of]
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,7 @@ class Pipeline:
         The last cloud and the last report keep their plain names.
         """
         makers = [step for step in self.steps if step.stage.makes_cloud]
-        found = [(step, of) for step in self.steps for of in _made(step)]
+        found = [(step, of) for step in self.steps for of in step.stage.outputs]
         names = [of for _, of in found]
         outputs = []
         for step, of in found:
@@ -176,7 +178,7 @@ class Pipeline:
         for step in reversed(self.steps):
             if step.only_with and layers is not None and step.only_with not in layers:
                 continue
-            made = {(step.name, of) for of in _made(step)}
+            made = {(step.name, of) for of in step.stage.outputs}
             read = {made_by(layer) for layer in step.layers.values()}
             only_measures = made == {(step.name, REPORT)}
             if made & needed or (only_measures and read & asked):
@@ -205,11 +207,3 @@ def made_by(layer: str) -> tuple[str, str]:
     """Return the step and the name of a layer that another step reads, "walls.footprints"."""
     step, name = layer.split(".")
     return step, name
-
-
-def _made(step: Step) -> list[str]:
-    """Return what a step makes: its cloud, layers, rasters, text files, report."""
-    stage = step.stage
-    layers, rasters, texts = stage.layers, stage.rasters, stage.files
-    files = [*(one.name for one in layers), *(one.name for one in rasters), *(one.name for one in texts)]
-    return [CLOUD] * stage.makes_cloud + files + [REPORT] * bool(stage.measures)

@@ -5,20 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
 import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProcessingDestinationParameter,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
-    QgsProcessingParameterFeatureSink,
-    QgsProcessingParameterFileDestination,
-    QgsProcessingParameterPointCloudDestination,
-    QgsProcessingParameterRasterDestination,
 )
 
 from ..algorithms.cloud.cloud import Cloud
@@ -27,6 +22,8 @@ from ..algorithms.cloud.outputs import replacing
 from ..algorithms.report.page import with_coordinates
 from ..algorithms.run import Results
 from ..algorithms.stage import (
+    CLOUD,
+    REPORT,
     FileContent,
     InputLayer,
     Layer,
@@ -41,15 +38,14 @@ from ..algorithms.stage import (
 from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
 from .crs_authority import crs_reader, text_of
+from .destinations import Made
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
 from .inputs import (
     CRS,
     INPUT,
-    OUTPUT,
     REFERENCE,
-    REPORT,
     crs_parameter,
     extent_box,
     extent_parameter,
@@ -60,7 +56,6 @@ from .inputs import (
     reference_parameter,
     refuse_same,
     subject_of,
-    with_help,
 )
 from .layer_outputs import UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
@@ -70,61 +65,8 @@ from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
 from .run_log import RunLog, about_run, complete_page
 from .styles import cloud_style, layer_style, show_on_load
-from .text_files import file_parameter, write_text
-from .texts import tr
-from .vectors import SOURCE_TYPES
+from .text_files import write_text
 from .web import check_sizes, tell_sizes
-
-# Files and layers go by these names among the outputs of a stage or chain.
-CLOUD = OUTPUT.lower()
-
-
-@dataclass(frozen=True)
-class Made:
-    """An output: its name and title, the stage that makes it, and how that declares it."""
-
-    name: str  #: ``OUTPUT``, ``FOOTPRINTS``
-    title: str
-    stage: Stage
-    #: "output" for a cloud, "report" for a page; a text file has the name of the output
-    declared: Union[Layer, Raster, TextFile, str]
-    optional: bool = True
-    by_default: bool = True  #: Whether the dialog makes it unless told otherwise
-    only_with: str = ""  #: Name of the layer without which it is not made
-
-    @property
-    def key(self) -> str:
-        """Its name among the results in memory."""
-        return self.name.lower()
-
-    def definition(self) -> QgsProcessingDestinationParameter:
-        """Return the parameter that says where it goes."""
-        declared = self.declared
-        if isinstance(declared, Layer):
-            kind = SOURCE_TYPES[declared.geometry]
-            made = QgsProcessingParameterFeatureSink(self.name, self.title, kind, optional=self.optional)
-            with_help(made, tr("A GeoPackage or any other vector format that QGIS writes."))
-        elif isinstance(declared, Raster):
-            made = QgsProcessingParameterRasterDestination(self.name, self.title, optional=self.optional)
-            with_help(made, tr("A GeoTIFF, tiled and compressed."))
-        elif isinstance(declared, TextFile):
-            made = file_parameter(declared)
-            made.setDescription(self.title)
-        elif declared == CLOUD:
-            made = QgsProcessingParameterPointCloudDestination(self.name, self.title, optional=self.optional)
-            with_help(made, tr("A .las, .laz or .copc.laz file."))
-        else:
-            made = QgsProcessingParameterFileDestination(self.name, self.title, "HTML files (*.html)", optional=True)
-            with_help(made, tr("A page that shows the numbers."))
-        made.setCreateByDefault(self.by_default)
-        return made
-
-
-def outputs_of(stage: Stage) -> list[tuple[str, Union[Layer, Raster, TextFile, str]]]:
-    """Return the names of what a stage makes, and how it declares each: cloud, layers, rasters, text files, page."""
-    files = [(one.name, one) for one in (*stage.layers, *stage.rasters, *stage.files)]
-    page = REPORT.lower()
-    return [(CLOUD, CLOUD)] * stage.makes_cloud + files + [(page, page)] * bool(stage.measures)
 
 
 @dataclass(frozen=True)
@@ -296,7 +238,6 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 raise ValueError(f"{self.displayName()} has neither a point cloud nor a layer; choose one.")
             writer = _Writer(self, run.parameters, context, monitor.part(self.shares[1], 1.0), place)
             written = writer.write(self.job.wanted, results)
-            log.end()
             written.update(writer.write_pages(self.job, results, log))
             monitor.end()
             numbers = {
@@ -338,7 +279,7 @@ class _Writer:
 
     def write(self, wanted: Sequence[Made], results: Results) -> dict[str, str]:
         """Write everything but pages; return where each is, by the names of the outputs."""
-        files = [made for made in wanted if made.declared != REPORT.lower()]
+        files = [made for made in wanted if made.declared != REPORT]
         written: dict[str, str] = {}
         for number, made in enumerate(files):
             part = self.monitor.part(number / len(files), (number + 1) / len(files))
@@ -357,7 +298,7 @@ class _Writer:
         if isinstance(declared, TextFile):
             content: FileContent = results.files[made.key]
             return write_text(algorithm, declared, content, self.place, parameters, context, monitor)
-        cloud = results.clouds.get(made.key, results.cloud)
+        cloud = results.cloud if made.key == CLOUD else results.clouds[made.key]
         return self._write_cloud(made, cloud, monitor) if cloud is not None else {}
 
     def _write_cloud(self, made: Made, cloud: Cloud, monitor: Monitor) -> dict[str, str]:

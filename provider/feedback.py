@@ -151,7 +151,6 @@ class ChainMonitor(FeedbackMonitor):
     def step(self, name: str, stage: Stage, tunables: dict[str, Any], start: float, end: float) -> Monitor:
         """Begin a step, and end the one before it."""
         self._end_step(stage.title)
-        # A step may give no value to a tunable that is automatic by itself.
         self._log.begin(stage, tunables)
         self._title, self._began = stage.title, time.monotonic()
         self._sums_up = bool(stage.measures) and not stage.makes_cloud

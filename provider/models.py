@@ -22,6 +22,7 @@ from qgis.PyQt.QtGui import QColor
 
 from ..algorithms.help import lower_first, pipeline_help, step_label, step_title
 from ..algorithms.pipeline import Output, Pipeline, Step
+from ..algorithms.stage import CLOUD, REPORT
 from . import PROVIDER_ID, paths
 from .clouds import FILTER
 from .input_layers import input_layer_name, input_layer_parameter
@@ -133,13 +134,13 @@ def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
 def output_title(pipeline: Pipeline, output: Output) -> str:
     """Return what an output of a composite is called; the step's name is part of it where it distinguishes outputs."""
     stage = output.step.stage
-    if output.of == "output":
+    if output.of == CLOUD:
         makers = [step.stage for step in pipeline.steps if step.stage.makes_cloud]
-        title = cloud_title(makers if output.name == "output" else [stage])
+        title = cloud_title(makers if output.name == CLOUD else [stage])
     else:
-        titles = {made.name: made.title for made in (*stage.layers, *stage.rasters, *stage.files)}
-        title = titles.get(output.of, stage.report_title)
-    is_alone = output.name == output.of or (output.of == "report" and title != "Report")
+        declared = output.declared
+        title = stage.report_title if isinstance(declared, str) else declared.title
+    is_alone = output.name == output.of or (output.of == REPORT and title != "Report")
     return title if is_alone else output_label(output.step, title)
 
 

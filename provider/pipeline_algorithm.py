@@ -10,10 +10,10 @@ from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessing
 from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.run import Results, run_pipeline
-from ..algorithms.stage import Monitor, TextFile
-from .cloud_algorithm import CLOUD, CloudAlgorithm, Inputs, Made, Read, outputs_of
+from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, TextFile
+from .cloud_algorithm import CloudAlgorithm, Inputs, Read
+from .destinations import Made
 from .feedback import ChainMonitor
-from .inputs import REPORT
 from .models import model_file, output_label, output_title, pipeline_parameters
 from .parameters import automatic_numbers, number_outputs, tunable_values, used_name
 from .run_log import RunLog
@@ -28,10 +28,9 @@ def _rank(output: Output) -> int:
     """Return the rank of an output in the dialog: cloud, layers, reports; rasters and kept clouds come last."""
     if output.of == CLOUD:
         return 0 if output.name == output.of else 4
-    rasters = [raster.name for raster in output.step.stage.rasters]
-    if output.of in rasters:
+    if isinstance(output.declared, Raster):
         return _INTERMEDIATE
-    return 2 if output.of == REPORT.lower() else 1
+    return 2 if output.of == REPORT else 1
 
 
 def step_output_name(step: Step, name: str) -> str:
@@ -151,7 +150,7 @@ def pipeline_tunables(
 
 def _made(pipeline: Pipeline, output: Output) -> Made:
     """Return how an output is declared and shown. Results of steps in between are made on request only."""
-    declared = dict(outputs_of(output.step.stage))[output.of]
+    declared = output.declared
     if isinstance(declared, TextFile):
         declared = replace(declared, name=output.name)
     # Layers, such as footprints, may be all that is wanted.

@@ -9,10 +9,11 @@ from qgis.core import QgsProcessingContext, QgsProcessingFeedback
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.help import stage_help
 from ..algorithms.run import Results, run_stage
-from ..algorithms.stage import Monitor, Raster, Stage
-from .cloud_algorithm import CLOUD, CloudAlgorithm, Inputs, Made, Read, outputs_of
+from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, Stage
+from .cloud_algorithm import CloudAlgorithm, Inputs, Read
+from .destinations import Made
 from .feedback import FeedbackMonitor, announce
-from .inputs import REPORT, cloud_title
+from .inputs import cloud_title
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .run_log import RunLog
 from .texts import tr
@@ -65,7 +66,7 @@ class StageAlgorithm(CloudAlgorithm):
         cloud = read.clouds if self.stage.merges else read.clouds[0] if read.clouds else None
         made = run_stage(self.stage, cloud, read.reference, monitor, read.layers, **self.job.tunables)
         self._warn_if_nothing_was_selected(read, made.cloud, monitor)
-        reports = {REPORT.lower(): made.report} if made.report is not None else {}
+        reports = {REPORT: made.report} if made.report is not None else {}
         return Results(made.cloud, made.layers, made.report, made.rasters, made.files, reports=reports)
 
     def numbers(self, results: Results, values: dict[str, Any]) -> dict[str, Any]:
@@ -98,7 +99,7 @@ def _made(stage: Stage) -> list[Made]:
     """Return the outputs of a stage. The first layer or the only raster is required where it makes nothing else."""
     made: list[Made] = []
     has_other = bool(stage.makes_cloud or stage.measures or stage.files)
-    for name, declared in outputs_of(stage):
+    for name, declared in stage.outputs.items():
         is_one_of_several = isinstance(declared, Raster) and len(stage.rasters) > 1
         optional = declared != CLOUD and (has_other or bool(made) or is_one_of_several)
         title = cloud_title([stage]) if name == CLOUD else tr(stage.report_title)

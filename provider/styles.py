@@ -125,8 +125,8 @@ def _map_tip(fields: Sequence[Field]) -> str:
 
 def _shown_in_tip(field: Field) -> str:
     """Return the expression of a field's value with its unit, or its name where it has none; NULL where it is."""
-    value = f'format_number("{field.name}", {_DECIMALS_IN_TIPS.get(field.name, 1)})'
-    value = value if field.type is not str else f'"{field.name}"'
+    decimals = _DECIMALS_IN_TIPS.get(field.name, 1)
+    value = f'"{field.name}"' if field.type is str else f'format_number("{field.name}", {decimals})'
     return f"{value} || ' {field.unit}'" if field.unit else f"'{field.name.replace('_', ' ')} ' || {value}"
 
 

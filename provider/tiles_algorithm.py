@@ -15,20 +15,17 @@ from qgis.core import (
     QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterFeatureSink,
-    QgsProcessingParameterFileDestination,
     QgsProcessingParameterFolderDestination,
     QgsProcessingParameterNumber,
-    QgsProcessingParameterRasterDestination,
     QgsProcessingParameterString,
     QgsProcessingUtils,
 )
 
 from ..algorithms.cloud.outputs import COPC, replacing, stem_of
-from ..algorithms.pipeline import CLOUD, Output
+from ..algorithms.pipeline import CLOUD
 from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
-from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster
+from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster, TextFile
 from ..algorithms.tiling.mosaics import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
@@ -42,6 +39,7 @@ from .algorithm import CheckedAlgorithm
 from .clouds import CloudsParameter, survey_paths
 from .crs_authority import crs_reader
 from .declared import on_command_line
+from .destinations import Made
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer
@@ -67,9 +65,8 @@ from .run_log import about_run, complete_page, parameter_rows
 from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
-from .text_files import file_parameter, write_text
+from .text_files import write_text
 from .texts import tr
-from .vectors import SOURCE_TYPES
 
 BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED, LOAD = (
     "BLOCK_SIDE",
@@ -97,6 +94,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def __init__(self, tiled: TiledPipeline) -> None:
         super().__init__()
         self.tiled = self.declared = tiled
+        self.made = _made(tiled)
 
     def createInstance(self) -> TilesAlgorithm:  # noqa: N802 - QGIS asks for these names
         """Return a new algorithm of the same composite."""
@@ -119,21 +117,8 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             self.addParameter(definition)
         folder = QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder of the tiles"))
         self.addParameter(with_help(folder, tr("A tile for each file, and a virtual point cloud over all of them.")))
-        for output in self.tiled.layers:
-            layer = _layer(output)
-            sink = QgsProcessingParameterFeatureSink(
-                output.name.upper(), tr(layer.title), SOURCE_TYPES[layer.geometry], optional=True
-            )
-            self.addParameter(with_help(sink, tr("A GeoPackage or any other vector format that QGIS writes.")))
-        for output in self.tiled.rasters:
-            title = tr(_raster(output).title)
-            image = QgsProcessingParameterRasterDestination(output.name.upper(), title, optional=True)
-            self.addParameter(with_help(image, tr("A GeoTIFF, tiled and compressed.")))
-        for file in files_of(self.tiled.pipeline).values():
-            self.addParameter(file_parameter(file[0]))
-        if self.tiled.report:
-            page = QgsProcessingParameterFileDestination(REPORT, tr("Report"), "HTML files (*.html)", optional=True)
-            self.addParameter(with_help(page, tr("A page that shows the numbers.")))
+        for made in self.made:
+            self.addParameter(made.definition())
         self.addOutput(QgsProcessingOutputFile(VPC, tr("Virtual point cloud over the tiles")))
         for name, title in _NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, tr(title)))
@@ -229,24 +214,24 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor, results: dict
     ) -> TilesOutcome:
         """Run the survey, and write the rasters and text files that are wanted, which are added to the results."""
-        side, files = parameters.get(BLOCK_SIDE), files_of(self.tiled.pipeline)
-        wanted = {one.name: one for one in self.tiled.rasters if parameters.get(one.name.upper()) not in UNWANTED}
+        side, wanted = parameters.get(BLOCK_SIDE), self._wanted(parameters)
+        declared = {made.key: made.declared for made in self.made if made.key in wanted}
 
         def find_layers(survey: Survey) -> dict[str, Optional[LayerFeatures]]:
             return self._given_layers(survey, parameters, context, monitor)
 
         def take_raster(survey: Survey, mosaic: RasterMosaic) -> None:
-            if mosaic.name in wanted:
-                name = mosaic.name.upper()
+            raster, name = declared.get(mosaic.name), mosaic.name.upper()
+            if isinstance(raster, Raster):
                 target = self.parameterAsOutputLayer(parameters, name, context)
-                raster = _raster(wanted[mosaic.name])
                 write_mosaic(raster, mosaic, place_of_survey(survey), Path(target), monitor.part(_DONE, _DONE))
                 show_on_load(context, target, "Raster", layer_style(raster))
                 results[name] = target
 
         def take_file(survey: Survey, name: str, content: FileContent) -> None:
-            part, place = monitor.part(_DONE, _DONE), place_of_survey(survey)
-            results.update(write_text(self, files[name][0], content, place, parameters, context, part))
+            part, place, file = monitor.part(_DONE, _DONE), place_of_survey(survey), declared.get(name)
+            if isinstance(file, TextFile):
+                results.update(write_text(self, file, content, place, parameters, context, part))
 
         return run_in_tiles(
             self.tiled.pipeline,
@@ -259,9 +244,9 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 compressed=self.parameterAsBool(parameters, COMPRESSED, context),
                 read=crs_reader(self.crs),
                 extent=self.extent,
-                wanted=self._wanted(parameters),
+                wanted=wanted,
                 find_layers=find_layers,
-                take_raster=take_raster if wanted else None,
+                take_raster=take_raster if self.tiled.rasters else None,
                 take_file=take_file,
                 shown=self.shows,
             ),
@@ -270,9 +255,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def _wanted(self, parameters: dict) -> tuple[str, ...]:
         """Return the names of the outputs that are asked for besides the tiles."""
-        tiled = self.tiled
-        outputs = [*tiled.layers, *tiled.rasters, *tiled.files, *([tiled.report] if tiled.report else [])]
-        return tuple(one.name for one in outputs if parameters.get(one.name.upper()) not in UNWANTED)
+        return tuple(made.key for made in self.made if parameters.get(made.name) not in UNWANTED)
 
     def _given_layers(
         self, survey: Survey, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
@@ -319,23 +302,24 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Write the layers that are wanted; return their outputs."""
         survey, results = outcome.survey, {}
         place = place_of_survey(survey)
-        for output in self.tiled.layers:
-            features = outcome.layers.get(output.name)
-            layer = _layer(output)
-            if features is not None:
-                part, name = monitor.part(_DONE, _DONE), output.name.upper()
-                results.update(write_layer(self, name, layer, features, place, parameters, context, part))
+        for made in self.made:
+            features = outcome.layers.get(made.key)
+            if isinstance(made.declared, Layer) and features is not None:
+                part = monitor.part(_DONE, _DONE)
+                results.update(write_layer(self, made.name, made.declared, features, place, parameters, context, part))
         return results
 
 
-def _layer(output: Output) -> Layer:
-    """Return the layer that an output of a composite is."""
-    return next(one for one in output.step.stage.layers if one.name == output.of)
-
-
-def _raster(output: Output) -> Raster:
-    """Return the raster that an output of a composite is."""
-    return next(one for one in output.step.stage.rasters if one.name == output.of)
+def _made(tiled: TiledPipeline) -> list[Made]:
+    """Return the outputs besides the tiles."""
+    files = {name: file for name, (file, _) in files_of(tiled.pipeline).items()}
+    outputs = [*tiled.layers, *tiled.rasters, *tiled.files, *([tiled.report] if tiled.report else [])]
+    made = []
+    for output in outputs:
+        stage, declared = output.step.stage, files.get(output.name, output.declared)
+        title = stage.report_title if isinstance(declared, str) else declared.title
+        made.append(Made(output.name.upper(), tr(title), stage, declared))
+    return made
 
 
 def _refuse_failures(outcome: TilesOutcome, folder: Path) -> None:

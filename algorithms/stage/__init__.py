@@ -28,7 +28,7 @@ package needs the standard library and numpy only, and is independent of QGIS.
 """
 
 from .arguments import REFERENCE_PREFIX
-from .declaration import DIMENSION, SAMPLING, VALUES, Stage, stage
+from .declaration import CLOUD, DIMENSION, REPORT, SAMPLING, VALUES, Declared, Stage, stage
 from .inputs_outputs import (
     Field,
     FileContent,
@@ -50,8 +50,11 @@ from .monitor import Cancelled, Monitor, ProgressOnly
 from .tunables import Param, Tunable
 
 __all__ = [
+    "CLOUD",
     "Cancelled",
     "DIMENSION",
+    "Declared",
+    "REPORT",
     "LayerFeatures",
     "Field",
     "FileContent",

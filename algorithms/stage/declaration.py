@@ -16,6 +16,12 @@ from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, Sta
 from .monitor import Monitor
 from .tunables import Tunable
 
+# Names of the outputs that have no declaration of their own: the cloud, and the page of a report.
+CLOUD, REPORT = "output", "report"
+
+# What an output is declared as, the last for clouds and pages.
+Declared = Union[Layer, Raster, TextFile, str]
+
 # The positional argument that is whichever dimension a tunable names, and that tunable.
 VALUES, DIMENSION = "values", "dimension"
 
@@ -117,6 +123,15 @@ class Stage:
     def makes_cloud(self) -> bool:
         """Whether a cloud is among its results."""
         return bool(self.writes or self.creates or self.selects or self.merges)
+
+    @property
+    def outputs(self) -> dict[str, Declared]:
+        """What it makes, as declared, by name: cloud, layers, rasters, text files, report."""
+        found: dict[str, Declared] = {CLOUD: CLOUD} if self.makes_cloud else {}
+        found.update({layer.name: layer for layer in self.layers})
+        found.update({raster.name: raster for raster in self.rasters})
+        found.update({file.name: file for file in self.files})
+        return {**found, REPORT: REPORT} if self.measures else found
 
     @property
     def reads_reference(self) -> bool:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Optional
 
 from ..help import output_text, paragraphs, pipeline_help, written_by
 from ..packages import ESSENTIAL
@@ -83,28 +82,23 @@ class TiledPipeline:
     @property
     def layers(self) -> list[Output]:
         """The outputs that are layers."""
-        return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.layers)]
+        return [output for output in self.pipeline.outputs if isinstance(output.declared, Layer)]
 
     @property
     def rasters(self) -> list[Output]:
         """The outputs that are rasters."""
-        return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.rasters)]
+        return [output for output in self.pipeline.outputs if isinstance(output.declared, Raster)]
 
     @property
     def files(self) -> list[Output]:
         """The outputs that are text files."""
-        return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.files)]
+        return [output for output in self.pipeline.outputs if isinstance(output.declared, TextFile)]
 
     @property
     def report(self) -> Optional[Output]:
         """The report of the steps that read the layers of the whole survey, None without such steps."""
         steps = afterwards(self.pipeline)
         return next((one for one in self.pipeline.outputs if one.step in steps and one.of == REPORT), None)
-
-
-def _is_one(output: Output, declared: Iterable[Union[Layer, Raster, TextFile]]) -> bool:
-    """Return whether an output is one of those that its step declares."""
-    return output.of in [one.name for one in declared]
 
 
 @dataclass(frozen=True)

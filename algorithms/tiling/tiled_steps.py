@@ -80,9 +80,8 @@ def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:
 
 def layers_of(pipeline: Pipeline) -> dict[str, Layer]:
     """Return for each layer of a composite, by its names, how the stage declares it."""
-    declared = {(step.name, layer.name): layer for step in pipeline.steps for layer in step.stage.layers}
-    found = {output.name: declared.get((output.step.name, output.of)) for output in pipeline.outputs}
-    return {name: layer for name, layer in found.items() if layer is not None}
+    declared = {output.name: output.declared for output in pipeline.outputs}
+    return {name: layer for name, layer in declared.items() if isinstance(layer, Layer)}
 
 
 def files_of(pipeline: Pipeline) -> dict[str, tuple[TextFile, str]]:
@@ -92,10 +91,10 @@ def files_of(pipeline: Pipeline) -> dict[str, tuple[TextFile, str]]:
     """
     names = {(output.step.name, output.of): output.name for output in pipeline.outputs}
     found = {}
-    for step in pipeline.steps:
-        for file in step.stage.files:
-            name = names[step.name, file.name]
-            found[name] = replace(file, name=name), _named(names, step, file.of)
+    for output in pipeline.outputs:
+        if isinstance(output.declared, TextFile):
+            file = replace(output.declared, name=output.name)
+            found[output.name] = file, _named(names, output.step, file.of)
     return found
 
 

@@ -1,0 +1,60 @@
+"""What algorithms make, as the outputs that users choose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from qgis.core import (
+    QgsProcessingDestinationParameter,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterPointCloudDestination,
+    QgsProcessingParameterRasterDestination,
+)
+
+from ..algorithms.stage import CLOUD, Declared, Layer, Raster, Stage, TextFile
+from .inputs import with_help
+from .text_files import file_parameter
+from .texts import tr
+from .vectors import SOURCE_TYPES
+
+
+@dataclass(frozen=True)
+class Made:
+    """An output: its name and title, the stage that makes it, and how that declares it."""
+
+    name: str  #: ``OUTPUT``, ``FOOTPRINTS``
+    title: str
+    stage: Stage
+    #: "output" for a cloud, "report" for a page; a text file has the name of the output
+    declared: Declared
+    optional: bool = True
+    by_default: bool = True  #: Whether the dialog makes it unless told otherwise
+    only_with: str = ""  #: Name of the layer without which it is not made
+
+    @property
+    def key(self) -> str:
+        """Its name among the results in memory."""
+        return self.name.lower()
+
+    def definition(self) -> QgsProcessingDestinationParameter:
+        """Return the parameter that says where it goes."""
+        declared = self.declared
+        if isinstance(declared, Layer):
+            kind = SOURCE_TYPES[declared.geometry]
+            made = QgsProcessingParameterFeatureSink(self.name, self.title, kind, optional=self.optional)
+            with_help(made, tr("A GeoPackage or any other vector format that QGIS writes."))
+        elif isinstance(declared, Raster):
+            made = QgsProcessingParameterRasterDestination(self.name, self.title, optional=self.optional)
+            with_help(made, tr("A GeoTIFF, tiled and compressed."))
+        elif isinstance(declared, TextFile):
+            made = file_parameter(declared)
+            made.setDescription(self.title)
+        elif declared == CLOUD:
+            made = QgsProcessingParameterPointCloudDestination(self.name, self.title, optional=self.optional)
+            with_help(made, tr("A .las, .laz or .copc.laz file."))
+        else:
+            made = QgsProcessingParameterFileDestination(self.name, self.title, "HTML files (*.html)", optional=True)
+            with_help(made, tr("A page that shows the numbers."))
+        made.setCreateByDefault(self.by_default)
+        return made
