@@ -358,7 +358,7 @@ def run_pipeline(
 
     ``cloud`` is several clouds where the pipeline merges. ``input_layers`` are the layers that the pipeline
     is given, by name, in meters relative to the cloud's origin. Steps that no ``wanted`` output depends on are not run,
-    nor those that compare with a layer that is not given; what the others make besides is among the results.
+    nor steps that compare with a layer that is not given. Further outputs of the steps run are among the results.
     ``tunables`` are named ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps
     share is named ``<tunable>``.
 

@@ -140,7 +140,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         raise NotImplementedError
 
     def monitor(self, feedback: QgsProcessingFeedback, log: RunLog) -> FeedbackMonitor:
-        """Return what shows the progress of a run and keeps what its steps say."""
+        """Return the monitor of a run: it shows the progress and keeps the messages of steps."""
         raise NotImplementedError
 
     def compute(self, read: Read, monitor: Monitor) -> Results:
@@ -172,7 +172,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.name_pages()
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
-        """Find out what a run needs; refuse what can be refused before it."""
+        """Check the parameters; raise a ValueError where a run can't succeed."""
         self.job = self._job(parameters, context)
 
     def systems(self) -> list[str]:
@@ -181,7 +181,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         return [*(read_extent(path, read)[2].plane for path in self.job.paths), *names_of_crs(self.job.crs)]
 
     def _job(self, parameters: dict, context: QgsProcessingContext) -> Job:
-        """Return what a run needs; refuse with a ValueError what can be refused before it."""
+        """Return the checked parameters of a run; raise a ValueError where it can't succeed."""
         inputs = self.inputs
         tunables = self.tunables(parameters, context)
         wanted = [made for made in self.made if parameters.get(made.name) not in UNWANTED]

@@ -23,7 +23,7 @@ _DEBIAN_PIP = "python3-pip"
 
 
 def missing_sentence(needed: Collection[str] = packages.ESSENTIAL) -> str:
-    """Return which of the needed packages are missing and the command that installs them; "" when all are there.
+    """Return the missing ones of the needed packages and the command that installs them; "" when all are there.
 
     Without a package for LAZ alone everything but LAZ and COPC works, see :func:`laz_sentence`.
     """
@@ -77,7 +77,7 @@ def shown_command(missing: list[str]) -> str:
 
 
 def pip_arguments(missing: list[str]) -> list[str]:
-    """Return what the interpreter of QGIS is to be started with to install packages into the profile.
+    """Return the arguments with which QGIS's interpreter installs packages into the profile.
 
     "-I" takes no module from the current folder, in which a "pip.py" may lie, or from where the environment says.
     """

@@ -122,7 +122,7 @@ _SAMPLING, _BETWEEN = "Sampling: ", ", "
 # What a chain does before and after its steps, for the log.
 _READING, _WRITING = "Reading", "Writing"
 
-# Share of the work below which the time that is left can't be told.
+# Share of the work below which the time left can't be estimated.
 _TOO_EARLY = 0.02
 
 

@@ -151,7 +151,7 @@ def name_of_layer(given: Any) -> str:
 
 
 def subject_of(clouds: Sequence[Path], layer: str, feedback: QgsProcessingFeedback) -> str:
-    """Return what the results of a run are of: its layer, or else the file of its first cloud.
+    """Return the subject of a run, after which its results are named: its layer, or else the file of its first cloud.
 
     It is "" for a step of a user's chain, which reads temporaries.
     """

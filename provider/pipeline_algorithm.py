@@ -93,14 +93,14 @@ class PipelineAlgorithm(CloudAlgorithm):
         }
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
-        """Find out what a run needs; refuse what can be refused before it."""
+        """Check the parameters; raise a ValueError where a run can't succeed."""
         super().check(parameters, context)
         if not self.job.wanted:
             names = ", ".join(made.name for made in self.made)
             raise ValueError(f"'{self.displayName()}' has nothing to make; give at least one of its outputs: {names}.")
 
     def monitor(self, feedback: QgsProcessingFeedback, log: RunLog) -> ChainMonitor:
-        """Return what shows the progress of a run and keeps what its steps say."""
+        """Return the monitor of a run: it shows the progress and keeps the messages of steps."""
         return ChainMonitor(feedback, log)
 
     def compute(self, read: Read, monitor: Monitor) -> Results:

@@ -55,7 +55,7 @@ class StageAlgorithm(CloudAlgorithm):
         return number_outputs(self.stage)
 
     def monitor(self, feedback: QgsProcessingFeedback, log: RunLog) -> FeedbackMonitor:
-        """Return what shows the progress of a run and keeps what it says."""
+        """Return the monitor of a run: it shows the progress and keeps the messages."""
         announce(self.stage.title, feedback)
         log.begin(self.stage, self.job.tunables)
         return FeedbackMonitor(feedback, self.stage, self.job.tunables, log)

@@ -114,7 +114,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
 
 def _map_tip(fields: Sequence[Field]) -> str:
-    """Return what QGIS shows where the mouse rests on a feature: its number, what matters most, and the reason."""
+    """Return the map tip of a feature: its number, its main attributes, and the reason."""
     names = {field.name: field for field in fields}
     main = [names[name] for name in _IN_TIPS if name in names] or [one for one in fields[1:] if one.type is float]
     facts = [f'to_string("{fields[0].name}")', *(_shown_in_tip(field) for field in main[:_MOST_IN_TIPS])]

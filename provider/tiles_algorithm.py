@@ -254,7 +254,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         )
 
     def _wanted(self, parameters: dict) -> tuple[str, ...]:
-        """Return the names of the outputs that are asked for besides the tiles."""
+        """Return the names of the outputs, other than the tiles, that the user wants."""
         return tuple(made.key for made in self.made if parameters.get(made.name) not in UNWANTED)
 
     def _given_layers(
@@ -311,7 +311,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
 
 def _made(tiled: TiledPipeline) -> list[Made]:
-    """Return the outputs besides the tiles."""
+    """Return the outputs other than the tiles."""
     files = {name: file for name, (file, _) in files_of(tiled.pipeline).items()}
     outputs = [*tiled.layers, *tiled.rasters, *tiled.files, *([tiled.report] if tiled.report else [])]
     made = []
