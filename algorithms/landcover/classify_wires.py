@@ -143,6 +143,5 @@ def _spans(
         return []
     free = free[thinned(points[free])]
     reach = float(np.clip(_REACH_SPACINGS * spacing, _LEAST_REACH, _MOST_REACH))
-    strand, direction = strands(points[free], reach)
-    monitor.progress(0.7)
+    strand, direction = strands(points[free], reach, monitor.part(0.2, 0.7))
     return list(spans_of(points[free], strand, direction, around, reach, np.random.default_rng(seed)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from ..geometry.grid import fixed_grid_over
 from ..geometry.groups import components, items, run_starts
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
+from ..stage import Monitor
+from ..threads import in_chunks
 from .wire_spans import RULES as SPAN
 
 
@@ -40,6 +43,9 @@ _RULES = _Rules()
 # Lines whose points are counted at once.
 _CHUNK = 1000
 
+# Points whose neighbors are found at once: some hundred neighbors each take tens of megabytes.
+_POINTS_AT_ONCE = 2000
+
 
 def over_free_space(xyz: np.ndarray, spacing: float) -> np.ndarray:
     """Return the rows (m,) of points (n, 3), m, in thin layers with free space below them."""
@@ -62,7 +68,7 @@ def thinned(xyz: np.ndarray) -> np.ndarray:
     return rows[count <= _RULES.most_around]
 
 
-def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+def strands(xyz: np.ndarray, reach: float, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
     """Return the number (n,), from 0, of the line that each point is on, -1 for none, and its direction (n, 3).
 
     Parameters
@@ -71,25 +77,44 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
         Thinned points.
     reach : float
         Distance (m) within which points are on a line together.
+    monitor : Monitor
+        Receives progress.
     """
     if len(xyz) < SPAN.least_points:
         return np.full(len(xyz), -1), np.zeros((len(xyz), 3))
     # Wires run far in plan and little in height.
-    pairs = spatial.cKDTree(xyz * [1.0, 1.0, 2.0]).query_pairs(reach, output_type="ndarray")
-    one, other = np.concatenate([pairs, pairs[:, ::-1]]).T
-    order = np.lexsort((other, one))
-    one, other = one[order], other[order]
-    offset = xyz[other] - xyz[one]
-    count, direction = _best_lines(one, offset, len(xyz), reach)
+    stretched = xyz * [1.0, 1.0, 2.0]
+    tree = spatial.cKDTree(stretched)
+    count, direction = np.zeros(len(xyz), np.int64), np.zeros((len(xyz), 3))
+
+    def look(rows: np.ndarray) -> None:
+        one, other = _pairs(stretched, rows, tree, reach)
+        offset = xyz[other] - xyz[rows[one]]
+        count[rows], direction[rows] = _best_lines(one, offset, len(rows), reach)
+
+    # Neighbors in plan together: their own neighbors are the same.
+    in_chunks(look, np.lexsort(xyz[:, :2].T), _POINTS_AT_ONCE, monitor)
     is_linear = count >= SPAN.least_points - 1
-    near = is_linear[one] & is_linear[other]
-    one, other, offset = one[near], other[near], offset[near]
+    linear = np.flatnonzero(is_linear)
+    one, other = linear[spatial.cKDTree(stretched[linear]).query_pairs(reach, output_type="ndarray")].T
+    one, other = np.concatenate([one, other]), np.concatenate([other, one])
+    offset = xyz[other] - xyz[one]
     aside, off_height, along = _off_line(offset, direction[one])
     alike = np.abs((direction[one, :2] * direction[other, :2]).sum(axis=1)) > np.cos(np.radians(_RULES.turn))
     # A wire bends: farther points are higher than its tangent.
     on_line = (aside <= SPAN.aside) & (off_height <= SPAN.aside + _RULES.bend * np.abs(along)) & alike
     _, line = components(one[on_line], other[on_line], len(xyz))
     return np.where(is_linear, line, -1), direction
+
+
+def _pairs(points: np.ndarray, rows: np.ndarray, tree: Any, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs of some points, by their position among ``rows``, and others up to ``reach`` (m) away, in order."""
+    found = spatial.cKDTree(points[rows]).sparse_distance_matrix(tree, reach, output_type="ndarray")
+    one, other = found["i"], found["j"]
+    is_other = rows[one] != other
+    one, other = one[is_other], other[is_other]
+    order = np.lexsort((other, one))
+    return one[order], other[order]
 
 
 def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -> tuple[np.ndarray, np.ndarray]:
