@@ -48,9 +48,9 @@ def has_laz() -> bool:
     return any(importlib.util.find_spec(module) is not None for module in ("lazrs", "laszip"))
 
 
-def absent() -> list[str]:
-    """Return all packages to install: those that are missing, and the one for LAZ."""
-    return [*missing(), *([] if has_laz() else [_LAZ])]
+def absent(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:
+    """Return all packages to install: those of the needed ones that are missing, and the one for LAZ."""
+    return [*missing(needed), *([] if has_laz() else [_LAZ])]
 
 
 spatial = _Lazy("scipy.spatial")

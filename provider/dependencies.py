@@ -27,8 +27,7 @@ def missing_sentence(needed: Collection[str] = packages.ESSENTIAL) -> str:
 
     Without a package for LAZ alone everything but LAZ and COPC works, see :func:`laz_sentence`.
     """
-    missing = packages.missing(needed)
-    return _sentence(missing, [*missing, *([] if packages.has_laz() else ["lazrs"])])
+    return _sentence(packages.missing(needed), packages.absent(needed))
 
 
 def laz_sentence() -> str:

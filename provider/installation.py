@@ -129,8 +129,9 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
             parent, SOFTWARE, tr("Not installed: {}. Python says: {}").format(", ".join(remaining), reason)
         )
     else:
-        then = tr("start QGIS again.") if replaces_loaded else tr("the algorithms can run.")
-        QMessageBox.information(parent, SOFTWARE, tr("Everything is installed;") + f" {then}")
+        again = tr("Everything is installed; start QGIS again.")
+        done = again if replaces_loaded else tr("Everything is installed; the algorithms can run.")
+        QMessageBox.information(parent, SOFTWARE, done)
     return not remaining
 
 

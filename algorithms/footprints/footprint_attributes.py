@@ -234,9 +234,9 @@ def _eave_heights(
 
 
 def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float) -> float:
-    """Return the mean height of a roof's surface: at positions a spacing apart that of the nearest of its points.
+    """Return the mean height of a roof's surface, which has the height of the nearest point at each position.
 
-    The positions are those of the lattice of nodes (k, 2) that have even numbers, all of them where none has.
+    The positions are a spacing apart: the nodes (k, 2) with even numbers in the lattice, or all nodes where none has.
     """
     defined = np.isfinite(height)
     if not defined.any():

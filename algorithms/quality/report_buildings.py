@@ -85,8 +85,8 @@ def report_buildings(
 
     Notes
     -----
-    In a cloud that can hardly show buildings, as it is thin, small or without ground, all are doubtful that have a
-    confidence; the page says why.
+    In a cloud that can hardly show buildings, as it is thin, small or without ground, every building that has a
+    confidence is doubtful. The page says why.
 
     Examples
     --------
@@ -120,10 +120,8 @@ def report_buildings(
     monitor.progress(1.0)
     summary = summary_of(values)
     monitor.inform(summary)
-    return Report(
-        values,
-        build_page("Buildings", f"{summary} {doubt}".strip(), {"In all": _totals(facts, values)}, "\n".join(parts)),
-    )
+    said = f"{summary} {doubt}".strip()
+    return Report(values, build_page("Buildings", said, {"In all": _totals(facts, values)}, "\n".join(parts)))
 
 
 def summary_of(values: dict) -> str:

@@ -20,14 +20,11 @@ class SufficiencyRules:
     density: float = rule(0.5, "points/m²", "measured on three towns: mean F 95 at 4, 92 at 1, 88 at 0.5, 83 at 0.35")
     area: float = rule(900.0, "m²", "measured on squares of three towns: F 87 at 20 m, 93 at 30 m, 95 at 100 m")
     ground: float = rule(0.1, "share", "of cells with ground; dense forest has 0.25, the densest town 0.45")
-    void: float = rule(0.3, "share", "of empty cells beside occupied ones: 0.14 in surveys, 0.39 in roofs alone")
+    void: float = rule(0.3, "share", "of empty cells by occupied ones: up to 0.14 in surveys, 0.14 to 0.53 in roofs")
     doubt: float = rule(0.3, "share", "of a confidence above 0.5 that is left: no building is sure")
 
 
 SUFFICIENCY = SufficiencyRules()
-
-# Classes of the ground, and of water beside it.
-_LEVEL = (PointClass.GROUND, PointClass.WATER)
 
 
 def why_doubtful(xyz: np.ndarray, classification: np.ndarray, sampling: CloudSampling) -> str:
@@ -67,11 +64,11 @@ def _faults_of_whole(xyz: np.ndarray, classification: np.ndarray, density: float
     grid = grid_over(xyz[counted], 2 * float(np.sqrt(DENSITY.points_per_cell / density)))
     cell = grid.number(xyz[counted])
     occupied = distinct(cell)[0]
-    ground = distinct(cell[np.isin(classification[counted], _LEVEL)])[0]
+    ground = distinct(cell[np.isin(classification[counted], (PointClass.GROUND, PointClass.WATER))])[0]
     faults = []
     if counted.sum() / density < SUFFICIENCY.area:
         faults.append(f"it covers less than {SUFFICIENCY.area:g} m², a few buildings")
-    if _n_beside(grid, occupied) > SUFFICIENCY.void * len(occupied):
+    if _n_next_to(grid, occupied) > SUFFICIENCY.void * len(occupied):
         faults.append("its points lie in islands with nothing around")
     # Without any ground, the cloud is not classified.
     if 0 < len(ground) < SUFFICIENCY.ground * len(occupied):
@@ -79,7 +76,7 @@ def _faults_of_whole(xyz: np.ndarray, classification: np.ndarray, density: float
     return faults
 
 
-def _n_beside(grid: Grid, occupied: np.ndarray) -> int:
+def _n_next_to(grid: Grid, occupied: np.ndarray) -> int:
     """Return the number of empty cells of a grid that touch occupied ones, without those beyond the box of all."""
     touching = np.unique(np.concatenate([occupied + step for step in grid.around]))
     row, column = np.divmod(touching, grid.columns)

@@ -5,14 +5,11 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
-from zipfile import ZIP_STORED, ZipFile
+from zipfile import ZipFile
 
 import numpy as np
 
 from ..cloud.outputs import DiskFullError, replacing
-
-# The first bytes of an archive.
-_MARK = b"PK\x03\x04"
 
 _FULL = "The disk is full; free some space and start the same run again, which goes on with what was done."
 
@@ -45,16 +42,16 @@ def is_as_written(path: Path) -> bool:
     Nothing of it is parsed before: an array that was planted or damaged may have any shape and type.
     """
     try:
-        # Python's archives may have anything before them, but numpy takes it for a pickle.
-        with path.open("rb") as file, ZipFile(file) as archive:
-            is_ours = archive.comment == _seal(archive) and archive.testzip() is None
-            return is_ours and file.seek(0) == 0 and file.read(len(_MARK)) == _MARK
+        with ZipFile(path) as archive:
+            # Other bytes may come before an archive for Python's reader, but for numpy the file is then a pickle.
+            is_whole_file = archive.infolist()[0].header_offset == 0
+            return is_whole_file and archive.comment == _seal(archive) and archive.testzip() is None
     except Exception:
         # Python's reader fails on damaged archives in a dozen ways, and all of them mean the same.
         return False
 
 
 def _seal(archive: ZipFile) -> bytes:
-    """Return a digest of the names, sizes and checksums of the arrays in a file; they are not compressed."""
-    members = [(one.filename, one.file_size, one.CRC, one.compress_type == ZIP_STORED) for one in archive.infolist()]
+    """Return a digest of the names, sizes and checksums of the arrays in a file."""
+    members = [(one.filename, one.file_size, one.CRC) for one in archive.infolist()]
     return hashlib.sha256(repr(members).encode()).hexdigest().encode()

@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -113,15 +113,13 @@ class BlockResult:
             )
 
     @classmethod
-    def is_complete(cls, path: Path, counts: Optional[Sequence[int]] = None) -> bool:
-        """Whether a file holds what :meth:`write` wrote, of files with these numbers of points if they are known.
+    def is_complete(cls, path: Path, counts: Sequence[int]) -> bool:
+        """Whether a file holds what :meth:`write` wrote, of files with these numbers of points.
 
         One that is missing, cut off, damaged or somebody else's does not.
         """
         if not is_as_written(path):
             return False
-        if counts is None:
-            return True
         with np.load(path, allow_pickle=False) as stored:
             source, position = stored["source"], stored["position"]
         if source.shape != position.shape or not ((source >= 0) & (source < len(counts))).all():

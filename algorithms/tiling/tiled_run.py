@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Callable, Optional
 
@@ -76,17 +77,17 @@ class RunSettings:
     options: TilesOptions
     tunables: dict[str, Any]
 
-    @property
-    def steps(self) -> tuple[str, ...]:
-        """Names of the steps that are run: those that the tiles and the wanted outputs need."""
-        names = [output.name for output in self.pipeline.outputs]
-        wanted = names if self.options.wanted is None else self.options.wanted
-        return tuple(step.name for step in self.pipeline.steps_for({CLOUD, *wanted}))
+    @cached_property
+    def working(self) -> Pipeline:
+        """The steps that the tiles and the wanted outputs need; the names of its outputs may be others."""
+        wanted = self.options.wanted
+        names = [output.name for output in self.pipeline.outputs] if wanted is None else wanted
+        return part_of(self.pipeline, self.pipeline.steps_for({CLOUD, *names}))
 
     @property
-    def working(self) -> Pipeline:
-        """The part of the composite that is run; the names of its outputs may be others."""
-        return part_of(self.pipeline, [step for step in self.pipeline.steps if step.name in self.steps])
+    def steps(self) -> tuple[str, ...]:
+        """Names of the steps that are run."""
+        return tuple(step.name for step in self.working.steps)
 
     @property
     def stop(self) -> Path:

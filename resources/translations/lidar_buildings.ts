@@ -4876,7 +4876,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Everything is installed;</source>
+        <source>Everything is installed; start QGIS again.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Everything is installed; the algorithms can run.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5516,7 +5520,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>In a cloud that can hardly show buildings, as it is thin, small or without ground, all are doubtful that have a confidence; the page says why.</source>
+        <source>In a cloud that can hardly show buildings, as it is thin, small or without ground, every building that has a confidence is doubtful. The page says why.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8945,14 +8949,6 @@
     </message>
     <message>
         <source>roofer takes a LAS or LAZ file with the classes 2 (ground) and 6 (building), and one polygon for each building with an attribute that names it: &lt;code&gt;roofer --id-attribute identificatie cloud.laz roofprints.gpkg folder&lt;/code&gt;. It writes CityJSONSeq.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>start QGIS again.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>the algorithms can run.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

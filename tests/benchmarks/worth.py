@@ -70,7 +70,7 @@ TECHNICAL = (
     "neighborhoods.optimal_size",
     # When Newton's method ends, and the rows of a product: a fifth more or less of each changes no point.
     "buildings.logistic_regression",
-    # What a cloud can't show: a warning, and confidences; decisions stay.
+    # A warning, and how sure buildings of poor clouds are: no class and no outline depends on it.
     "sampling.sufficiency",
     # The last step of the chain: colors and length of a page on buildings that are final.
     "quality.report_buildings",

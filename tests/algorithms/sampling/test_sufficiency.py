@@ -1,6 +1,7 @@
 """Clouds that can hardly show buildings: a warning in the log and on the page, and no building that is sure."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline, run_stage
+from lidar_buildings.algorithms.sampling import sufficiency
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.sampling.sufficiency import SUFFICIENCY, doubted, why_doubtful
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
@@ -87,17 +89,25 @@ def test_doubt_changes_no_decision():
     assert 0.5 + 0.5 * SUFFICIENCY.doubt < SURE
 
 
-def test_no_building_of_such_a_cloud_is_sure(rng):
+def test_no_building_of_such_a_cloud_is_sure(rng, monkeypatch):
     """1,065 points over 1.4 km² were "1 building, 16,977 m², 0 doubtful"."""
     xyz, _ = houses(rng, side=200.0, density=0.3)
-    monitor = Monitor()
-    results = run_pipeline(PIPELINES["detect_buildings"], create_cloud({"xyz": xyz}), monitor=monitor)
+    monitor, pipeline = Monitor(), PIPELINES["detect_buildings"]
+    results = run_pipeline(pipeline, create_cloud({"xyz": xyz}), monitor=monitor)
     said = [one for one in monitor.warnings if "can hardly show buildings" in one]
     assert len(said) == 1, "once for all steps"
     assert said[0] in results.reports["report"].html
     values = results.reports["report"].values
     assert values["doubtful"] == values["buildings"] > 0
-    assert max(results.layers["footprints"].columns["confidence"]) < SURE
+    found = results.layers["footprints"]
+    assert max(found.columns["confidence"]) < SURE
+    # Without doubt classes and outlines are the same.
+    monkeypatch.setattr(sufficiency, "SUFFICIENCY", replace(SUFFICIENCY, density=0.0))
+    trusted = run_pipeline(pipeline, create_cloud({"xyz": xyz}))
+    assert max(trusted.layers["footprints"].columns["confidence"]) > SURE
+    for name in ("classification", "cluster_id", "reason"):
+        np.testing.assert_array_equal(results.cloud.get(name), trusted.cloud.get(name))
+    assert found.columns["area"] == trusted.layers["footprints"].columns["area"]
 
 
 def test_the_page_on_footprints_of_others_says_so_too(rng):
