@@ -340,7 +340,7 @@ WHOLE = (
     _out(
         "noise: low points at one level are not noise",
         "preparation.points_under_ground:_at_level",
-        lambda points, others, reach: np.zeros(len(points), np.int64),
+        lambda points, others, *_: np.zeros(len(points), np.int64),
     ),
     _out("noise: groups in histograms are kept", "preparation.classify_noise_histogram:_in_group", _nowhere),
     _out("ground: pits", "terrain.ground_seeds:_pits", _nowhere),
