@@ -48,8 +48,8 @@ _IN_TIPS = ("status", "kind", "roof_type", "height", "area", "length", "width", 
 _MOST_IN_TIPS = 4
 _DECIMALS_IN_TIPS = {"area": 0, "confidence": 2, "radius": 2}
 
-# Sentences that it shows below.
-_TEXTS_IN_TIPS = ("reason",)
+# Texts that it shows below.
+_TEXTS_IN_TIPS = ("reason", "evidence")
 
 
 class Styler(QgsProcessingLayerPostProcessorInterface):
@@ -114,7 +114,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
 
 def _map_tip(fields: Sequence[Field]) -> str:
-    """Return the map tip of a feature: its number, its main attributes, and the reason."""
+    """Return the map tip of a feature: its number, its main attributes, the reason and the evidence."""
     names = {field.name: field for field in fields}
     main = [names[name] for name in _IN_TIPS if name in names] or [one for one in fields[1:] if one.type is float]
     facts = [f'to_string("{fields[0].name}")', *(_shown_in_tip(field) for field in main[:_MOST_IN_TIPS])]

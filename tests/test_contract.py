@@ -318,6 +318,7 @@ def scene() -> dict[str, np.ndarray]:
         "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan, np.nan], np.float32)[kind],
         "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan, np.nan, np.nan], np.float32)[kind],
         "reason": np.array([0, 2, 2, 11, 0, 0, 0], np.uint8)[kind],
+        "weakest_evidence": np.array([0, 303800400, 303800400, 209120780, 0, 0, 0], np.uint32)[kind],
         "red": np.array([110, 150, 90, 60, 0, 200, 150], np.uint16)[kind] * 256,
         "green": np.array([120, 80, 90, 100, 0, 190, 150], np.uint16)[kind] * 256,
         "blue": np.array([90, 60, 95, 40, 0, 180, 150], np.uint16)[kind] * 256,

@@ -21,6 +21,7 @@ from .cluster_evidence import ClusterEvidence, with_penetration, with_surroundin
 from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, held_means, reference_entropies, split_of_whole
 from .surface_evidence import decide_in_images, green_clusters, without_green
+from .weakest_evidence import weakest_evidence
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ _MinShareAround = Annotated[
     "Classify buildings",
     group="Buildings",
     tags="building,entropy,k-means,unsupervised,classification,lasclassify",
-    writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
+    writes=("classification", "entropy", "cluster_entropy", "confidence", "reason", "weakest_evidence"),
     measures=MEASURES,
     # Of neighborhoods, and of the surroundings of a cluster.
     reach=5.0,
@@ -132,6 +133,9 @@ def classify_buildings(
         low entropy have 0.5 at most, undecided ones 0.5. NaN elsewhere.
     reason : ndarray of shape (n,), uint8
         Why the point's cluster is called building or not, see :class:`~..cloud.reasons.Reason`; 0 outside clusters.
+    weakest_evidence : ndarray of shape (n,), uint32
+        The measure nearest to its limit of the point's cluster, see :func:`~..cloud.reasons.packed_evidence`: kind,
+        value and limit as digits kvvvvllll; 0 outside clusters.
     report : Report
         Counts and the two mean entropies, and a page that shows what decided.
 
@@ -176,7 +180,7 @@ def classify_buildings(
     >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
     >>> xyz = np.column_stack([x, y, z])
     >>> classes = np.where(z > 0, 1, 2)
-    >>> found, _, _, _, _, report = classify_buildings(xyz, classes, np.where(z > 0, 1, 0))
+    >>> found, *_, report = classify_buildings(xyz, classes, np.where(z > 0, 1, 0))
     >>> bool((found[z > 0] == 6).all())
     True
     """
@@ -208,13 +212,17 @@ def classify_buildings(
     monitor.progress(0.94)
     given = _Given(by_entropy, evidence, through, split.separates, max_penetration, min_share_around)
     surface = by_entropy.is_building.astype(float) if segment_id is None else entropies.share_of(segment_id > 0)
-    decide = sampling.kind(source).choose(laser=_decided_in_scan, images=_decided_in_images)
+    kind = sampling.kind(source)
+    decide = kind.choose(laser=_decided_in_scan, images=_decided_in_images)
     decided = decide(given, surface, (red, green, blue), monitor)
     monitor.progress(1.0)
 
     # 3. All points of a cluster are the same.
     report = build_report(Clusters(entropies.means, decided.reasons, split, through, max_penetration))
-    found = written_to_points(classification, reason, entropies, decided, min_area * density, report)
+    smallest = min_area * density
+    by_beam = {} if kind.is_surface else {"split": split, "penetration": through, "max_penetration": max_penetration}
+    weakest = weakest_evidence(entropies, smallest, decided=decided, **by_beam)
+    found = written_to_points(classification, reason, entropies, decided, weakest, smallest, report)
     classes, entropy, cluster_entropy, confidence, *rest = found
     return classes, entropy, cluster_entropy, doubted(confidence) if doubt else confidence, *rest
 

@@ -13,6 +13,7 @@ from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, split_of_whole
 from .two_means import k_means, two_means
+from .weakest_evidence import weakest_evidence
 
 # A covariance of full rank takes more than three points; three are the fewest that have eigenvalues to compare.
 _MIN_NEIGHBORS = 3
@@ -27,7 +28,7 @@ _REACH = 5.0
     "Classify buildings (as published 2019)",
     group="Buildings",
     tags="building,entropy,k-means,kmeans,unsupervised,classification,Santos",
-    writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
+    writes=("classification", "entropy", "cluster_entropy", "confidence", "reason", "weakest_evidence"),
     measures=MEASURES,
     reach=_REACH,
     of_whole=MEAN_ENTROPIES,
@@ -87,6 +88,8 @@ def classify_buildings_2019(
         than 0.5 for buildings, 0.5 for undecided clusters (and less with fewer points, see Notes). NaN elsewhere.
     reason : ndarray of shape (n,), uint8
         Why the point's cluster is called building or not, see :class:`~..cloud.reasons.Reason`; 0 outside clusters.
+    weakest_evidence : ndarray of shape (n,), uint32
+        The measure nearest to its limit, see :func:`~..cloud.reasons.packed_evidence`; 0 outside clusters.
     report : Report
         Counts and the two mean entropies, and a page that shows what decided.
 
@@ -133,4 +136,6 @@ def classify_buildings_2019(
     decided = decide_by_entropy(entropies.means, split)
     report = build_report(Clusters(entropies.means, decided.reasons, split))
     monitor.progress(1.0)
-    return written_to_points(classification, reason, entropies, decided, min_area * density, report)
+    smallest = min_area * density
+    weakest = weakest_evidence(entropies, smallest, split)
+    return written_to_points(classification, reason, entropies, decided, weakest, smallest, report)

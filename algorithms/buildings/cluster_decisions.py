@@ -16,15 +16,20 @@ from .entropy_split import Split
 
 # Points of a cluster, in points of the smallest building, at which its confidence above 0.5 is halved.
 # A car is as large as the smallest building and can look like a roof; confidence only, no decision depends on it.
-_HALF_SUPPORT = 2.0
+HALF_SUPPORT = 2.0
 
 
 @dataclass(frozen=True)
 class Decisions:
-    """The confidence (m,) that each cluster is a building, more than 0.5 if it is called one, and the reason (m,)."""
+    """The confidence (m,) that each cluster is a building, more than 0.5 if it is called one, and the reason (m,).
+
+    ``around`` is the share (m,) of building points around it, where that decides, and ``least_around`` its limit.
+    """
 
     confidence: np.ndarray
     reasons: np.ndarray
+    around: Optional[np.ndarray] = None
+    least_around: float = np.nan
 
     @property
     def is_building(self) -> np.ndarray:
@@ -48,12 +53,14 @@ def written_to_points(
     reason: Optional[np.ndarray],
     entropies: ClusterEntropies,
     decisions: Decisions,
+    weakest: np.ndarray,
     smallest: float,
     report: Report,
 ) -> tuple[Any, ...]:
     """Return what a stage that classifies buildings returns.
 
-    That is class, entropy, mean entropy and confidence of its cluster, and reason of each point, and the report.
+    That is class, entropy, mean entropy, confidence, reason and weakest evidence of its cluster for each point, and
+    the report.
 
     Parameters
     ----------
@@ -65,6 +72,8 @@ def written_to_points(
         Entropies of the clustered points, and the clusters.
     decisions : Decisions
         Decisions on the clusters.
+    weakest : ndarray of shape (m,), uint32
+        The weakest evidence on each cluster.
     smallest : float
         Points of the smallest building.
     report : Report
@@ -76,7 +85,9 @@ def written_to_points(
     classes[rows[decisions.is_building[position]]] = PointClass.BUILDING
     why[rows] = decisions.reasons[position]
     per_point = (entropies.values, entropies.means[position], confidence[position])
-    return classes, *(_at_points(values, rows, len(classes)) for values in per_point), why, report
+    evidence = np.zeros(len(classes), np.uint32)
+    evidence[rows] = weakest[position]
+    return classes, *(_at_points(values, rows, len(classes)) for values in per_point), why, evidence, report
 
 
 def no_clusters(classification: np.ndarray, reason: Optional[np.ndarray], monitor: Monitor) -> tuple[Any, ...]:
@@ -84,13 +95,17 @@ def no_clusters(classification: np.ndarray, reason: Optional[np.ndarray], monito
     monitor.none_found("There are no clusters, so no buildings were found.")
     classes, why = _without_buildings(classification, reason)
     undefined = (np.full(len(classes), np.nan, np.float32) for _ in range(3))
-    return classes, *undefined, why, build_report(Clusters.none())
+    return classes, *undefined, why, np.zeros(len(classes), np.uint32), build_report(Clusters.none())
 
 
 def _supported(confidence: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Return the confidence (m,) of clusters with ``size`` times the points of the smallest building."""
-    support = size**2 / (size**2 + _HALF_SUPPORT**2)
-    return np.where(confidence > 0.5, 0.5 + (confidence - 0.5) * support, confidence)
+    return np.where(confidence > 0.5, 0.5 + (confidence - 0.5) * support(size), confidence)
+
+
+def support(size: np.ndarray) -> np.ndarray:
+    """Return how much clusters with ``size`` (m,) times the points of the smallest building are sure, 0 to 1."""
+    return size**2 / (size**2 + HALF_SUPPORT**2)
 
 
 def _without_buildings(classification: np.ndarray, reason: Optional[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

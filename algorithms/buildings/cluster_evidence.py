@@ -106,7 +106,7 @@ def with_penetration(
         Reason.WITHOUT_ENTROPY: undefined,
         Reason.SOLID_PLANE: is_building & is_solid & is_planar,
         Reason.SOLID: is_building & is_solid,
-        Reason.BESIDE: is_building,
+        Reason.NEXT_TO_BUILDINGS: is_building,
         Reason.TOO_SMALL: is_solid,
         Reason.PENETRATED: is_planar,
     }
@@ -116,9 +116,10 @@ def with_penetration(
 
 def with_surroundings(decided: Decisions, min_share: float, evidence: ClusterEvidence) -> Decisions:
     """Decide again, given the share of building points around each cluster."""
-    amid_others = decided.is_building & (evidence.share_around(decided.is_building) < min_share)
+    around = evidence.share_around(decided.is_building)
+    amid_others = decided.is_building & (around < min_share)
     reasons = np.where(amid_others, Reason.AMID_OTHERS, decided.reasons)
-    return Decisions(np.where(amid_others, 0.5, decided.confidence), reasons.astype(np.uint8))
+    return Decisions(np.where(amid_others, 0.5, decided.confidence), reasons.astype(np.uint8), around, min_share)
 
 
 def _with_solidity(confidence: np.ndarray, through: np.ndarray, max_penetration: float) -> np.ndarray:

@@ -76,7 +76,7 @@ def _page(clusters: Clusters, values: dict, groups: dict) -> str:
     elif values["clusters"]:
         lead += " The two means of their entropies decided."
     rows = [
-        Row(reason.name.replace("_", " ").capitalize(), f"{(clusters.reason == reason).sum():,}", reason.text)
+        Row(reason.label, f"{(clusters.reason == reason).sum():,}", reason.text)
         for reason in Reason
         if (clusters.reason == reason).any()
     ]

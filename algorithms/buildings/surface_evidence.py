@@ -49,7 +49,7 @@ def decide_in_images(
     reasons = np.select(list(applies.values()), list(applies), Reason.ROUGH).astype(np.uint8)
     # Buildings have more than 0.5, also where ``min_share`` is 0.
     confidence = np.where(is_building, 0.5 + 0.5 * np.maximum(share, 0.02), 0.5 * share)
-    return Decisions(confidence, reasons)
+    return Decisions(confidence, reasons, share, min_share)
 
 
 def are_large(evidence: ClusterEvidence) -> np.ndarray:

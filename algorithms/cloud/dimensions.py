@@ -88,6 +88,7 @@ _WRITTEN = (
     Dimension("building_probability", ("BuildingProbability",), "f4", "likeness to the buildings", of="cluster_id"),
     Dimension("earlier_class", ("EarlierClass",), "u1", "class kept; 0 if not"),
     Dimension("reason", ("Reason",), "u1", "why it is a building or not", of="cluster_id"),
+    Dimension("weakest_evidence", ("WeakestEvidence",), "u4", "kind, value and limit; 0 if none"),
 )
 
 DIMENSIONS = {dimension.name: dimension for dimension in (*_STANDARD, *_WRITTEN)}

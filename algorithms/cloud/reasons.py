@@ -1,8 +1,11 @@
-"""Why points are called building or not: a number and a sentence for each reason."""
+"""Why points are called building or not: a number, a name and a sentence for each reason, and the weakest evidence."""
 
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Callable
+
+import numpy as np
 
 
 class Reason(IntEnum):
@@ -13,7 +16,7 @@ class Reason(IntEnum):
     SOLID_PLANE = 2
     SOLID = 3
     ATTACHED = 4
-    BESIDE = 5
+    NEXT_TO_BUILDINGS = 5
     SURFACE = 7
     LIKE_BUILDINGS = 8
     ROUGH = 11
@@ -30,8 +33,13 @@ class Reason(IntEnum):
     UNLIKE_BUILDINGS = 23
 
     @property
+    def label(self) -> str:
+        """The name for users, in footprints, reports and legends."""
+        return self.name.replace("_", " ").capitalize()
+
+    @property
     def text(self) -> str:
-        """The sentence for users, in footprints, reports and legends."""
+        """The sentence that explains the name."""
         return _TEXTS[self]
 
     @property
@@ -46,7 +54,7 @@ _FOR_BUILDING = frozenset(
         Reason.SOLID_PLANE,
         Reason.SOLID,
         Reason.ATTACHED,
-        Reason.BESIDE,
+        Reason.NEXT_TO_BUILDINGS,
         Reason.SURFACE,
         Reason.LIKE_BUILDINGS,
     }
@@ -61,8 +69,8 @@ _TEXTS = {
     Reason.SOLID_PLANE: "Building: low entropy, typical of planes, and impenetrable to the laser beam.",
     Reason.SOLID: "Building: moderate entropy, but the laser beam hardly penetrates it.",
     Reason.ATTACHED: "Building: connected to the roof above, below or beside it.",
-    Reason.BESIDE: "Building: low entropy, and adjacent to or surrounded by buildings, where points seen past an edge "
-    "are no evidence of vegetation.",
+    Reason.NEXT_TO_BUILDINGS: "Building: low entropy, and adjacent to or surrounded by buildings, where points seen "
+    "past an edge are no evidence of vegetation.",
     Reason.SURFACE: "Building: planar over meters, like what surrounds it (matched images).",
     Reason.LIKE_BUILDINGS: "Building: beside a building, and like the buildings of the scene.",
     Reason.ROUGH: "Not a building: high entropy, typical of tree crowns.",
@@ -78,3 +86,59 @@ _TEXTS = {
     Reason.UNLIKE_BUILDINGS: "Not a building: unlike the other buildings of the scene.",
     Reason.WITHOUT_ENTROPY: "Undecided: the points have no extent, so their entropy is undefined.",
 }
+
+
+class Evidence(IntEnum):
+    """What the decision on a cluster rests on."""
+
+    NONE = 0
+    POINTS = 1
+    ENTROPY = 2
+    PENETRATION = 3
+    SURROUNDINGS = 4
+
+    def sentence(self, value: int, limit: int) -> str:
+        """Return what was measured and its limit: a number of points, or thousandths."""
+        form, as_words = _EVIDENCE[self]
+        return form.format(as_words(value), as_words(limit))
+
+
+# Values and limits are stored in thousandths: entropies are known to 0.01, shares to a percent.
+_PARTS = 1000
+
+# Kind, value and limit are decimal digits of one number, kvvvvllll: readable in a table, and one dimension.
+_DIGITS = 10_000
+
+
+def _as_percent(parts: int) -> str:
+    return f"{100 * parts / _PARTS:.0f} %"
+
+
+def _as_entropy(parts: int) -> str:
+    return f"{parts / _PARTS:.2f}"
+
+
+_EVIDENCE: dict[Evidence, tuple[str, Callable[[int], str]]] = {
+    Evidence.NONE: ("", str),
+    Evidence.POINTS: ("{} points of a roof surface (half sure from {})", str),
+    Evidence.ENTROPY: ("entropy {} (limit {})", _as_entropy),
+    Evidence.PENETRATION: ("{} of the beam passes (limit {})", _as_percent),
+    Evidence.SURROUNDINGS: ("{} of the points around are on buildings (limit {})", _as_percent),
+}
+
+
+def packed_evidence(kind: np.ndarray, value: np.ndarray, limit: np.ndarray) -> np.ndarray:
+    """Return kind, value and limit (m,) as one number (m,), uint32, 0 where one is unknown.
+
+    Numbers of points are stored as they are, up to 9,999, all else in thousandths.
+    """
+    parts = np.where(kind == Evidence.POINTS, 1, _PARTS)
+    known = np.isfinite(value) & np.isfinite(limit) & (kind != Evidence.NONE)
+    value, limit = (np.clip(np.rint(np.where(known, one, 0) * parts), 0, _DIGITS - 1) for one in (value, limit))
+    return np.where(known, (kind * _DIGITS + value) * _DIGITS + limit, 0).astype(np.uint32)
+
+
+def evidence_text(packed: int) -> str:
+    """Return a packed kind, value and limit in words, "" of 0 and of numbers that other programs wrote."""
+    kind, value = divmod(packed // _DIGITS, _DIGITS)
+    return Evidence(kind).sentence(value, packed % _DIGITS) if kind <= max(Evidence) else ""

@@ -68,6 +68,7 @@ def extract_footprints(
     cluster_entropy=None,
     confidence=None,
     reason=None,
+    weakest_evidence=None,
     *,
     min_area: MinBuildingArea = 4.0,
     min_hole_area: Annotated[
@@ -124,10 +125,8 @@ def extract_footprints(
     height_above_ground : ndarray of shape (n,), optional
         Heights (m), for the attributes and to distinguish low parts from the houses of a row; for these it is otherwise
         taken over the lowest point of the buildings that lie together or beside them.
-    cluster_entropy : ndarray of shape (n,), optional
-        Mean entropy of the cluster, for the attributes only.
-    confidence : ndarray of shape (n,), optional
-        Confidence of being a building, 0 to 1, for the attributes only.
+    cluster_entropy, confidence, weakest_evidence : ndarray of shape (n,), optional
+        What :func:`.classify_buildings` returns of these names, for the attributes only.
     reason : ndarray of shape (n,), optional
         Why points are called building, see :class:`~..cloud.reasons.Reason`, for the attributes and to find walls.
 
@@ -194,7 +193,9 @@ def extract_footprints(
         tolerance = _TOLERANCE_SPACINGS * spacing
         monitor.resolved(tolerance=tolerance)
     how = Drawing(spacing, tolerance / _TOLERANCE_SPACINGS, min_area, min_hole_area, merge_touching)
-    measures = PointMeasures(xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason)
+    measures = PointMeasures(
+        xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason, weakest_evidence
+    )
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     parts = _parts(measures, classification, building, cluster, spacing)
     searching = monitor.part(0.0, _FOUND)

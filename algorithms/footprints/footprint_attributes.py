@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..cloud.reasons import ADDED, Reason
+from ..cloud.reasons import ADDED, Reason, evidence_text
 from ..geometry.grid import find_cells
 from ..geometry.groups import split_groups
 from ..geometry.rings import along_sides, perimeter, sides_of_rings, signed_area
@@ -34,6 +34,7 @@ FIELDS = (
     Field("entropy", float, "mean entropy of the clusters that its points are of"),
     Field("confidence", float, "0 unsure to 1 sure of being a building"),
     Field("reason", str, "why most of its roofs are called building"),
+    Field("evidence", str, "measure nearest to its limit for most of these roofs, and the limit"),
     Field("regularized", int, "1 straightened along main directions, 0 outline as traced or in chords of it"),
 )
 
@@ -66,6 +67,7 @@ class PointMeasures:
     entropy: Optional[np.ndarray] = None  #: (n,): mean entropy of the cluster, NaN where it is not defined
     confidence: Optional[np.ndarray] = None  #: (n,): confidence of being a building, 0 to 1; NaN where not defined
     reason: Optional[np.ndarray] = None  #: (n,): codes of :class:`~..cloud.reasons.Reason`
+    weakest: Optional[np.ndarray] = None  #: (n,): packed evidence that is nearest to its limit
 
     def plan(self, points: np.ndarray) -> np.ndarray:
         """Return easting and northing (p, 2) of points from the corner (m)."""
@@ -137,7 +139,7 @@ def footprint_attributes(
                 "points": len(rows),
                 "entropy": _mean(measures.entropy, members[rows]),
                 "confidence": _mean(measures.confidence, members[rows]),
-                "reason": _main_reason(measures.reason, members[rows]),
+                **_why(measures, members[rows]),
             }
         )
     return attributes
@@ -261,9 +263,14 @@ def _mean(values: Optional[np.ndarray], rows: np.ndarray) -> float:
     return float(np.mean(defined, dtype=np.float64)) if len(defined) else float("nan")
 
 
-def _main_reason(values: Optional[np.ndarray], rows: np.ndarray) -> str:
-    """Return the sentence of the reason that most points have, "" without any; what was added later has none itself."""
-    given = [] if values is None else values[rows].astype(np.int64)
+def _why(measures: PointMeasures, rows: np.ndarray) -> dict[str, str]:
+    """Return reason and evidence of most roof points, "" where unknown; points added to a building have neither."""
+    given = np.zeros(len(rows), np.int64) if measures.reason is None else measures.reason[rows].astype(np.int64)
     counts = np.bincount(given, minlength=max(Reason) + 1)
     roofs = [reason for reason in Reason if reason.is_building and reason not in ADDED and counts[reason]]
-    return max(roofs, key=lambda reason: counts[reason]).text if roofs else ""
+    if not roofs:
+        return {"reason": "", "evidence": ""}
+    main = max(roofs, key=lambda reason: counts[reason])
+    weakest = np.zeros(0, np.uint32) if measures.weakest is None else measures.weakest[rows[given == main]]
+    packed, many = np.unique(weakest[weakest > 0], return_counts=True)
+    return {"reason": main.label, "evidence": evidence_text(int(packed[many.argmax()])) if len(packed) else ""}

@@ -32,6 +32,9 @@ _SHOWN = 10
 # Attributes of footprints that are numbers.
 _NUMBERS = ("height", "volume", "confidence")
 
+# Those that say why it is called building.
+_TEXTS = ("reason", "evidence")
+
 
 def _shown(footprints: LayerFeatures) -> np.ndarray:
     """Return the boxes (k, 2, 2), m, around the buildings that the page shows one by one."""
@@ -76,7 +79,7 @@ def report_buildings(
     classification : ndarray of shape (n,), uint8, optional
         ASPRS classes of these points.
     footprints : LayerFeatures
-        Polygons with any of the attributes ``id``, ``height``, ``volume``, ``confidence`` and ``reason``.
+        Polygons with any of the attributes ``id``, ``height``, ``volume``, ``confidence``, ``reason`` and ``evidence``.
 
     Returns
     -------
@@ -133,14 +136,14 @@ def summary_of(values: dict) -> str:
 
 @dataclass(frozen=True)
 class _Facts:
-    """Attributes of footprints: arrays (n,), NaN where unknown, names and reasons."""
+    """Attributes of footprints: arrays (n,), NaN where unknown, names, and why each is called building."""
 
     names: list[str]
     area: np.ndarray
     height: np.ndarray
     volume: np.ndarray
     confidence: np.ndarray
-    reason: list[str]
+    why: list[str]
 
     @classmethod
     def of(cls, footprints: LayerFeatures) -> _Facts:
@@ -151,8 +154,9 @@ class _Facts:
         area = np.array(
             [sum(signed_area(np.asarray(ring)[:, :2]) for ring in rings) for rings in footprints.geometries]
         )
-        reasons = [str(one or "") for one in columns.get("reason", [""] * count)]
-        return cls(feature_names(footprints), area.reshape(count), reason=reasons, **numbers)
+        texts = zip(*(columns.get(name, [None] * count) for name in _TEXTS))
+        why = ["; ".join(str(one) for one in of_one if one) for of_one in texts]
+        return cls(feature_names(footprints), area.reshape(count), why=why, **numbers)
 
     def least_sure(self) -> np.ndarray:
         """Return the rows (m,) of the doubtful buildings that are shown one by one, the least sure first."""
@@ -167,8 +171,8 @@ class _Facts:
     def captions(self, rows: np.ndarray) -> list[str]:
         """Return a line of text on each of some buildings."""
         return [
-            f"Building {self.names[row]}: confidence {self.confidence[row]:.2f}, {self.area[row]:,.0f} m². "
-            f"{self.reason[row]}".strip()
+            f"Building {self.names[row]}: confidence {self.confidence[row]:.2f}, {self.area[row]:,.0f} m²"
+            f"{'; ' * bool(self.why[row])}{self.why[row]}."
             for row in rows
         ]
 

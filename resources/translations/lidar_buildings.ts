@@ -572,7 +572,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;INPUT&lt;/b&gt;: reads X, Y, Z, Classification; if there, ClusterID, HeightAboveGround, ClusterEntropy, Confidence, Reason.</source>
+        <source>&lt;b&gt;INPUT&lt;/b&gt;: reads X, Y, Z, Classification; if there, ClusterID, HeightAboveGround, ClusterEntropy, Confidence, Reason, WeakestEvidence.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1340,11 +1340,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, ClusterID, Entropy, ClusterEntropy, Confidence, Reason, and a virtual point cloud over all of them.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, ClusterID, Entropy, ClusterEntropy, Confidence, Reason, WeakestEvidence, and a virtual point cloud over all of them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, HeightAboveGround, SegmentID, ClusterID, Reason, Entropy, ClusterEntropy, Confidence; EarlierClass where classes are kept; BuildingProbability where the buildings of the scene could be learned, and a virtual point cloud over all of them.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: a folder with a tile for each file, with Classification, HeightAboveGround, SegmentID, ClusterID, Reason, Entropy, ClusterEntropy, Confidence, WeakestEvidence; EarlierClass where classes are kept; BuildingProbability where the buildings of the scene could be learned, and a virtual point cloud over all of them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1392,7 +1392,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, ClusterID, Entropy, ClusterEntropy, Confidence, Reason.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, ClusterID, Entropy, ClusterEntropy, Confidence, Reason, WeakestEvidence.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1408,11 +1408,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, Entropy, ClusterEntropy, Confidence, Reason; everything else in it stays as it was.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, Entropy, ClusterEntropy, Confidence, Reason, WeakestEvidence; everything else in it stays as it was.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, HeightAboveGround, SegmentID, ClusterID, Reason, Entropy, ClusterEntropy, Confidence; EarlierClass where classes are kept; BuildingProbability where the buildings of the scene could be learned.</source>
+        <source>&lt;b&gt;OUTPUT&lt;/b&gt;: the cloud with Classification, HeightAboveGround, SegmentID, ClusterID, Reason, Entropy, ClusterEntropy, Confidence, WeakestEvidence; EarlierClass where classes are kept; BuildingProbability where the buildings of the scene could be learned.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2533,6 +2533,10 @@
     </message>
     <message>
         <source>&lt;i&gt;entropy&lt;/i&gt;: mean entropy of the clusters that its points are of</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;i&gt;evidence&lt;/i&gt;: measure nearest to its limit for most of these roofs, and the limit</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

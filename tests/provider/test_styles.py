@@ -131,11 +131,14 @@ def test_every_class_has_a_color(cloud_file, qgis_application):
     assert len(set(colors)) == len(colors)
 
 
-def test_every_reason_has_a_color_and_its_sentence(cloud_file, qgis_application):
+def test_every_reason_has_a_color_and_its_name(cloud_file, qgis_application):
     layer = QgsPointCloudLayer(str(cloud_file), "reasons", "copc")
     layer.loadNamedStyle(str(STYLES / "reason.qml"))
     shown = {category.value(): category.label() for category in layer.renderer().categories()}
-    assert shown == {int(reason): reason.text.rstrip(".") for reason in Reason}
+    assert {number: name.rpartition(": ")[2].capitalize() for number, name in shown.items()} == {
+        int(reason): reason.label for reason in Reason
+    }
+    assert all(name.startswith("Building: ") == Reason(number).is_building for number, name in shown.items())
 
 
 def test_footprints_are_labeled(qgis_application):

@@ -15,7 +15,7 @@ def ones(values):
 
 def reasons_of(classify, xyz, cluster_id, *more, **tunables):
     """Return the reason and the confidence of each cluster, and whether it is a building, by its number from 1."""
-    found, _, _, confidence, reason, report = classify(xyz, ones(xyz), cluster_id, *more, **tunables)
+    found, _, _, confidence, reason, _, report = classify(xyz, ones(xyz), cluster_id, *more, **tunables)
     firsts = [np.flatnonzero(cluster_id == number)[0] for number in range(1, cluster_id.max() + 1)]
     for number, first in enumerate(firsts, start=1):
         assert len(np.unique(reason[cluster_id == number])) == 1

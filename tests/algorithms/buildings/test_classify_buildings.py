@@ -7,7 +7,7 @@ from lidar_buildings.algorithms.buildings.classify_buildings import classify_bui
 from lidar_buildings.algorithms.buildings.classify_buildings_2019 import classify_buildings_2019
 from lidar_buildings.algorithms.buildings.cluster_entropies import cluster_entropies
 from lidar_buildings.algorithms.buildings.entropy_split import reference_entropies
-from lidar_buildings.algorithms.cloud.reasons import Reason
+from lidar_buildings.algorithms.cloud.reasons import Evidence, Reason, evidence_text
 from lidar_buildings.algorithms.neighborhoods.covariance import Nearest
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.sampling.density import effective_density, point_density
@@ -177,7 +177,7 @@ def test_where_noise_makes_planes_volumes_nothing_is_a_building(rng):
     """Off the plane by a third of the neighborhood's radius, 50 points have more entropy than in a ball."""
     xyz, cluster_id = clusters(roof(rng, 0, 0, density=100, noise=0.4))
     monitor = Monitor()
-    found, *_, confidence, reason, report = classify_buildings(
+    found, *_, confidence, reason, _, report = classify_buildings(
         xyz, ones(xyz), cluster_id, n_neighbors=50, density=100.0, monitor=monitor
     )
     assert "nothing was called a building" in monitor.warnings[-1]
@@ -235,6 +235,45 @@ def test_reasons_with_penetration(rng):
     assert (report.values["clusters"], report.values["building_clusters"]) == (6, 2)
 
 
+def test_the_weakest_evidence_is_what_is_nearest_to_its_limit(rng):
+    """A large roof by a copse, a roof as small as a car, a flat canopy, rubble and crowns, each by itself."""
+    ground = roof(rng, 30, 0, 5, 5, elevation=0.0)
+    crowns = [crown(rng, 20, 40), crown(rng, 40, 40)]
+    under = np.column_stack([rng.uniform([10, 30], [50, 50], (4000, 2)), np.zeros(4000)])
+    parts = [roof(rng, 90, 40, 2.6, 2.4), roof(rng, 30, 0, 5, 5), roof(rng, 80, 0, 12, 12, noise=0.2), *crowns]
+    xyz, part = clusters(*parts, ground, under)
+    cluster_id = np.where(part > 5, 0, part)
+    limits = {"max_penetration": 0.35, "min_area": 4.0, "density": 10.0}
+    *_, weakest, report = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24, **limits)
+    assert not weakest[cluster_id == 0].any()
+    texts = [evidence_text(int(weakest[cluster_id == number][0])) for number in range(1, 6)]
+    size = (cluster_id == 1).sum()
+    assert texts[0] == f"{size} points of a roof surface (half sure from 80)"
+    assert texts[1].endswith("of the beam passes (limit 35 %)")
+    assert float(texts[1].split(" %")[0]) > 35
+    middle = (report.values["building_entropy"] + report.values["other_entropy"]) / 2
+    assert texts[2].startswith("entropy ")
+    assert texts[2].endswith(f"(limit {middle:.2f})")
+    # Crowns fail both by entropy and by the beam.
+    assert all(text.startswith("entropy ") or "of the beam passes" in text for text in texts[3:])
+
+
+def test_the_weakest_evidence_in_images_is_size_or_surroundings(rng):
+    """There neither entropy nor the beam decides."""
+    xyz, cluster_id = clusters(roof(rng, 0, 0, 12, 12), roof(rng, 40, 0, 12, 12))
+    # Half of the points around the second roof is rough, and in no cluster.
+    rough = np.column_stack([rng.uniform([38, -2], [54, 14], (900, 2)), rng.uniform(4, 6, 900)])
+    xyz = np.concatenate([xyz, rough])
+    cluster_id = np.append(cluster_id, np.full(900, 3))
+    segment = np.where(cluster_id < 3, cluster_id, 0)
+    *_, weakest, _ = classify_buildings(
+        xyz, ones(xyz), cluster_id, segment_id=segment, source="matched images", min_share_around=0.3, density=10.0
+    )
+    kinds = [int(weakest[cluster_id == number][0]) // 100_000_000 for number in (1, 2, 3)]
+    assert set(kinds) <= {Evidence.POINTS, Evidence.SURROUNDINGS}
+    assert kinds[1] == Evidence.SURROUNDINGS
+
+
 def test_a_narrow_roof_beside_a_building_is_one_in_spite_of_the_ground_seen_past_it(rng):
     """An eave as wide as the spacing of two points, lower than the roof, over a strip of lawn; once more far off."""
     house, trees = roof(rng, 0, 0, 12, 12), crown(rng, 40, 40)
@@ -244,9 +283,9 @@ def test_a_narrow_roof_beside_a_building_is_one_in_spite_of_the_ground_seen_past
     cluster_id = np.where(part <= 4, part, 0)
     several = np.ones(len(xyz), int)
     tunables = {"n_neighbors": 12, "density": 6.0}
-    found, *_, reason, _ = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
+    found, *_, reason, _, _ = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
     assert (found[part == 3] == 6).all()
-    assert (reason[part == 3] == Reason.BESIDE).all()
+    assert (reason[part == 3] == Reason.NEXT_TO_BUILDINGS).all()
     assert (reason[part == 4] == Reason.PENETRATED).all()
     assert not (found[part == 4] == 6).any()
     several[part == 3] = 2  # pulses that go on below are those of a hedge
@@ -267,7 +306,7 @@ def test_a_smooth_spot_smaller_than_a_building_is_one_only_beside_another(rng):
     alone = spot + [30.0, 0, 0]
     xyz, cluster_id = clusters(house, spot, alone, crown(rng, 40, 40))
     tunables = {"n_neighbors": 12}
-    found, *_, reason, _ = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
+    found, *_, reason, _, _ = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
     assert (found[cluster_id <= 2] == 6).all()
     assert not (found[cluster_id == 3] == 6).any()
     assert (reason[cluster_id == 3] == Reason.TOO_SMALL).all()

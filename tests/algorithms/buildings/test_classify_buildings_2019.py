@@ -143,7 +143,7 @@ def test_other_points_keep_their_class_and_old_buildings_do_not(garden):
 def test_without_clusters_nothing_is_found_and_the_log_says_so(rng):
     xyz = roof(rng, 0, 0)
     monitor = Monitor()
-    found, *measures, reason, report = classify_buildings_2019(
+    found, *measures, reason, _, report = classify_buildings_2019(
         xyz, np.full(len(xyz), 6), np.zeros(len(xyz), int), monitor=monitor
     )
     assert (found == 1).all()

@@ -34,7 +34,7 @@ def village(rng):
         "height_above_ground": (xyz[:, 2] + 1).astype(np.float32),
         "cluster_entropy": np.repeat([0.4, 0.4, 0.5, 0.6, np.nan], sizes).astype(np.float32),
         "confidence": np.repeat([0.9, 0.9, 0.8, 0.3, np.nan], sizes).astype(np.float32),
-        "reason": np.repeat([Reason.SOLID_PLANE, Reason.ATTACHED, Reason.BESIDE, Reason.SOLID, 0], sizes),
+        "reason": np.repeat([Reason.SOLID_PLANE, Reason.ATTACHED, Reason.NEXT_TO_BUILDINGS, Reason.SOLID, 0], sizes),
     }
 
 
@@ -60,7 +60,7 @@ def test_village(village, regularize):
     assert table["volume"] == pytest.approx([7 * table["area"][0], 10 * table["area"][1]], rel=0.01)
     assert table["entropy"] == pytest.approx([0.4, 0.5])
     assert table["confidence"] == pytest.approx([0.9, 0.8])
-    assert table["reason"] == [Reason.SOLID_PLANE.text, Reason.BESIDE.text]
+    assert table["reason"] == ["Solid plane", "Next to buildings"]
     if regularize:
         assert [len(ring) - 1 for rings in found.geometries for ring in rings] == [4, 4, 4]
         assert table["perimeter"] == pytest.approx([36, 96 + 48], rel=0.04)
@@ -72,9 +72,22 @@ def test_the_reason_is_that_of_most_roof_points(village):
     village["reason"][house] = Reason.ATTACHED
     village["reason"][house[:5]], village["reason"][house[5:8]] = Reason.SOLID, Reason.PLANE
     village["reason"][village["cluster_id"] == 7] = 200
-    assert extract_footprints(**village).columns["reason"] == [Reason.SOLID.text, ""]
+    assert extract_footprints(**village).columns["reason"] == ["Solid", ""]
     del village["reason"]
     assert extract_footprints(**village).columns["reason"] == ["", ""]
+
+
+def test_the_evidence_is_that_of_most_roof_points_of_the_main_reason(village):
+    """A wall added later has none, nor have roofs of another reason a say, and without reasons there is none."""
+    village["weakest_evidence"] = np.zeros(len(village["xyz"]), np.uint32)
+    house, block = (np.flatnonzero(village["cluster_id"] == number) for number in (3, 7))
+    village["weakest_evidence"][house] = 2_0712_0780
+    village["weakest_evidence"][block], village["weakest_evidence"][block[:9]] = 3_0380_0400, 1_0079_0122
+    village["reason"][house[:9]], village["weakest_evidence"][house[:9]] = Reason.SOLID, 4_0450_0400
+    expected = ["entropy 0.71 (limit 0.78)", "38 % of the beam passes (limit 40 %)"]
+    assert extract_footprints(**village).columns["evidence"] == expected
+    del village["reason"]
+    assert extract_footprints(**village).columns["evidence"] == ["", ""]
 
 
 def test_a_point_without_a_height_leaves_the_volume_defined(village):

@@ -28,7 +28,8 @@ def footprints():
         "height": np.array([5.0, 9.0, np.nan]),
         "volume": np.array([500.0, 3000.0, 100.0]),
         "confidence": np.array([0.9, 0.45, 0.65]),
-        "reason": ["Building: <low> entropy.", "Building & more.", None],
+        "reason": ["<Solid>", "Solid & more", None],
+        "evidence": ["entropy 0.61", "38 % of the beam passes", None],
     }
     return LayerFeatures([square(0, 0, 10), square(30, 0, 20, hole=10), square(0, 40, 5)], columns)
 
@@ -52,7 +53,7 @@ def test_totals_by_hand(footprints, cloud):
 def test_doubtful_buildings_come_least_sure_first_and_their_texts_are_escaped(footprints, cloud):
     page = report_buildings(*cloud, footprints).html
     assert re.findall(r"Building (\d+): confidence ([\d.]+)", page) == [("8", "0.45"), ("9", "0.65")]
-    assert "Building &amp; more." in page
+    assert "Solid &amp; more; 38 % of the beam passes" in page
     # Each from above and from the side; a footprint without points has one view.
     assert page.count('<svg class="view"') == 4
     assert page.count("<polygon") == 2
@@ -100,6 +101,6 @@ def test_noise_above_is_not_the_surface_of_the_map(footprints, cloud, rng):
 def test_each_doubtful_building_has_its_position(footprints, cloud):
     page = with_coordinates(report_buildings(*cloud, footprints).html, lambda xy: xy + [85_000, 446_000])
     # Middles of the boxes around the squares at (30, 0) and (0, 40).
-    assert "Building &amp; more. At 85040.0 E, 446010.0 N." in page
+    assert "Solid &amp; more; 38 % of the beam passes. At 85040.0 E, 446010.0 N." in page
     assert "At 85002.5 E, 446042.5 N." in page
     assert "m east" not in page
