@@ -18,7 +18,7 @@ WITHOUT_DOI |= {"hough1962", "ign2023", "melzer2004", "rabbani2005", "sithole200
 WITHOUT_DOI |= {"vosselman2004", "wiedemann1998", "santos2019", "weinmann2017"}
 # Their DOIs are not in any source that could be read: a list of references, or the publisher's page.
 WITHOUT_DOI |= {"hoefle2009", "hoover1996", "hrutka2022", "jiang1994", "kimme1975", "malandain1992", "murakami1999"}
-WITHOUT_DOI |= {"palagyi1999", "rutzinger2009", "sampath2007"}
+WITHOUT_DOI |= {"avbelj2015", "palagyi1999", "rutzinger2009", "sampath2007"}
 
 
 def sections(path: Path) -> list[str]:

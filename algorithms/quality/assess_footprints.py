@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Annotated, Callable, Optional
 
 import numpy as np
 
@@ -12,11 +12,22 @@ from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page, draw_table, percent
 from ..report.polygon_map import draw_polygons
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
-from .building_maps import BuildingMap, Overlap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
+from .building_maps import (
+    BuildingMap,
+    Overlap,
+    amid,
+    clean_map,
+    measure_overlap,
+    refuse_elsewhere,
+    rounded_down,
+    within,
+)
 from .corner_matching import FARTHEST, Corners, automatic_tolerance, corners_of, nearest_corners
-from .polygon_comparison import hausdorff, squareness
+from .polygon_comparison import hausdorff, polis, squareness
 
 FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "invented"
+
+AROUND, EVERYWHERE = "around the reference", "everywhere"
 
 # Colors of the page that differ in all color visions (Tol's high-contrast and bright schemes).
 COLORS = {FOUND: BLUE, MERGED: "#228833", SPLIT: "#66ccee", MISSED: YELLOW, INVENTED: RED}
@@ -43,6 +54,7 @@ _BUILDINGS = Layer(
         Field("covered", float, "share of it that the other layer has too, 0 to 1"),
         Field("iou", float, "intersection over union with the best counterpart, 0 to 1"),
         Field("hausdorff", float, "greatest distance between its outline and that of the best counterpart", "m"),
+        Field("polis", float, "mean distance of the corners of both outlines from the other one (PoLiS)", "m"),
         Field("corners", int, "its corners"),
         Field("counterpart_corners", int, "corners of the best counterpart"),
         Field("matched", int, "its corners that the other layer has too"),
@@ -60,10 +72,12 @@ _MEASURES = (
     Measure("split", "Buildings split"),
     Measure("missed", "Buildings missed"),
     Measure("invented", "Footprints invented"),
+    Measure("outside", "Footprints outside the area compared"),
     Measure("completeness", "Buildings found, merged or split", "%"),
     Measure("correctness", "Footprints that are in the reference", "%"),
     Measure("iou", "Median IoU of the buildings found one to one"),
     Measure("hausdorff", "Median Hausdorff distance of these", "m"),
+    Measure("polis", "Median PoLiS distance of these", "m"),
     Measure("corners", "Corners of the buildings that have footprints"),
     Measure("footprint_corners", "Corners of the footprints that belong to buildings"),
     Measure("matched", "Corners matched"),
@@ -79,14 +93,22 @@ _MEASURES = (
     "Assess footprints",
     group="Quality",
     tags="assess,validation,cadastre,base map,change detection,accuracy,evaluation,reference,polygons,outlines,IoU,"
-    "Hausdorff,corners,squareness,merged,split,completeness,correctness",
+    "PoLiS,Hausdorff,corners,squareness,merged,split,completeness,correctness",
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "Outlines of buildings that are to be assessed."),
         InputLayer(
             "reference_map",
             "Reference",
             "Polygon",
-            "Buildings that are trusted: a cadastre, a base map, an earlier result; cut to the same area.",
+            "Buildings that are trusted: a cadastre, a base map, an earlier result.",
+        ),
+        InputLayer(
+            "area",
+            "Area compared",
+            "Polygon",
+            "Where both layers are compared: buildings and footprints with half of their area within. Without it, the "
+            "next parameter decides.",
+            optional=True,
         ),
     ),
     layers=(_BUILDINGS,),
@@ -95,7 +117,18 @@ _MEASURES = (
 def assess_footprints(
     footprints,
     reference_map,
+    area=None,
     *,
+    compared: Annotated[
+        str,
+        Param(
+            "Footprints compared",
+            "Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it "
+            "may cover a part of the survey. Everywhere: all footprints, of which those without a building are "
+            "invented.",
+            choices=(AROUND, EVERYWHERE),
+        ),
+    ] = AROUND,
     min_overlap: Annotated[
         float,
         Param(
@@ -134,6 +167,8 @@ def assess_footprints(
         Polygons to assess.
     reference_map : LayerFeatures
         Polygons that are trusted.
+    area : LayerFeatures, optional
+        Polygons of the area compared.
 
     Returns
     -------
@@ -149,18 +184,22 @@ def assess_footprints(
 
     Notes
     -----
-    A footprint belongs to a building where both share the minimum overlap of the smaller one, and where all
-    footprints together cover the minimum overlap of the building. A building is missed if no footprint belongs to it.
-    It is merged if one of its footprints belongs to other buildings too, and split if it has several footprints that
-    don't. A footprint is invented if less of it than the minimum overlap lies in buildings that are not missed.
+    A footprint belongs to a building where both share the minimum overlap of the smaller one, and where all footprints
+    together cover the minimum overlap of the building. Around the reference, footprints are compared that overlap one
+    of its buildings or lie within the convex hull of those within 50 m. A building is missed if no footprint belongs to
+    it. It is merged if one of its footprints belongs to other buildings too, and split if it has several footprints
+    that don't. A footprint is invented if less of it than the minimum overlap lies in buildings that are not missed.
 
-    The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along
-    both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched
-    one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions
-    of the building's own. Positions are compared as they are: no shift between the layers is removed.
+    The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along both
+    outlines, courtyards included. PoLiS is the mean distance of vertices from the other outline, in the mean of both
+    ways. A corner is a vertex where the outline turns by 20° or more; corners are matched one to one, the nearest
+    first, if they face the same way to 60°. Squareness counts edges within 3° of two directions of the building's own.
+    Positions are compared as they are: no shift between the layers is removed.
 
     References
     ----------
+    Avbelj, J., Müller, R., Bamler, R., 2015. A metric for polygon comparison and building extraction evaluation. IEEE
+    Geoscience and Remote Sensing Letters 12(1), 170-174 (PoLiS). [avbelj2015]
     Rutzinger, M., Rottensteiner, F., Pfeifer, N., 2009. A comparison of evaluation techniques for building extraction
     from airborne laser scanning. IEEE Journal of Selected Topics in Applied Earth Observations and Remote Sensing 2(1).
     [rutzinger2009]
@@ -179,6 +218,7 @@ def assess_footprints(
     new = clean_map(footprints, "footprints", monitor)
     true = clean_map(reference_map, "buildings of the reference", monitor)
     refuse_elsewhere(true, new, "footprints", "reference")
+    true, new, outside = _compared(true, new, area, compared, monitor)
     if len(true.area) and not len(new.area):
         monitor.warn("There are no footprints, so all buildings of the reference are missed.")
     if len(new.area) and not len(true.area):
@@ -188,9 +228,25 @@ def assess_footprints(
     pairs = _same_corners(*corners, match, tolerance, monitor)
     table = _table(true, new, match, corners, pairs, monitor.part(0.4, 0.95))
     moved = corners[1].xy[pairs[1]] - corners[0].xy[pairs[0]]
-    values = _values(table, match, corners, moved)
+    values = {**_values(table, match, corners, moved), "outside": outside}
+    monitor.inform(_summary(values))
     rings = true.rings + [new.rings[row] for row in np.flatnonzero(match.is_invented)]
     return LayerFeatures(rings, table), Report(values, _page(rings, table, values))
+
+
+def _compared(
+    true: BuildingMap, new: BuildingMap, area: Optional[LayerFeatures], compared: str, monitor: Monitor
+) -> tuple[BuildingMap, BuildingMap, int]:
+    """Return the buildings and the footprints that are compared, and how many footprints lie elsewhere."""
+    if area is not None:
+        polygons = clean_map(area, "polygons of the area", monitor)
+        true = true.only(within(polygons, true, Monitor()))
+        kept = within(polygons, new, Monitor())
+    elif compared == AROUND and true.rings:
+        kept = amid(true, new, measure_overlap(true, new, np.zeros(2), Monitor()))
+    else:
+        kept = np.ones(len(new.rings), bool)
+    return true, new.only(kept), int((~kept).sum())
 
 
 @dataclass(frozen=True)
@@ -266,7 +322,8 @@ def _table(
         "area": np.append(true.area, new.area[invented]),
         "covered": np.append(match.overlap.covered, match.overlap.other_covered[invented]),
         "iou": np.append(iou, nothing),
-        "hausdorff": np.append(_distances(true, new, match.best, monitor), nothing),
+        "hausdorff": np.append(_distances(hausdorff, true, new, match.best, monitor), nothing),
+        "polis": np.append(_distances(polis, true, new, match.best, Monitor()), nothing),
         "corners": np.append(counts[0], counts[1][invented]),
         "counterpart_corners": np.append(_taken(counts[1], match.best, has_footprint, 0), zero),
         "matched": np.append(matched, zero),
@@ -283,12 +340,14 @@ def _taken(values: np.ndarray, rows: np.ndarray, chosen: np.ndarray, otherwise: 
     return taken
 
 
-def _distances(true: BuildingMap, new: BuildingMap, best: np.ndarray, monitor: Monitor) -> np.ndarray:
-    """Return the Hausdorff distance (m) of each building from its best counterpart, NaN without one."""
+def _distances(
+    measure: Callable[[list, list], float], true: BuildingMap, new: BuildingMap, best: np.ndarray, monitor: Monitor
+) -> np.ndarray:
+    """Return the distance (m) of each building from its best counterpart by a ``measure``, NaN without one."""
     distance = np.full(len(best), np.nan)
     for row, other in enumerate(best.tolist()):
         if other >= 0:
-            distance[row] = hausdorff(true.rings[row], new.rings[other])
+            distance[row] = measure(true.rings[row], new.rings[other])
         monitor.progress((row + 1) / len(best))
     return distance
 
@@ -328,6 +387,7 @@ def _values(table: dict, match: _Match, corners: tuple[Corners, Corners], moved:
         "correctness": 100.0 * (n_new - n_invented) / n_new if n_new else np.nan,
         "iou": _median(table["iou"][:n][found]),
         "hausdorff": _median(table["hausdorff"][:n][found]),
+        "polis": _median(table["polis"][:n][found]),
         "corners": int(has_footprint[corners[0].building].sum()),
         "footprint_corners": int(np.isin(corners[1].building, match.footprint).sum()),
         "matched": len(moved),
@@ -343,12 +403,17 @@ def _median(values: np.ndarray) -> float:
     return float(np.median(values)) if len(values) else np.nan
 
 
-def _page(rings: list, table: dict, values: dict[str, float]) -> str:
-    lead = (
+def _summary(values: dict[str, float]) -> str:
+    """Return the counts in one line."""
+    beyond = f" {values['outside']:,} more lie outside the area compared." if values["outside"] else ""
+    return (
         f"Of {values['reference_buildings']:,} buildings of the reference, {values['found']:,} have one footprint of "
         f"their own, {values['merged']:,} are merged, {values['split']:,} split and {values['missed']:,} missed. "
-        f"Of {values['all_footprints']:,} footprints, {values['invented']:,} are invented."
+        f"Of {values['all_footprints']:,} footprints, {values['invented']:,} are invented.{beyond}"
     )
+
+
+def _page(rings: list, table: dict, values: dict[str, float]) -> str:
     tables = {"Buildings": _building_rows(values), "Outlines": _outline_rows(values), "Corners": _corner_rows(values)}
     is_found = np.array(table["status"], dtype=object) == FOUND
     pictures = [draw_polygons(rings, table["status"], COLORS)]
@@ -357,7 +422,7 @@ def _page(rings: list, table: dict, values: dict[str, float]) -> str:
         bars = draw_histogram(series, axis, "Buildings", [Mark("median", values[name])])
         pictures.append(f"<h2>{heading}</h2>\n{bars}")
     pictures.append(_worst(table))
-    return build_page("Quality of the footprints", lead, tables, "\n".join(pictures))
+    return build_page("Quality of the footprints", _summary(values), tables, "\n".join(pictures))
 
 
 def _building_rows(values: dict[str, float]) -> list[Row]:
@@ -380,6 +445,7 @@ def _outline_rows(values: dict[str, float]) -> list[Row]:
             _meters(values["hausdorff"]),
             "Median of these: where two outlines are farthest apart.",
         ),
+        Row("PoLiS", _meters(values["polis"]), "Median of the mean distances of corners from the other outline."),
         Row(
             "Squareness",
             _number(values["squareness"]),

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.polygon_overlap import Polygons, as_polygons, overlaps, shared_areas
-from ..geometry.rings import signed_area
+from ..geometry.rings import sampled_rings, signed_area
+from ..packages import spatial
 from ..stage import LayerFeatures, Monitor, feature_names
 
 # Footprints and a map that lie farther apart (m) show different areas, however incomplete each is.
@@ -19,6 +20,12 @@ _CROSSING = 0.01
 # Area (m²) below which a polygon is left out.
 _NO_AREA = 1e-6
 
+# How far around a building (m) a map shows by its other buildings that it has this area: a wide street or a small park.
+_AROUND = 50.0
+
+# Distance (m) of positions along the outlines of a map: finer than any building.
+_OUTLINE_STEP = 2.0
+
 
 @dataclass(frozen=True)
 class BuildingMap:
@@ -29,6 +36,14 @@ class BuildingMap:
     area: np.ndarray  #: (n,): area of each, m²
     names: list[str]  #: What they are called
     rows: np.ndarray  #: (n,), int64: their positions in the layer
+
+    def only(self, kept: np.ndarray) -> BuildingMap:
+        """Return the map of some of the polygons (n,), bool."""
+        rows = np.flatnonzero(kept).tolist()
+        rings = [self.rings[row] for row in rows]
+        return BuildingMap(
+            rings, as_polygons(rings), self.area[rows], [self.names[row] for row in rows], self.rows[rows]
+        )
 
 
 def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> BuildingMap:
@@ -151,3 +166,34 @@ def measure_overlap(first: BuildingMap, second: BuildingMap, shift: np.ndarray, 
 def rounded_down(share: float) -> float:
     """Return a least share (0 to 1) that an overlap of exactly this share reaches in spite of rounding."""
     return share * (1 - 1e-9)
+
+
+def amid(first: BuildingMap, second: BuildingMap, overlap: Overlap) -> np.ndarray:
+    """Return which buildings (n,) of the second map lie in the area that the first one shows, bool.
+
+    They overlap a building of it, or lie within the convex hull of its outlines around them: seen from their middle,
+    these leave no gap of half a turn.
+
+    Parameters
+    ----------
+    first, second : BuildingMap
+        The two maps.
+    overlap : Overlap
+        What they share.
+    """
+    inside = overlap.other_covered > 0
+    rest = np.flatnonzero(~inside)
+    if not len(rest) or not first.rings:
+        return inside
+    outlines = sampled_rings([ring for rings in first.rings for ring in rings[:1]], _OUTLINE_STEP)
+    middles = np.array([(second.rings[row][0].min(axis=0) + second.rings[row][0].max(axis=0)) / 2 for row in rest])
+    for row, middle, near in zip(rest, middles, spatial.cKDTree(outlines).query_ball_point(middles, _AROUND)):
+        angles = np.sort(np.arctan2(*(outlines[near] - middle).T))
+        gaps = np.diff(angles, append=angles[:1] + 2 * np.pi)
+        inside[row] = len(near) > 0 and gaps.max() < np.pi
+    return inside
+
+
+def within(area: BuildingMap, one: BuildingMap, monitor: Monitor) -> np.ndarray:
+    """Return which buildings (n,) of a map lie within polygons of an ``area`` with half of their own, bool."""
+    return measure_overlap(area, one, np.zeros(2), monitor).other_covered >= rounded_down(0.5)

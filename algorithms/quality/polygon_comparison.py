@@ -84,6 +84,14 @@ def hausdorff(first: list[np.ndarray], second: list[np.ndarray]) -> float:
     return max(_farthest(first, second), _farthest(second, first))
 
 
+def polis(first: list[np.ndarray], second: list[np.ndarray]) -> float:
+    """Return the mean distance (m) of the vertices of polygons from the other's outline, in the mean of both ways."""
+    ways = (first, second), (second, first)
+    return float(
+        np.mean([distances_from(np.concatenate([ring[:-1] for ring in one]), other).mean() for one, other in ways])
+    )
+
+
 def _farthest(rings: list[np.ndarray], others: list[np.ndarray]) -> float:
     return float(distances_from(positions_along(rings), others).max())
 

@@ -36,6 +36,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;b&gt;AREA&lt;/b&gt;: Area compared, a layer of polygons; may be left empty. Where both layers are compared: buildings and footprints with half of their area within. Without it, the next parameter decides.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;b&gt;AXES&lt;/b&gt;: Axes of cylinders, a layer of lines. Lines with heights and the attributes 'id' and 'radius'.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -417,6 +421,10 @@
     </message>
     <message>
         <source>&lt;b&gt;Flight height (m)&lt;/b&gt;: How high over the street the drone climbs. &lt;i&gt;(at least 2 m and at most 25 m; default 8 m)&lt;/i&gt;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;Footprints compared&lt;/b&gt;: Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it may cover a part of the survey. Everywhere: all footprints, of which those without a building are invented. &lt;i&gt;(one of around the reference, everywhere; default around the reference)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1644,7 +1652,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;REFERENCE_MAP&lt;/b&gt;: Reference, a layer of polygons. Buildings that are trusted: a cadastre, a base map, an earlier result; cut to the same area.</source>
+        <source>&lt;b&gt;REFERENCE_MAP&lt;/b&gt;: Reference, a layer of polygons. Buildings that are trusted: a cadastre, a base map, an earlier result.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1660,7 +1668,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;REPORT&lt;/b&gt;: a page with Buildings in the reference, Footprints, Buildings found one to one, Buildings merged with others, Buildings split, Buildings missed, Footprints invented, Buildings found, merged or split (%), Footprints that are in the reference (%), Median IoU of the buildings found one to one, Median Hausdorff distance of these (m), Corners of the buildings that have footprints, Corners of the footprints that belong to buildings, Corners matched, Median distance of matched corners (m), Median shift of the footprints eastward (m), Median shift of the footprints northward (m), Median squareness of the footprints, Median squareness of the reference; each is an output of its own too.</source>
+        <source>&lt;b&gt;REPORT&lt;/b&gt;: a page with Buildings in the reference, Footprints, Buildings found one to one, Buildings merged with others, Buildings split, Buildings missed, Footprints invented, Footprints outside the area compared, Buildings found, merged or split (%), Footprints that are in the reference (%), Median IoU of the buildings found one to one, Median Hausdorff distance of these (m), Median PoLiS distance of these (m), Corners of the buildings that have footprints, Corners of the footprints that belong to buildings, Corners matched, Median distance of matched corners (m), Median shift of the footprints eastward (m), Median shift of the footprints northward (m), Median squareness of the footprints, Median squareness of the reference; each is an output of its own too.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2996,6 +3004,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;i&gt;polis (m)&lt;/i&gt;: mean distance of the corners of both outlines from the other one (PoLiS)</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;i&gt;precision (m)&lt;/i&gt;: standard deviation across its direction, from its points</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3348,7 +3360,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A footprint belongs to a building where both share the minimum overlap of the smaller one, and where all footprints together cover the minimum overlap of the building. A building is missed if no footprint belongs to it. It is merged if one of its footprints belongs to other buildings too, and split if it has several footprints that don't. A footprint is invented if less of it than the minimum overlap lies in buildings that are not missed.</source>
+        <source>A footprint belongs to a building where both share the minimum overlap of the smaller one, and where all footprints together cover the minimum overlap of the building. Around the reference, footprints are compared that overlap one of its buildings or lie within the convex hull of those within 50 m. A building is missed if no footprint belongs to it. It is merged if one of its footprints belongs to other buildings too, and split if it has several footprints that don't. A footprint is invented if less of it than the minimum overlap lies in buildings that are not missed.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3596,6 +3608,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Area compared</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Area of all buildings</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3661,6 +3677,10 @@
     </message>
     <message>
         <source>Areas whose points are kept: a district, parcels, a mask. They may overlap and have holes. Without a layer the extent alone cuts.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it may cover a part of the survey. Everywhere: all footprints, of which those without a building are invented.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3968,6 +3988,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Avbelj, J., Müller, R., Bamler, R., 2015. A metric for polygon comparison and building extraction evaluation. IEEE Geoscience and Remote Sensing Letters 12(1), 170-174 (PoLiS). Rutzinger, M., Rottensteiner, F., Pfeifer, N., 2009. A comparison of evaluation techniques for building extraction from airborne laser scanning. IEEE Journal of Selected Topics in Applied Earth Observations and Remote Sensing 2(1). Huttenlocher, D. P., Klanderman, G. A., Rucklidge, W. J., 1993. Comparing images using the Hausdorff distance. IEEE Transactions on Pattern Analysis and Machine Intelligence 15(9).</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Average number of points per square meter of occupied area.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -4128,7 +4152,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Buildings that are trusted: a cadastre, a base map, an earlier result; cut to the same area.</source>
+        <source>Buildings that are trusted: a cadastre, a base map, an earlier result.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5132,6 +5156,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Footprints compared</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Footprints invented</source>
         <translation type="unfinished"></translation>
     </message>
@@ -5141,6 +5169,10 @@
     </message>
     <message>
         <source>Footprints of the earlier survey</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Footprints outside the area compared</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6069,6 +6101,10 @@
     </message>
     <message>
         <source>Median IoU of the buildings found one to one</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Median PoLiS distance of these</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7404,10 +7440,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Rutzinger, M., Rottensteiner, F., Pfeifer, N., 2009. A comparison of evaluation techniques for building extraction from airborne laser scanning. IEEE Journal of Selected Topics in Applied Earth Observations and Remote Sensing 2(1). Huttenlocher, D. P., Klanderman, G. A., Rucklidge, W. J., 1993. Comparing images using the Hausdorff distance. IEEE Transactions on Pattern Analysis and Machine Intelligence 15(9).</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Sample data</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8088,7 +8120,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions of the building's own. Positions are compared as they are: no shift between the layers is removed.</source>
+        <source>The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along both outlines, courtyards included. PoLiS is the mean distance of vertices from the other outline, in the mean of both ways. A corner is a vertex where the outline turns by 20° or more; corners are matched one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions of the building's own. Positions are compared as they are: no shift between the layers is removed.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8757,6 +8789,10 @@
     </message>
     <message>
         <source>What to compute; each becomes a dimension of the cloud.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Where both layers are compared: buildings and footprints with half of their area within. Without it, the next parameter decides.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -54,7 +54,7 @@ def test_a_moved_square(times):
 def test_each_status_is_reported():
     reference = [box(0, 0), box(20, 0), box(30, 0), box(50, 0), box(70, 0)]
     footprints = [box(0, 0), box(20, 0, width=20), box(50, 0, width=5), box(55, 0, width=5), box(90, 0)]
-    found, values = assessed(footprints, reference)
+    found, values = assessed(footprints, reference, compared="everywhere")
     assert [row["status"] for row in found] == [FOUND, MERGED, MERGED, SPLIT, MISSED, INVENTED]
     assert [row["counterpart"] for row in found] == ["1", "2", "2", "3, 4", "", ""]
     assert [row["iou"] for row in found] == pytest.approx([1, 0.5, 0.5, 0.5, np.nan, np.nan], nan_ok=True)
@@ -69,6 +69,37 @@ def test_each_status_is_reported():
     assert values["completeness"] == pytest.approx(80)
     assert values["correctness"] == pytest.approx(80)
     assert values["iou"] == pytest.approx(1)
+
+
+def town(columns, row_numbers, skipped=()):
+    """Return houses of 10 m on a grid of 20 m."""
+    return [box(20 * x, 20 * y) for x in range(columns) for y in range(row_numbers) if (x, y) not in skipped]
+
+
+def test_footprints_beyond_the_reference_are_not_compared():
+    """The reference is the south-west quarter of a town and lacks one house amid the others."""
+    found, values = assessed(town(8, 8), town(4, 4, skipped=[(1, 2)]))
+    assert [row["status"] for row in found] == [FOUND] * 15 + [INVENTED]
+    assert (values["all_footprints"], values["outside"], values["correctness"]) == (16, 48, 100 * 15 / 16)
+    everything, values = assessed(town(8, 8), town(4, 4, skipped=[(1, 2)]), compared="everywhere")
+    assert (values["invented"], values["outside"]) == (49, 0)
+
+
+def test_an_area_decides_what_is_compared_of_both_layers():
+    """Houses of which half lies within: four of the reference of nine, of which one was not found."""
+    area = layer(box(-5, -5, width=34, depth=34))
+    buildings, report = assess_footprints(layer(*town(8, 8, skipped=[(1, 1)])), layer(*town(3, 3)), area)
+    assert buildings.columns["status"] == [FOUND, FOUND, FOUND, MISSED]
+    assert (report.values["reference_buildings"], report.values["outside"]) == (4, 60)
+    assert "60 more lie outside the area compared." in report.html
+
+
+def test_polis_by_hand():
+    """A square moved by 0.3 m: two of its corners lie on lines of the other, but each is 0.3 m from its outline."""
+    (row,), values = assessed([box(0.3, 0)], [box(0, 0)])
+    # Two corners lie 0.3 m outside an edge's end; two lie on an edge of the other square.
+    assert row["polis"] == pytest.approx((2 * 0.3 + 2 * 0) / 4)
+    assert values["polis"] == row["polis"]
 
 
 def test_the_best_counterpart_comes_first():
