@@ -24,19 +24,25 @@ extensions = [
     "myst_parser",
     "numpydoc",
     "sphinx.ext.autodoc",
-    "sphinx.ext.mathjax",
+    "sphinx_copybutton",
+    "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
+    "mathml",
 ]
 exclude_patterns = ["_build", "gallery_src", "**/GALLERY_HEADER.rst", "sg_execution_times.rst"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
 
-html_theme = "alabaster"
-html_theme_options = {"description": "Buildings in point clouds, in QGIS", "page_width": "1080px"}
-html_sidebars = {"**": ["about.html", "navigation.html", "searchbox.html"]}
+html_theme = "furo"
+html_title = f"{project} {release}"
+html_logo = "../resources/icons/lidar_buildings.svg"
+html_static_path = ["_static"]
+html_css_files = ["book.css"]
+html_math_renderer = "mathml"
 html_show_sourcelink = False
+html_copy_source = False
 
 bibtex_bibfiles = ["references.bib"]
 bibtex_reference_style = "author_year"
