@@ -10,7 +10,7 @@ from .crs import make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors, sentence_of
-from .settings import apply_threads
+from .settings import apply_options
 
 
 class CheckedAlgorithm(DeclaredAlgorithm):
@@ -70,5 +70,5 @@ class CheckedAlgorithm(DeclaredAlgorithm):
         missing = missing_sentence(self.declared.needed_packages)
         if missing:
             raise ValueError(missing)
-        apply_threads()
+        apply_options()
         self.check(parameters, context)

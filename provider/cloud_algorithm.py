@@ -17,7 +17,7 @@ from qgis.core import (
 )
 
 from ..algorithms.cloud.cloud import Cloud
-from ..algorithms.cloud.files import check_readable, count_points, read_extent
+from ..algorithms.cloud.files import NOWHERE, check_readable, count_points, read_extent
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.report.page import with_coordinates
 from ..algorithms.run import Results
@@ -178,7 +178,8 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the clouds, and the one that is given."""
         read = crs_reader(self.job.crs)
-        return [*(read_extent(path, read)[2].plane for path in self.job.paths), *names_of_crs(self.job.crs)]
+        systems = [read_extent(path, read, self.job.box)[2].plane for path in self.job.paths]
+        return [*systems, *names_of_crs(self.job.crs)]
 
     def _job(self, parameters: dict, context: QgsProcessingContext) -> Job:
         """Return the checked parameters of a run; raise a ValueError where it can't succeed."""
@@ -197,17 +198,17 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
         if job.clouds:
-            plane = read_extent(job.clouds[0], crs_reader(job.crs))[2].plane
+            plane = read_extent(job.clouds[0], crs_reader(job.crs), NOWHERE)[2].plane
             job.box = extent_box(self, plane, parameters, context)
         read = [*files_read(job.paths), *input_layer_files(self, inputs.layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read, job.clouds)
         if job.reference:
             refuse_same(job.clouds, job.reference)
         for path in job.paths:
-            check_readable(path)
+            check_readable(path, box=job.box)
         check_sizes(job.paths, job.box)
         if job.clouds:
-            refuse_elsewhere(self, inputs.layers, job.clouds, parameters, context)
+            refuse_elsewhere(self, inputs.layers, job.clouds, job.box, parameters, context)
         return job
 
     def processAlgorithm(  # noqa: N802

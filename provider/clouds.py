@@ -21,12 +21,12 @@ from qgis.core import (
     QgsProviderRegistry,
 )
 
-from ..algorithms.cloud.outputs import VPC, kind_of
-from ..algorithms.cloud.vpc import tiles_of
+from ..algorithms.cloud.files import named_files_of
+from ..algorithms.cloud.web_file import is_on_web
 from .web import web_file
 
-SUFFIXES = (".las", ".laz", ".vpc")
-FILTER = "Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC)"
+SUFFIXES = (".las", ".laz", ".vpc", ".json")
+FILTER = "Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC *.json)"
 
 
 def reads_las() -> bool:
@@ -98,7 +98,7 @@ def files_read(clouds: Iterable[Path]) -> list[Path]:
     ValueError
         If a virtual point cloud can't be read, or a tile is missing.
     """
-    return [file for cloud in clouds for file in (cloud, *(tiles_of(cloud) if kind_of(cloud) == VPC else ()))]
+    return [file for cloud in clouds for file in (cloud, *named_files_of(cloud))]
 
 
 def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Path:
@@ -184,8 +184,11 @@ def file_of_layer(layer: QgsPointCloudLayer) -> Optional[Path]:
 
 
 def _known(title: str, path: Path) -> Path:
-    if path.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"{title} must be a .las, .laz, .copc.laz or .vpc file, got {path.name}; convert it first.")
+    if path.suffix.lower() not in SUFFIXES and (path.suffix or not is_on_web(path)):
+        raise ValueError(
+            f"{title} must be a .las, .laz, .copc.laz or .vpc file, or STAC items (.json), got {path.name}; convert it "
+            "first."
+        )
     return path
 
 

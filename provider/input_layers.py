@@ -121,10 +121,11 @@ def refuse_elsewhere(
     algorithm: QgsProcessingAlgorithm,
     input_layers: Iterable[InputLayer],
     clouds: Sequence[Path],
+    box: Optional[np.ndarray],
     parameters: dict,
     context: QgsProcessingContext,
 ) -> None:
-    """Refuse layers that lie wholly outside of the clouds, before any work.
+    """Refuse layers that lie wholly outside of the clouds, before any work; of tiles on the web those in a box count.
 
     Raises
     ------
@@ -135,24 +136,24 @@ def refuse_elsewhere(
     layers = {input_layer: layer for input_layer, layer in found.items() if layer is not None}
     if not layers:
         return
-    boxes = [_plan_box(cloud) for cloud in clouds]
+    boxes = [_plan_box(cloud, box) for cloud in clouds]
     for input_layer, layer in layers.items():
         extent = layer.sourceExtent()
         cloud_boxes = [_brought_to(input_layer, layer, box, crs, context) for box, crs in boxes]
         if extent.isNull() or any(box is None or extent.intersects(box) for box in cloud_boxes):
             continue
         around = QgsRectangle()
-        for box in cloud_boxes:
-            around.combineExtentWith(box)
+        for one in cloud_boxes:
+            around.combineExtentWith(one)
         raise ValueError(
             f"{input_layer.title} and the point cloud{'s' * (len(clouds) > 1)} don't overlap: {_range(extent)} against "
             f"{_range(around)}; choose a layer of the same area, or check the coordinate reference systems of both."
         )
 
 
-def _plan_box(cloud: Path) -> tuple[QgsRectangle, QgsCoordinateReferenceSystem]:
+def _plan_box(cloud: Path, box: Optional[np.ndarray]) -> tuple[QgsRectangle, QgsCoordinateReferenceSystem]:
     """Return the bounding box of a cloud, empty where it has no area, and its CRS."""
-    low, high, crs = read_extent(cloud)
+    low, high, crs = read_extent(cloud, box=box)
     return QgsRectangle(low[0], low[1], high[0], high[1]), crs_of(crs.plane)
 
 

@@ -34,7 +34,7 @@ def read_clouds(
     """
     read = crs_reader(given)
     if len(paths) > 1:
-        systems = [read_extent(path, read)[2] for path in paths]
+        systems = [read_extent(path, read, box)[2] for path in paths]
         leader = common_crs(systems, [path.name for path in paths], monitors[0], whole=False)
         read = crs_reader(given, leader.wkt or leader.stated)
     return [read_cloud(path, monitor, read, box) for path, monitor in zip(paths, monitors)]

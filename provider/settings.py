@@ -7,6 +7,7 @@ from typing import Any, Callable
 
 from qgis.core import QgsSettings
 
+from ..algorithms.cloud.web_addresses import allow_hosts
 from ..algorithms.landcover.recode_classes import CODES as AGENCIES
 from ..algorithms.presets import PRESETS
 from ..algorithms.threads import use_threads
@@ -53,12 +54,13 @@ PRESET = Option("LIDARBUILDINGS_PRESET", "Kind of cloud that dialogs begin with"
 CODES = Option("LIDARBUILDINGS_CODES", "Class codes that dialogs begin with", next(iter(AGENCIES)), tuple(AGENCIES))
 THREADS = Option("LIDARBUILDINGS_THREADS", "Threads (empty = one for each core)")
 WEB_LIMIT = Option("LIDARBUILDINGS_WEB_LIMIT", "Most that a run reads of a point cloud on the web (MB)", "500")
+WEB_HOSTS = Option("LIDARBUILDINGS_WEB_HOSTS", "Hosts that files may name point clouds of (with spaces between)")
 
-OPTIONS = (PRESET, CODES, THREADS, WEB_LIMIT, SCHEDULERS)
+OPTIONS = (PRESET, CODES, THREADS, WEB_LIMIT, WEB_HOSTS, SCHEDULERS)
 
 
-def apply_threads() -> None:
-    """Have runs use as many threads as the user has set.
+def apply_options() -> None:
+    """Have runs use as many threads, and files name point clouds on those hosts, as the user has set.
 
     Raises
     ------
@@ -69,6 +71,7 @@ def apply_threads() -> None:
     if text and not (text.isdigit() and int(text)):
         raise ValueError(f"'{THREADS.title}' in the options of Processing must be a whole number from 1, got {text!r}.")
     use_threads(int(text) if text else None)
+    allow_hosts(WEB_HOSTS.value.split())
 
 
 def _processing_config() -> Any:

@@ -14,7 +14,7 @@ from qgis.PyQt.QtNetwork import QNetworkReply, QNetworkRequest
 from ..algorithms.cloud.files import sizes_within
 from ..algorithms.cloud.web_addresses import is_address
 from ..algorithms.cloud.web_file import WebFile
-from ..algorithms.cloud.web_requests import TIMEOUT, NoAnswerError, Reply, use_transport
+from ..algorithms.cloud.web_requests import TIMEOUT, NoAnswerError, Reply, range_of_whole, use_transport
 from ..algorithms.stage import Monitor
 from .crs import is_main_thread
 from .settings import WEB_LIMIT
@@ -55,10 +55,14 @@ class QgisTransport:
 
 def _finished(reply: QNetworkReply, loop: QEventLoop, most: int, is_stopped: Callable[[], bool]) -> Reply:
     """Wait for the end of a reply, which is ended where it has more bytes than asked for; return it."""
-    timer = QTimer()
+    timer, kept = QTimer(), b""
 
     def look() -> None:
-        if is_stopped() or reply.bytesAvailable() >= most or _status(reply) not in (0, 206):
+        nonlocal kept
+        if reply.bytesAvailable() >= most:
+            # Nothing can be read of a reply that was ended.
+            kept = kept or bytes(reply.read(most))
+        if kept or is_stopped() or _status(reply) not in (0, 200, 206):
             reply.abort()
 
     reply.finished.connect(loop.quit)
@@ -71,10 +75,12 @@ def _finished(reply: QNetworkReply, loop: QEventLoop, most: int, is_stopped: Cal
     status = _status(reply)
     if status == 0:
         raise NoAnswerError(reply.errorString())
-    data = bytes(reply.read(most)) if status == 206 and reply.isOpen() else b""
+    data = kept or (bytes(reply.read(most)) if status in (200, 206) and reply.isOpen() else b"")
     location = reply.header(QNetworkRequest.KnownHeaders.LocationHeader)
     version = _head(reply, b"ETag") or _head(reply, b"Last-Modified")
-    return Reply(status, data, _head(reply, b"Content-Range"), location.toString() if location else "", version)
+    whole = range_of_whole(_head(reply, b"Content-Length"), data) if status == 200 else ""
+    found = whole or _head(reply, b"Content-Range")
+    return Reply(status, data, found, location.toString() if location else "", version)
 
 
 def _status(reply: QNetworkReply) -> int:

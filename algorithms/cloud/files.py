@@ -18,12 +18,24 @@ from .crs import Crs, CrsReader, crs_of_tiles, header_with_crs, read_crs
 from .header import OF_OLD_CHUNKS, OF_OLD_POINTS, Header
 from .laspy_library import need_lazrs
 from .laz import writing_backend
-from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
+from .outputs import COPC, LAZ, STAC, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS, Layout
 from .point_records import PointRecords, merged_layout
-from .points import check_count, check_points, open_headers, points_within, read_points, size_within, write_points
-from .vpc import read_tiles, tiles_of
+from .points import (
+    check_count,
+    check_points,
+    may_hold,
+    open_headers,
+    points_within,
+    read_points,
+    size_within,
+    write_points,
+)
+from .vpc import Named, read_tiles, tiles_of
 from .web_file import file_at, is_on_web
+
+# A box that no file touches: for what the first of the files on the web says of all.
+NOWHERE = np.full((2, 2), np.nan)
 
 # One sentence for every step of a chain.
 _WAVEFORMS_APART = (
@@ -38,12 +50,12 @@ def read_cloud(
     read: CrsReader = read_crs,
     box: Optional[np.ndarray] = None,
 ) -> Cloud:
-    """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC).
+    """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC) or of STAC items.
 
     Parameters
     ----------
     path : str or Path
-        Its extension (.las, .laz, .vpc) says what it is.
+        Its extension (.las, .laz, .vpc, .json) says what it is.
     monitor : Monitor, optional
         Receives progress, and warnings about units.
     read : callable
@@ -64,14 +76,15 @@ def read_cloud(
     """
     path, monitor = file_at(path), monitor or Monitor()
     with readable(path):
-        files = files_of(path)
+        files = list(touching(named_files_of(path), box))
         states = [state_of(file) for file in files]
-        with_points, headers = _opened(path, monitor)
-        header, crs = headers[0], crs_of_tiles(headers, [file.name for file in with_points], read, monitor)
-        if len(files) == 1:
-            points = (
-                read_points(files[0], header, monitor) if box is None else points_within(files[0], header, box, monitor)
-            )
+        with_points, headers = _opened(path, monitor, box)
+        crs = crs_of_tiles(headers, [file.name for file in with_points], read, monitor)
+        with_points, headers = _near(with_points, headers, box)
+        header = headers[0]
+        if len(with_points) == 1:
+            file = with_points[0]
+            points = read_points(file, header, monitor) if box is None else points_within(file, header, box, monitor)
             header = header.without(*(OF_OLD_CHUNKS if box is None else OF_OLD_POINTS))
         else:
             header, points = read_tiles(with_points, monitor, box)
@@ -107,11 +120,11 @@ def dimension_names(path: Union[str, Path]) -> list[str]:
     """
     path = file_at(path)
     with readable(path):
-        header = next(iter(open_headers(files_of(path)[:1])[1]))
+        header = next(iter(open_headers(list(named_files_of(path))[:1])[1]))
     return Cloud(header, np.zeros(1, header.layout.dtype), Crs()).dimension_names
 
 
-def check_readable(path: Union[str, Path], read: CrsReader = read_crs) -> None:
+def check_readable(path: Union[str, Path], read: CrsReader = read_crs, box: Optional[np.ndarray] = None) -> None:
     """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables show.
 
     Raises
@@ -121,22 +134,25 @@ def check_readable(path: Union[str, Path], read: CrsReader = read_crs) -> None:
     """
     path = file_at(path)
     with readable(path):
-        for file, header in zip(*_opened(path)):
+        for file, header in zip(*_opened(path, box=box)):
             read(header)
             check_points(file, header)
 
 
-def read_extent(path: Union[str, Path], read: CrsReader = read_crs) -> tuple[np.ndarray, np.ndarray, Crs]:
+def read_extent(
+    path: Union[str, Path], read: CrsReader = read_crs, box: Optional[np.ndarray] = None
+) -> tuple[np.ndarray, np.ndarray, Crs]:
     """Return the lowest and the highest coordinates (3,) and the CRS of a file or of all its tiles.
 
-    Coordinates are those of the file, as in its headers.
+    Coordinates are those of the file, as in its headers. With a ``box`` (2, 2) tiles on the web count only if they may
+    have points in it.
 
     Raises
     ------
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _opened(file_at(path))
+    files, headers = _opened(file_at(path), box=box)
     crs = crs_of_tiles(headers, [file.name for file in files], read, Monitor())
     low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
     return np.min(low, axis=0), np.max(high, axis=0), crs
@@ -152,7 +168,7 @@ def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None) -> in
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    return round(sum(header.count * _share_in(header, box) for header in _opened(file_at(path))[1]))
+    return round(sum(header.count * _share_in(header, box) for header in _opened(file_at(path), box=box)[1]))
 
 
 def sizes_within(path: Union[str, Path], box: Optional[np.ndarray] = None) -> list[tuple[Path, tuple[int, int]]]:
@@ -163,7 +179,7 @@ def sizes_within(path: Union[str, Path], box: Optional[np.ndarray] = None) -> li
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _opened(file_at(path))
+    files, headers = _near(*_opened(file_at(path), box=box), box)
     found = [(file, header) for file, header in zip(files, headers) if is_on_web(file)]
     with readable(file_at(path)):
         return [(file, size_within(file, header, box)) for file, header in found]
@@ -181,12 +197,42 @@ def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
     return float(np.prod(np.divide(inside, high - low, out=np.ones(2), where=high > low)))
 
 
-def _opened(path: Path, monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
-    """Return a file, or all its tiles that have points, and their headers."""
+def _opened(
+    path: Path, monitor: Optional[Monitor] = None, box: Optional[np.ndarray] = None
+) -> tuple[list[Path], list[Header]]:
+    """Return a file, or all its tiles that have points and are to be opened for a box, and their headers."""
     with readable(path):
-        named = named_files_of(path)
-        files, headers = open_headers(list(named), monitor)
-    return files, [replace(header, named=named[file]) for file, header in zip(files, headers)]
+        return open_named(touching(named_files_of(path), box), monitor)
+
+
+def open_named(named: dict[Path, Named], monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
+    """Return those of some files that have points, and their headers, with the CRS by which each is named."""
+    files, headers = open_headers(list(named), monitor)
+    return files, [replace(header, named=named[file].crs) for file, header in zip(files, headers)]
+
+
+def touching(named: dict[Path, Named], box: Optional[np.ndarray]) -> dict[Path, Named]:
+    """Return the files that are opened to read a box (2, 2): on the web those that may have points in it, else all.
+
+    There is one at least, whose header says what the others are.
+    """
+    if box is None:
+        return named
+    found = {
+        file: one
+        for file, one in named.items()
+        if one.box is None or not is_on_web(file) or ((one.box[0] <= box[1]) & (one.box[1] >= box[0])).all()
+    }
+    return found or dict([next(iter(named.items()))])
+
+
+def _near(files: list[Path], headers: list[Header], box: Optional[np.ndarray]) -> tuple[list[Path], list[Header]]:
+    """Return those files that may have points in a box (2, 2), by their headers; one at least."""
+    if box is None:
+        return files, headers
+    found = [(file, header) for file, header in zip(files, headers) if may_hold(header, box)]
+    found = found or [(files[0], headers[0])]
+    return [file for file, _ in found], [header for _, header in found]
 
 
 @contextmanager
@@ -206,13 +252,8 @@ def readable(path: Path) -> Iterator[None]:
         ) from error
 
 
-def files_of(path: Path) -> list[Path]:
-    """Return the files that hold the points of a cloud, see :func:`named_files_of`."""
-    return list(named_files_of(path))
-
-
-def named_files_of(path: Path) -> dict[Path, str]:
-    """Return the files that hold the points of a cloud, itself or the tiles of a VPC, and the CRS that this names.
+def named_files_of(path: Path) -> dict[Path, Named]:
+    """Return the files that hold the points of a cloud, itself or the tiles of a VPC, and what this says of them.
 
     Raises
     ------
@@ -221,14 +262,16 @@ def named_files_of(path: Path) -> dict[Path, str]:
     """
     if path.is_dir():
         raise ValueError(f"{path} is a folder; choose a point cloud file in it.")
-    kind = kind_of(path)
+    # The addresses of items of a catalog have no extension.
+    kind = kind_of(path) or (STAC if is_on_web(path) and not path.suffix else "")
     if not kind:
         raise ValueError(
-            f"{path.name} is no point cloud that can be read; choose a .las, .laz, .copc.laz or .vpc file."
+            f"{path.name} is no point cloud that can be read; choose a .las, .laz, .copc.laz or .vpc file, or STAC "
+            "items (.json)."
         )
     if not path.is_file():
         raise ValueError(f"{path} does not exist; check the name.")
-    return tiles_of(path) if kind == VPC else {path: ""}
+    return tiles_of(path) if kind in (VPC, STAC) else {path: Named()}
 
 
 def write_cloud(

@@ -25,7 +25,7 @@ try:
 except ImportError:  # all others
     msvcrt = None  # type: ignore[assignment]
 
-LAS, LAZ, COPC, VPC = ".las", ".laz", ".copc.laz", ".vpc"
+LAS, LAZ, COPC, VPC, STAC = ".las", ".laz", ".copc.laz", ".vpc", ".json"
 
 # Working folders, hidden beside the targets: their names, which say what computer made them. Then the file that a
 # running program keeps open and locked in each, and the folder in it for old files while new ones take their places.
@@ -40,9 +40,9 @@ _UNLOCKED = 2.0
 
 
 def kind_of(path: Path) -> str:
-    """Return the extension that says how a file is written: LAS, LAZ, COPC, VPC or "" for any other."""
+    """Return the extension that says how a file is written: LAS, LAZ, COPC, VPC, STAC or "" for any other."""
     name = path.name.lower()
-    return next((kind for kind in (COPC, LAZ, LAS, VPC) if name.endswith(kind)), "")
+    return next((kind for kind in (COPC, LAZ, LAS, VPC, STAC) if name.endswith(kind)), "")
 
 
 def stem_of(path: Path) -> str:

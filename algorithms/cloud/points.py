@@ -262,14 +262,19 @@ def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -
     ValueError
         If the file or its index is damaged.
     """
-    # The bounds of some files are rounded.
-    step = header.scale[:2]
-    if (box[1] < header.low[:2] - step).any() or (box[0] > header.high[:2] + step).any():
+    if not may_hold(header, box):
         return
     if has_index(header) and has_variable_chunks(header):
         yield from _indexed(path, header, box, monitor)
     else:
         yield from read_chunks(path, header, monitor)
+
+
+def may_hold(header: Header, box: np.ndarray) -> bool:
+    """Whether a file may have points in a box (2, 2) in plan, by the bounds in its header."""
+    # The bounds of some files are rounded.
+    step = header.scale[:2]
+    return not ((box[1] < header.low[:2] - step).any() or (box[0] > header.high[:2] + step).any())
 
 
 def _indexed(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:

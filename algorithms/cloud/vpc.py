@@ -1,4 +1,4 @@
-"""Virtual point clouds: a STAC item collection in JSON that names the tiles of one cloud."""
+"""STAC items in JSON that name the tiles of one cloud: virtual point clouds, other collections, and single items."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import re
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any, Callable, Optional
-from urllib.parse import unquote
+from typing import Any, Callable, NamedTuple, Optional, cast
+from urllib.parse import unquote, urlsplit
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from .outputs import COPC, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import convert, merged_layout
 from .points import open_header, points_within, read_chunks
 from .printable import shown
+from .web_addresses import is_address, is_allowed, split_address
+from .web_file import WebFile, is_on_web
 
 # Bit of the header's encoding that says how GPS time is counted.
 _GPS_TIME_BIT = 1
@@ -46,37 +48,55 @@ _PDAL_NAMES = {"scan_angle": "ScanAngleRank", "nir": "Infrared"}
 ToDegrees = Callable[[np.ndarray], np.ndarray]
 
 
-def tiles_of(path: Path) -> dict[Path, str]:
-    """Return the tiles that a virtual point cloud names, in its order, and the CRS (WKT, "EPSG:code") it names of each.
+class Named(NamedTuple):
+    """What a STAC item says of its point cloud."""
+
+    crs: str = ""  #: Its CRS (WKT or "EPSG:code"), "" where none is named
+    #: (2, 2): least and greatest easting and northing in that system, None where they are not named
+    box: Optional[np.ndarray] = None
+
+
+def tiles_of(path: Path) -> dict[Path, Named]:
+    """Return the tiles that a virtual point cloud or other STAC items name, in their order, and what is said of each.
 
     Raises
     ------
     ValueError
-        If the file is no virtual point cloud, is far too large for one, names no tiles, or one of them is missing.
+        If the file has no such items, is far too large, is one page of several, or names no tiles; or if one of them is
+        missing, or its host not allowed.
     """
     raw = _content(path)
     try:
         # Of bytes, the encoding is found out, by a byte order mark too.
         content = json.loads(raw)
-        hrefs = {href: _crs(one.get("properties")) for one in content["features"] for href in _hrefs(one["assets"])}
+        items = content.get("features", [content])
+        hrefs = {href: _named(one.get("properties")) for one in items for href in _hrefs(one["assets"])}
+        has_more = any(link.get("rel") == "next" for link in content.get("links") or ())
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ValueError(
-            f"{path.name} is not a virtual point cloud: it is no STAC feature collection with assets."
+            f"{path.name} is not a virtual point cloud: it is no STAC item or feature collection with assets."
         ) from None
+    if has_more:
+        raise ValueError(f"{path.name} is one page of several; ask for all items at once (limit=…).")
     if not hrefs:
         raise ValueError(f"{path.name} names no tiles; build it again.")
     # A tile that is named twice is read once, whichever way it is named.
-    tiles = {tile.resolve(): (tile, crs) for tile, crs in ((_tile(path, href), crs) for href, crs in hrefs.items())}
+    tiles = {tile.resolve(): (tile, named) for tile, named in ((_tile(path, one), hrefs[one]) for one in hrefs)}
     return dict(tiles.values())
 
 
-def _crs(properties: Any) -> str:
-    """Return the coordinate reference system in the properties of a STAC item, "" without one."""
+def _named(properties: Any) -> Named:
+    """Return what the properties of a STAC item say of its point cloud."""
     found = properties if isinstance(properties, dict) else {}
     wkt, code = found.get("proj:wkt2"), found.get("proj:code") or found.get("proj:epsg")
-    if isinstance(wkt, str) and wkt:
-        return wkt
-    return f"EPSG:{code}" if isinstance(code, int) else code if isinstance(code, str) else ""
+    coded = f"EPSG:{code}" if isinstance(code, int) else code if isinstance(code, str) else ""
+    numbers = found.get("proj:bbox")
+    try:
+        ends = np.array(numbers, float).reshape(2, -1) if numbers else np.empty((0, 0))
+    except (TypeError, ValueError, OverflowError):
+        ends = np.empty((0, 0))
+    is_box = ends.shape in ((2, 2), (2, 3)) and np.isfinite(ends).all()
+    return Named(wkt if isinstance(wkt, str) and wkt else coded, ends[:, :2] if is_box else None)
 
 
 def _content(path: Path) -> bytes:
@@ -91,6 +111,8 @@ def _content(path: Path) -> bytes:
     # The bytes, and the text with at least a byte for each.
     needed = 2 * size
     if needed <= _MOST_MEMORY:
+        if is_on_web(path):
+            cast(WebFile, path).fetch_whole()
         raw = path.read_bytes()
         n_values = sum(map(raw.count, (b"[", b"{", b",", b":")))
         # Other text than ASCII has up to four bytes for a character.
@@ -105,11 +127,31 @@ def _content(path: Path) -> bytes:
 
 def _hrefs(assets: dict) -> list[str]:
     """Return the point clouds of one feature; overviews repeat points of the tiles and are left out."""
-    data = [asset for asset in assets.values() if _DATA_ROLE in asset.get("roles", ())]
-    return [str(asset["href"]) for asset in (data or list(assets.values())[:1])]
+    all_of_them = list(assets.values())
+    # Items of catalogs have pictures and metadata, too.
+    clouds = [one for one in all_of_them if _is_cloud(str(one["href"]))] or all_of_them
+    data = [one for one in clouds if _DATA_ROLE in (one.get("roles") or ())]
+    return [str(one["href"]) for one in (data or clouds[:1])]
+
+
+def _is_cloud(href: str) -> bool:
+    """Whether the name of a tile, a path or an address, ends as one of a file of points."""
+    return kind_of(Path(urlsplit(href).path if is_address(href) else href)) in (LAS, LAZ, COPC)
 
 
 def _tile(path: Path, href: str) -> Path:
+    if is_on_web(path):
+        tile = cast(WebFile, path).beside(href)
+        if not _is_cloud(tile.address):
+            raise ValueError(f"{path.name} names the tile {shown(href)}, which is no LAS, LAZ or COPC file.")
+        return cast(Path, tile)
+    if is_address(href) and _is_cloud(href):
+        if not is_allowed(href):
+            raise ValueError(
+                f"{path.name} names the tile {shown(href)}, which is on the web; allow it in the options of Processing "
+                f"(add {split_address(href).hostname} to 'Hosts that files may name point clouds of')."
+            )
+        return cast(Path, WebFile(href))
     names = _meanings(href)
     # On Windows, merely looking for a file on another computer sends it the name and a hash of the password.
     if any("://" in name or name.startswith("//") for name in names[1:]):

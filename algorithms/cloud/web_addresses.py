@@ -5,12 +5,16 @@ from __future__ import annotations
 import ipaddress
 import re
 import socket
+from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 from urllib.parse import SplitResult, urljoin, urlsplit
 
 from .printable import shown
 
 _BEGINNING = re.compile(r"https?:/", re.IGNORECASE)
+# Hosts that files on this computer may name point clouds of, by the user's own choice.
+_allowed: set[str] = set()
 
 
 def is_address(text: Any) -> bool:
@@ -48,8 +52,24 @@ def without_query(address: str) -> str:
     return f"{parts.scheme}://{parts.netloc}{parts.path}"
 
 
+def allow_hosts(hosts: Iterable[str]) -> None:
+    """Have files on this computer name point clouds on these hosts, and on no others, from now on."""
+    _allowed.clear()
+    _allowed.update(host.lower() for host in hosts)
+
+
+def is_allowed(address: str) -> bool:
+    """Whether a file on this computer may name a point cloud at this address."""
+    return split_address(address).hostname in _allowed
+
+
+def same_server(one: str, other: str) -> bool:
+    """Whether two addresses are of one server, which may know the user by one login."""
+    return split_address(one)[:2] == split_address(other)[:2]
+
+
 def redirected(address: str, location: str) -> str:
-    """Return the address to which a redirection leads.
+    """Return the address to which a redirection, or a name in what was read there, leads.
 
     Raises
     ------
@@ -61,7 +81,8 @@ def redirected(address: str, location: str) -> str:
         host = split_address(leads).hostname
     except ValueError:
         raise ValueError(f"{without_query(address)} leads to {shown(location)!r}, which is not followed.") from None
-    if _is_private(str(host)) and not _is_private(str(urlsplit(address).hostname)):
+    own = urlsplit(address).hostname
+    if host != own and _is_private(str(host)) and not _is_private(str(own)):
         raise ValueError(
             f"{without_query(address)} leads to {host}, an address of this computer or its network, which is not "
             "followed; give the address itself if it is yours."
@@ -72,7 +93,13 @@ def redirected(address: str, location: str) -> str:
 def _is_private(host: str) -> bool:
     """Whether a host has an address that is not public; where only a proxy knows its name, it is taken as public."""
     try:
-        found = {entry[4][0] for entry in socket.getaddrinfo(host, None)}
+        found = _addresses(host)
     except OSError:
         return False
-    return any(not ipaddress.ip_address(str(one).partition("%")[0]).is_global for one in found)
+    return any(not ipaddress.ip_address(one.partition("%")[0]).is_global for one in found)
+
+
+@lru_cache(maxsize=64)
+def _addresses(host: str) -> frozenset[str]:
+    """Return the addresses of a host, which a catalog may name thousands of times; failures are not kept."""
+    return frozenset(str(entry[4][0]) for entry in socket.getaddrinfo(host, None))

@@ -18,7 +18,7 @@ from urllib.parse import unquote
 
 from ..stage import Monitor
 from .printable import shown
-from .web_addresses import is_address, redirected, split_address, without_query
+from .web_addresses import is_address, redirected, same_server, split_address, without_query
 from .web_requests import NoAnswerError, Reply, transport
 
 # Least number of bytes that are asked for at once: the header of a COPC file and most pages of its index are shorter.
@@ -136,21 +136,22 @@ class _Content:
             try:
                 reply = transport().get(address, start, stop - 1, login, stopped.is_set)
                 why = f"it answers {reply.status}"
-                is_short = reply.status == 206 and len(reply.data) < min(_promised(reply), stop - start)
+                is_whole = reply.status == 200 and start == 0 and max(_promised(reply), len(reply.data)) <= stop
+                is_short = len(reply.data) < min(_promised(reply), stop - start) and (is_whole or reply.status == 206)
                 why = f"it ended after {len(reply.data)} bytes" if is_short else why
             except NoAnswerError as error:
                 reply, why = Reply(_AGAIN[0]), shown(str(error))
-                is_short = False
+                is_whole = is_short = False
             if reply.status in _REDIRECTIONS and redirections < _MOST_REDIRECTIONS:
                 leads = redirected(address, reply.location)
                 # Who knows the user at one server must not hear of it at another.
-                login = login if split_address(leads).netloc == split_address(address).netloc else ""
+                login = login if same_server(leads, address) else ""
                 address, redirections = leads, redirections + 1
             elif is_short or reply.status in _AGAIN:
                 if not waits:
                     raise ValueError(f"{name} can't be read ({why}); check the address and the connection.")
                 stopped.wait(waits.pop(0))
-            elif reply.status == 206:
+            elif reply.status == 206 or is_whole:
                 return reply
             else:
                 raise ValueError(_refusal(name, reply.status))
@@ -261,6 +262,27 @@ class WebFile:
     def open(self, mode: str = "rb") -> WebStream:  # noqa: ARG002 - as of a path
         """Return a stream of its bytes."""
         return WebStream(_content(self.address, self.login))
+
+    def fetch_whole(self) -> None:
+        """Have it fetched as a whole, where it is small, by one request, which servers without ranges answer too."""
+        content = _content(self.address, self.login)
+        if content.size < 0:
+            content.fetch(0, _MOST_AT_ONCE)
+
+    def read_bytes(self) -> bytes:
+        """Return its content."""
+        return self.open().read()
+
+    def beside(self, name: str) -> WebFile:
+        """Return a file that this one names, by an address or a name from its own folder on.
+
+        Raises
+        ------
+        ValueError
+            As :func:`redirected`.
+        """
+        leads = redirected(self.address, name)
+        return WebFile(leads, self.login if same_server(leads, self.address) else "")
 
 
 class WebStream(io.RawIOBase):

@@ -25,9 +25,15 @@ class Reply:
 
     status: int  #: HTTP status
     data: bytes = b""  #: The body of status 200 and 206, and at most one byte more than was asked for
-    content_range: str = ""  #: "bytes 0-99/2000"
+    content_range: str = ""  #: "bytes 0-99/2000", of status 200 see :func:`range_of_whole`
     location: str = ""  #: Where a redirection leads
     version: str = ""  #: ETag, or the time of the last change; "" if the server names neither
+
+
+def range_of_whole(length: str, data: bytes) -> str:
+    """Return the range of a whole file that a server sent in place of one; without its length, what came counts."""
+    size = int(length) if length.isdecimal() else len(data)
+    return f"bytes 0-{size - 1}/{size}"
 
 
 class Transport(Protocol):
@@ -62,11 +68,12 @@ class _StandardLibrary:
         try:
             with self._opener.open(request, timeout=TIMEOUT) as answer:
                 heads = answer.headers
-                data = self._body(answer, last - first + 2, is_stopped) if answer.status == 206 else b""
+                data = self._body(answer, last - first + 2, is_stopped) if answer.status in (200, 206) else b""
         except (OSError, URLError, HTTPException) as error:
             raise NoAnswerError(str(getattr(error, "reason", error)) or type(error).__name__) from None
         version = heads.get("ETag") or heads.get("Last-Modified") or ""
-        return Reply(answer.status, data, heads.get("Content-Range", ""), heads.get("Location", ""), version)
+        whole = range_of_whole(heads.get("Content-Length", ""), data) if answer.status == 200 else ""
+        return Reply(answer.status, data, whole or heads.get("Content-Range", ""), heads.get("Location", ""), version)
 
     def _body(self, answer, most: int, is_stopped: Callable[[], bool]) -> bytes:
         found = bytearray()

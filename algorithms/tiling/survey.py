@@ -13,11 +13,11 @@ import numpy as np
 
 from ..cloud.cloud import Cloud, origin_before
 from ..cloud.crs import Crs, CrsReader, crs_of_tiles, read_crs
-from ..cloud.files import named_files_of, readable, state_of
+from ..cloud.files import NOWHERE, named_files_of, open_named, readable, state_of, touching
 from ..cloud.header import OF_OLD_POINTS, Header
-from ..cloud.outputs import check_not_read, kind_of, made_folder, os_errors_as_messages
-from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
-from ..cloud.vpc import fill_merged, merged_header
+from ..cloud.outputs import STAC, check_not_read, kind_of, made_folder, os_errors_as_messages
+from ..cloud.points import check_points, chunks_near, is_within, read_chunks
+from ..cloud.vpc import Named, fill_merged, merged_header
 from ..cloud.web_file import file_at
 from ..stage import Monitor
 
@@ -255,9 +255,9 @@ def open_survey(
         outside of the extent.
     """
     monitor = monitor or Monitor()
-    named = _named_files(paths)
+    named = touching(_named_files(paths), extent)
     states = {file: state_of(file) for file in named}
-    files, headers = _opened(named, monitor)
+    files, headers = open_named(named, monitor)
     for file, header in zip(files, headers):
         check_points(file, header)
     header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]
@@ -287,32 +287,29 @@ def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
     return list(_named_files(paths))
 
 
-def _opened(named: dict[Path, str], monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
-    """Return the files of a survey that have points, and their headers, with the CRS by which each is named."""
-    files, headers = open_headers(list(named), monitor)
-    return files, [replace(header, named=named[file]) for file, header in zip(files, headers)]
-
-
-def _named_files(paths: Iterable[Union[str, Path]]) -> dict[Path, str]:
-    """Return the files that files, virtual point clouds and folders of files name, each once, and the CRS of each.
-
-    The CRS is the one by which a virtual point cloud names a file, WKT or "EPSG:code", else "".
+def _named_files(paths: Iterable[Union[str, Path]]) -> dict[Path, Named]:
+    """Return the files that files, virtual point clouds and folders of files name, each once, and what is said of each.
 
     Raises
     ------
     ValueError
         If there are no files, or one is no point cloud.
     """
-    found: dict[Path, tuple[Path, str]] = {}
+    found: dict[Path, tuple[Path, Named]] = {}
     for path in map(file_at, paths):
-        inside = sorted(one for one in path.iterdir() if one.is_file() and kind_of(one)) if path.is_dir() else [path]
+        inside = sorted(filter(_is_of_survey, path.iterdir())) if path.is_dir() else [path]
         for file in inside:
             # A VPC in the folder adds its files: those of the folder count once, and others were meant to be read.
-            for one, crs in named_files_of(file).items():
-                found[one.resolve()] = one, crs or found.get(one.resolve(), (one, ""))[1]
+            for one, said in named_files_of(file).items():
+                found[one.resolve()] = one, said if said.crs else found.get(one.resolve(), (one, said))[1]
     if not found:
         raise ValueError("There are no point clouds in the folder; choose one with .las, .laz or .copc.laz files.")
     return dict(found.values())
+
+
+def _is_of_survey(path: Path) -> bool:
+    """Whether a name in the folder of a survey is that of a point cloud; JSON there is of many kinds."""
+    return kind_of(path) not in ("", STAC) and path.is_file()
 
 
 def crs_of_survey(paths: Iterable[Union[str, Path]], read: CrsReader = read_crs) -> Crs:
@@ -323,7 +320,7 @@ def crs_of_survey(paths: Iterable[Union[str, Path]], read: CrsReader = read_crs)
     ValueError
         If a file can't be read, none has points, or they have different systems.
     """
-    files, headers = _opened(_named_files(paths))
+    files, headers = open_named(touching(_named_files(paths), NOWHERE))
     return crs_of_tiles(headers, [file.name for file in files], read, Monitor())
 
 

@@ -10,7 +10,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.presets import PRESETS
 from lidar_buildings.provider.pickers import Picker, fill_with_classes, with_class
 from lidar_buildings.provider.sections import Section, sections_of
-from lidar_buildings.provider.settings import CODES, PRESET, THREADS, apply_threads
+from lidar_buildings.provider.settings import CODES, PRESET, THREADS, apply_options
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def options():
     yield before
     for one, value in before.items():
         one.set(value)
-    apply_threads()
+    apply_options()
 
 
 def test_dialogs_begin_with_the_kind_of_cloud_in_the_options(provider, window, options):
@@ -98,11 +98,11 @@ def test_threads_are_those_of_the_options(provider, options):
     from lidar_buildings.algorithms.threads import n_threads
 
     THREADS.set("3")
-    apply_threads()
+    apply_options()
     assert n_threads() == 3
     THREADS.set("many")
     with pytest.raises(ValueError, match="must be a whole number from 1, got 'many'"):
-        apply_threads()
+        apply_options()
 
 
 @pytest.mark.parametrize("preset", PRESETS.values(), ids=PRESETS)

@@ -55,7 +55,7 @@ def test_files_of_points_can_be_browsed_for(provider, name, own):
     assert copy.flags() == Qgis.ProcessingParameterFlag.Hidden
     assert copy.metadata() == {"kept": 1}
     for each in (definition, copy):
-        assert each.createFileFilter().startswith("Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC);;")
+        assert each.createFileFilter().startswith("Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC *.json);;")
         assert each.checkValueIsAcceptable("tile.laz")
         assert not each.checkValueIsAcceptable("")
 

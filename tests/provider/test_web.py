@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 import time
 
@@ -19,10 +20,11 @@ from qgis.core import (
 from lidar_buildings.algorithms.cloud import web_file
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.algorithms.cloud.web_requests import transport
 from lidar_buildings.provider.clouds import file_of_layer
 from lidar_buildings.provider.menu import view_parameters
-from lidar_buildings.provider.settings import WEB_LIMIT
+from lidar_buildings.provider.settings import WEB_HOSTS, WEB_LIMIT
 from lidar_buildings.provider.web import QgisTransport
 from lidar_buildings.tests.provider.helpers import Interface, run
 from lidar_buildings.tests.web_server import serving
@@ -125,6 +127,25 @@ def test_an_authentication_configuration_is_used_and_not_shown_to_others(provide
         web_file._known.clear()
         run("toylift", given, context, log)
         assert set(other.seen) == {""}
+
+
+def test_a_vpc_by_address_and_one_whose_host_is_named_are_the_local_one(provider, context, server, folder, out):
+    write_vpc([folder / "a.copc.laz"], folder / "all.vpc")
+    local = {"type": "Feature", "assets": {"data": {"href": server.address("a.copc.laz")}}}
+    (out / "item.json").write_text(json.dumps(local))
+    given = {"EXTENT": VIEW, "INPUT": str(out / "item.json"), "OUTPUT": str(out / "c.las")}
+    accepted, why = provider.algorithm("toylift").checkParameterValues(given, context)
+    assert not accepted
+    assert f"(add 127.0.0.1 to '{WEB_HOSTS.title.partition(' (')[0]}')" in why
+    assert not server.requests
+    WEB_HOSTS.set("example.org 127.0.0.1")
+    try:
+        sources = (server.address("all.vpc"), str(folder / "all.vpc"), str(out / "item.json"))
+        for name, source in zip("abc", sources):
+            run("toylift", {**given, "INPUT": source, "OUTPUT": str(out / f"{name}.las")}, context, None)
+    finally:
+        WEB_HOSTS.set("")
+    assert (out / "a.las").read_bytes() == (out / "b.las").read_bytes() == (out / "c.las").read_bytes()
 
 
 def test_a_layer_is_its_address(qgis_application):

@@ -198,7 +198,8 @@ def test_no_tile_is_looked_for_on_another_computer(make_las, make_vpc, monkeypat
     ("href", "message"),
     [
         ("gone.laz", "names the tile gone.laz, which is missing"),
-        ("https://example.com/a.laz", "not a local file"),
+        ("https://example.com/a.laz", r"is on the web; allow it .* \(add example\.com to"),
+        ("https://example.com/a.txt", "not a local file"),
         ("a.xyz", "is no LAS, LAZ or COPC file"),
     ],
 )
