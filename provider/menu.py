@@ -14,7 +14,7 @@ from qgis.core import (
     QgsReferencedRectangle,
 )
 from qgis.PyQt.QtGui import QIcon
-from qgis.PyQt.QtWidgets import QAction
+from qgis.PyQt.QtWidgets import QAction, QDockWidget
 
 from . import PROVIDER_ID
 from .clouds import file_of_layer
@@ -23,6 +23,9 @@ from .paths import GROUP_ICONS, ICON
 from .texts import tr
 
 MENU = "LiDAR Buildings"
+
+# Name of the window of the review, by which it is found again.
+REVIEW_WINDOW = "LidarBuildingsReview"
 
 
 def find_in_view_text() -> str:
@@ -35,9 +38,10 @@ def add_menu(iface: Any) -> Callable[[], None]:
     find = _action(iface, find_in_view_text(), GROUP_ICONS / "buildings.svg", lambda: open_dialog(iface))
     find.setToolTip(tr("Find the buildings of the active point cloud within the map view"))
     view = _action(iface, tr("Show models in 3D"), GROUP_ICONS / "3d.svg", lambda: _show_in_3d(iface))
+    review = _action(iface, tr("Review buildings…"), GROUP_ICONS / "quality.svg", lambda: _review(iface))
     sample = _action(iface, tr("Open sample data"), GROUP_ICONS / "simulation.svg", lambda: _open_sample(iface))
     check = _action(iface, tr("Check installation…"), ICON, lambda: _check_installation(iface))
-    actions = (find, view, sample, check)
+    actions = (find, view, review, sample, check)
     for action in actions:
         iface.addPluginToMenu(MENU, action)
     iface.addToolBarIcon(find)
@@ -46,6 +50,11 @@ def add_menu(iface: Any) -> Callable[[], None]:
         iface.removeToolBarIcon(find)
         for action in actions:
             iface.removePluginMenu(MENU, action)
+        dock = iface.mainWindow().findChild(QDockWidget, REVIEW_WINDOW)
+        if dock is not None:
+            dock.close()
+            iface.removeDockWidget(dock)
+            dock.deleteLater()
 
     return remove
 
@@ -60,6 +69,12 @@ def _show_in_3d(iface: Any) -> None:
     from .view3d import show_view
 
     show_view(iface)
+
+
+def _review(iface: Any) -> None:
+    from .review_dock import show_review
+
+    show_review(iface)
 
 
 def _open_sample(iface: Any) -> None:

@@ -34,7 +34,7 @@ CONTEXT = "LidarBuildings"
 TARGET = ROOT / "resources" / "translations" / "lidar_buildings.ts"
 
 # Tables of provider/ whose values are texts that are translated where they are shown.
-_TABLES = ("_BY_ATTRIBUTE", "_BY_DIMENSION", "_NUMBERS")
+_TABLES = ("_BY_ATTRIBUTE", "_BY_DIMENSION", "_COLUMNS", "_FILTERS", "_NUMBERS")
 
 
 def texts() -> list[str]:

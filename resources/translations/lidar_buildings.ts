@@ -3540,6 +3540,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>All buildings</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from the scanner, behind cars, trees and people. Facade lines need the GPS time of the points.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3605,6 +3609,10 @@
     </message>
     <message>
         <source>Approximate share of all surfaces where matching finds nothing.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Area (m²)</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3721,6 +3729,10 @@
     </message>
     <message>
         <source>Attribute of the footprints that names buildings in all results. With it, the layer of buildings and CityJSON keep all attributes of the footprints. If empty, buildings are named by the attribute 'id' or 'fid', or numbered, and in CityJSON also by their position, so that files can be merged.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Attributes of the review</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4061,6 +4073,10 @@
     </message>
     <message>
         <source>Bridges</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Building</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4620,6 +4636,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Delete</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Density of points on walls, as a share of that on open ground.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -4792,11 +4812,19 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Divide</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Divide a vehicle's scan lines into straight segments, and label those of ground, facades and other objects.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Divide trees that were scanned from the ground into stems and branches, with diameters, lengths and volumes.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Doubtful</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5416,6 +5444,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Hosts that files may name point clouds of (with spaces between)</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Houses</source>
         <translation type="unfinished"></translation>
     </message>
@@ -5673,6 +5705,10 @@
     </message>
     <message>
         <source>Iterations</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Keep</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6148,6 +6184,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Merge buildings</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Merge point clouds</source>
         <translation type="unfinished"></translation>
     </message>
@@ -6440,6 +6480,14 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Next</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>No building is listed; choose a layer of footprints, or list all.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Noise</source>
         <translation type="unfinished"></translation>
     </message>
@@ -6485,6 +6533,10 @@
     </message>
     <message>
         <source>Not simulated: windows, surfaces that mirror, blur of edges, errors that neighboring points share, dormers.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Not yet reviewed</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7200,6 +7252,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Previous</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Processes (empty = one for each core)</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7348,6 +7404,14 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Remove deleted</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Remove deleted buildings</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Replace class codes by those of an agency, or by one's own.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7365,6 +7429,22 @@
     </message>
     <message>
         <source>Restore classes</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Review</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Review buildings</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Review buildings…</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Review of a building</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7465,6 +7545,10 @@
     </message>
     <message>
         <source>Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy and the k-means concept. International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLII-2/W13.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Save</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8016,6 +8100,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Steps to save: {}.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8220,6 +8308,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>The layer is temporary: export it before QGIS closes.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>The layers name no coordinate reference system; they are shown in local meters.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8393,6 +8485,10 @@
     </message>
     <message>
         <source>There is no terrain outside the hull of the ground points. Small gaps of the surface (shadows, dark roofs, water) are interpolated linearly between the cells around them; larger ones stay empty.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>These buildings don't touch; only neighbors that do become one.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8609,6 +8705,10 @@
     </message>
     <message>
         <source>Under-segmented segments of the reference</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Undo</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8997,6 +9097,18 @@
     </message>
     <message>
         <source>the whole cloud</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>{} buildings touch this one; select those to merge it with.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>{} can't be edited; export it to a GeoPackage and review that.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>{} of {} reviewed.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

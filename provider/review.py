@@ -1,0 +1,209 @@
+"""Decisions of a reviewer on the buildings of a layer: they are attributes of it, and each can be undone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime
+from typing import Any, Callable, Optional
+
+from qgis.core import (
+    NULL,
+    Qgis,
+    QgsExpression,
+    QgsFeature,
+    QgsFeatureRequest,
+    QgsField,
+    QgsGeometry,
+    QgsProperty,
+    QgsRenderContext,
+    QgsSymbol,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtCore import QMetaType
+
+from .crs import meters_per_unit
+from .texts import tr
+
+# Attributes that are added, and the decisions.
+REVIEW, REVIEWED_AT = "review", "reviewed_at"
+KEPT, DELETED, CHANGED = "kept", "deleted", "changed"
+
+# Whether a building is marked as deleted.
+IS_DELETED = f"\"{REVIEW}\" = '{DELETED}'"
+
+# Attribute by whose values the buildings are ordered.
+CONFIDENCE = "confidence"
+
+# Attributes that add up over the parts of a building.
+_SUMS = ("volume", "points")
+
+# Characters of the name of an attribute in a Shapefile.
+_SHORT = 10
+
+# Opacity (%) of buildings that are marked as deleted: seen, and not mistaken for others.
+_FAINT = 15
+
+
+def is_reviewable(layer: Any) -> bool:
+    """Whether a layer has polygons with a confidence."""
+    is_polygons = isinstance(layer, QgsVectorLayer) and layer.geometryType() == Qgis.GeometryType.Polygon
+    return is_polygons and layer.fields().lookupField(CONFIDENCE) >= 0
+
+
+class Review:
+    """The review of one layer: every outline that changes is recorded as long as it lasts, by tools of QGIS too.
+
+    ``changed`` is called when a value of a building (by its id) is another one, or with None when the buildings are.
+    """
+
+    def __init__(self, layer: QgsVectorLayer, changed: Callable[[Optional[int]], None]) -> None:
+        self.layer = layer
+        self._heard = [
+            (layer.geometryChanged, lambda fid, _: self._outline_changed(fid)),
+            (layer.featureAdded, self._building_added),
+            (layer.attributeValueChanged, lambda fid, *_: changed(fid)),
+            (layer.styleManager().currentStyleChanged, self.fade_deleted),
+        ]
+        for signal in (layer.featureAdded, layer.featureDeleted, layer.afterCommitChanges, layer.afterRollBack):
+            self._heard.append((signal, lambda *_: changed(None)))
+        for signal, slot in self._heard:
+            signal.connect(slot)
+        self.fade_deleted()
+
+    def end(self) -> None:
+        """Stop to record, and save."""
+        for signal, slot in self._heard:
+            signal.disconnect(slot)
+        self.save()
+
+    def buildings(self, which: str = "TRUE") -> list[QgsFeature]:
+        """Return the buildings of an expression without their outlines, the least sure first."""
+        request = QgsFeatureRequest(QgsExpression(which)).setFlags(Qgis.FeatureRequestFlag.NoGeometry)
+        return list(self.layer.getFeatures(request.addOrderBy(CONFIDENCE)))
+
+    def value(self, building: QgsFeature, name: str) -> Any:
+        """Return an attribute of a building, None where it has no value or the layer has no such attribute."""
+        # Not by the fields of the feature: QGIS leaves out there what was added in this edit.
+        at = self._index(name)
+        return None if at < 0 or building[at] == NULL else building[at]
+
+    def _index(self, name: str) -> int:
+        """Return where an attribute is, -1 for none; Shapefiles cut its name."""
+        fields = self.layer.fields()
+        return max(fields.lookupField(name), fields.lookupField(name[:_SHORT]))
+
+    def decide(self, fid: int, decision: str) -> None:
+        """Record a decision on a building."""
+        with self._command(tr("Review of a building")):
+            self._mark(fid, decision)
+        self.fade_deleted()
+
+    def merge(self, fid: int) -> int:
+        """Merge a building with the selected ones, or with the only one that touches it; return the one that remains.
+
+        That is the largest: its heights and its reason hold.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing or more than one to choose from, or they don't touch.
+        """
+        parts = [self.layer.getFeature(one) for one in (fid, *self._partners(fid))]
+        outline = QgsGeometry.unaryUnion([part.geometry() for part in parts])
+        if outline.constGet().partCount() != 1:
+            raise ValueError(tr("These buildings don't touch; only neighbors that do become one."))
+        largest = max(parts, key=lambda part: part.geometry().area()).id()
+        with self._command(tr("Merge buildings")):
+            self.layer.changeGeometry(largest, outline.coerceToType(self.layer.wkbType())[0])
+            for name in _SUMS:
+                self._set(largest, name, sum(self.value(part, name) or 0 for part in parts))
+            self.layer.deleteFeatures([part.id() for part in parts if part.id() != largest])
+            self.layer.removeSelection()
+        return largest
+
+    def _partners(self, fid: int) -> list[int]:
+        """Return the buildings to merge with one."""
+        chosen = [one for one in self.layer.selectedFeatureIds() if one != fid]
+        if chosen:
+            return chosen
+        outline = self.layer.getGeometry(fid)
+        near = self.layer.getFeatures(QgsFeatureRequest().setFilterRect(outline.boundingBox()))
+        touching = [one.id() for one in near if one.id() != fid and one.geometry().intersects(outline)]
+        if len(touching) != 1:
+            raise ValueError(tr("{} buildings touch this one; select those to merge it with.").format(len(touching)))
+        return touching
+
+    def prepare_division(self, fid: int) -> None:
+        """Have QGIS's tool split this building alone, and share its volume and points by area."""
+        with self._command(tr("Attributes of the review")):
+            self._add_fields()
+        for name in _SUMS:
+            at = self._index(name)
+            if at >= 0:
+                self.layer.setFieldSplitPolicy(at, Qgis.FieldDomainSplitPolicy.GeometryRatio)
+        self.layer.selectByIds([fid])
+
+    def remove_deleted(self) -> None:
+        """Take the buildings that are marked as deleted out of the layer."""
+        with self._command(tr("Remove deleted buildings")):
+            self.layer.deleteFeatures([one.id() for one in self.buildings(IS_DELETED)])
+
+    def save(self) -> None:
+        """Write the decisions into the layer, which is edited on.
+
+        Raises
+        ------
+        ValueError
+            If that fails.
+        """
+        if self.layer.isEditable() and not self.layer.commitChanges(False):
+            raise ValueError(" ".join(self.layer.commitErrors()))
+
+    def fade_deleted(self, *_: Any) -> None:
+        """Draw buildings marked as deleted faintly, whatever the style."""
+        faint = QgsProperty.fromExpression(f"if({IS_DELETED}, {_FAINT}, 100)")
+        for symbol in self.layer.renderer().symbols(QgsRenderContext()):
+            symbol.setDataDefinedProperty(QgsSymbol.Property.Opacity, faint)
+        self.layer.triggerRepaint()
+
+    @contextmanager
+    def _command(self, text: str) -> Iterator[None]:
+        """Make all edits within it one step to undo."""
+        if not (self.layer.isEditable() or self.layer.startEditing()):
+            what = tr("{} can't be edited; export it to a GeoPackage and review that.")
+            raise ValueError(what.format(self.layer.name()))
+        self.layer.beginEditCommand(text)
+        try:
+            yield
+        finally:
+            self.layer.endEditCommand()
+
+    def _building_added(self, fid: int) -> None:
+        """Give a building that was drawn or split off a number of its own."""
+        self._outline_changed(fid, id=int(self.layer.maximumValue(self._index("id")) or 0) + 1)
+
+    def _outline_changed(self, fid: int, **more: Any) -> None:
+        """Record that an outline was changed, and what it measures; not where that is undone or redone."""
+        # While a command is open nothing can be undone; where it is undone, it can.
+        if self.layer.isEditCommandActive() and not self.layer.undoStack().canUndo():
+            outline, unit = self.layer.getGeometry(fid), meters_per_unit(self.layer.crs())[0]
+            self._mark(fid, CHANGED, area=outline.area() * unit**2, perimeter=outline.length() * unit, **more)
+
+    def _mark(self, fid: int, decision: str, **more: Any) -> None:
+        """Record a decision and its time, and other values."""
+        self._add_fields()
+        now = datetime.now().astimezone().isoformat(timespec="seconds")
+        for name, value in {REVIEW: decision, REVIEWED_AT: now, **more}.items():
+            self._set(fid, name, value)
+
+    def _add_fields(self) -> None:
+        for name in (REVIEW, REVIEWED_AT):
+            if self._index(name) < 0:
+                self.layer.addAttribute(QgsField(name, QMetaType.Type.QString))
+
+    def _set(self, fid: int, name: str, value: Any) -> None:
+        """Set an attribute, if the layer has it."""
+        at = self._index(name)
+        if at >= 0:
+            self.layer.changeAttributeValue(fid, at, value)

@@ -1,0 +1,252 @@
+"""The window in which buildings are reviewed one by one, the least sure first."""
+
+from __future__ import annotations
+
+import html
+from typing import Any, Callable, Optional
+
+from qgis.core import Qgis, QgsFeature, QgsProject, QgsVectorLayer
+from qgis.gui import QgsMapTool, QgsRubberBand
+from qgis.PyQt.QtCore import QEvent, Qt, QTimer
+from qgis.PyQt.QtGui import QColor, QKeySequence
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QComboBox,
+    QDockWidget,
+    QGridLayout,
+    QHeaderView,
+    QLabel,
+    QToolButton,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ..algorithms.quality.report_buildings import SURE
+from .menu import REVIEW_WINDOW
+from .review import CONFIDENCE, DELETED, KEPT, REVIEW, Review, is_reviewable
+from .texts import tr
+
+# Columns of the list: attributes, and what they are called.
+_COLUMNS = {
+    "id": "Building",
+    CONFIDENCE: "Confidence",
+    REVIEW: "Review",
+    "area": "Area (m²)",
+    "points": "Points",
+    "reason": "Reason",
+}
+
+# Which buildings are listed: expressions, in which attributes that a layer has not yet are NULL, and their names.
+_FILTERS = {
+    f'"{CONFIDENCE}" < {SURE}': "Doubtful",
+    f'"{REVIEW}" IS NULL': "Not yet reviewed",
+    "TRUE": "All buildings",
+}
+
+# Width of the map, in those of the building.
+_AROUND = 4.0
+
+# Color and width (pixels) of the outline of the current building on the map.
+_OUTLINE, _WIDTH = QColor(0, 229, 255), 3
+
+# Buttons in a row.
+_IN_ROW = 3
+
+
+def show_review(iface: Any, layer: Optional[QgsVectorLayer] = None) -> ReviewDock:
+    """Open the window for a layer, else for the active one, or for the first that has a confidence."""
+    dock = iface.mainWindow().findChild(QDockWidget, REVIEW_WINDOW)
+    if dock is None:
+        dock = ReviewDock(iface)
+        iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, dock)
+    offered = (layer, iface.activeLayer(), *QgsProject.instance().mapLayers().values())
+    dock.show()
+    dock.raise_()
+    dock.follow(next(filter(is_reviewable, offered), None))
+    dock.list.setFocus()
+    return dock
+
+
+class ReviewDock(QDockWidget):
+    """A list of the buildings of the active layer, the evidence for the current one, and the decisions."""
+
+    def __init__(self, iface: Any) -> None:
+        super().__init__(tr("Review buildings"), iface.mainWindow())
+        self.setObjectName(REVIEW_WINDOW)
+        self.iface, self.canvas = iface, iface.mapCanvas()
+        self.review: Any = None
+        self._listed: list[QgsFeature] = []
+        self._fid: Any = None
+        self._tool: Optional[QgsMapTool] = None
+        self._band = QgsRubberBand(self.canvas, Qgis.GeometryType.Polygon)
+        self._band.setStrokeColor(_OUTLINE)
+        self._band.setFillColor(QColor(0, 0, 0, 0))
+        self._band.setWidth(_WIDTH)
+        # Many signals of a layer end in one new list.
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self.fill)
+        self.filter = QComboBox()
+        self.filter.addItems([tr(name) for name in _FILTERS.values()])
+        self.filter.currentIndexChanged.connect(self.fill)
+        self.list = QTreeWidget(rootIsDecorated=False, uniformRowHeights=True)
+        self.list.setHeaderLabels([tr(name) for name in _COLUMNS.values()])
+        self.list.header().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.list.currentItemChanged.connect(self._show)
+        self.facts, self.count = QLabel(wordWrap=True), QLabel(wordWrap=True)
+        self.setWidget(QWidget())
+        layout = QVBoxLayout(self.widget())
+        for widget in (self.filter, self.list, self.facts):
+            layout.addWidget(widget)
+        layout.addLayout(self._buttons())
+        layout.addWidget(self.count)
+        iface.currentLayerChanged.connect(self.follow)
+
+    def _buttons(self) -> QGridLayout:
+        """Return buttons, whose keys hold in this window and on the map."""
+        grid = QGridLayout()
+        given = (
+            (tr("Keep"), "K", lambda _: self.decide(KEPT)),
+            (tr("Delete"), "D", lambda _: self.decide(DELETED)),
+            (tr("Merge"), "M", self.merge),
+            (tr("Divide"), "L", self.divide),
+            (tr("Previous"), "P", lambda _: self.go_to(self.row - 1)),
+            (tr("Next"), "N", lambda _: self.go_to(self.row + 1)),
+            (tr("Undo"), "", lambda review: review.layer.undoStack().undo()),
+            (tr("Save"), "", Review.save),
+            (tr("Remove deleted"), "", Review.remove_deleted),
+        )
+        for number, (text, key, run) in enumerate(given):
+            action = QAction(f"{text} ({key})" if key else text, self)
+            action.setShortcut(QKeySequence(key))
+            action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            action.triggered.connect(lambda _, run=run: self._try(run))
+            self.visibilityChanged.connect(action.setEnabled)
+            self.addAction(action)
+            self.canvas.addAction(action)
+            button = QToolButton()
+            button.setDefaultAction(action)
+            grid.addWidget(button, *divmod(number, _IN_ROW))
+        return grid
+
+    def follow(self, layer: Any) -> None:
+        """Review a layer while the window is open, if it can be."""
+        if not self.isHidden() and is_reviewable(layer) and not (self.review and self.review.layer == layer):
+            self._begin(layer)
+
+    def _begin(self, layer: Optional[QgsVectorLayer]) -> None:
+        """Review a layer, or none; the decisions on the one before are saved."""
+        if self.review is not None:
+            self.review.layer.willBeDeleted.disconnect(self._forget)
+            self._try(Review.end)
+        self.review, self._fid = None, None
+        if layer is not None:
+            self.review = Review(layer, self._changed)
+            layer.willBeDeleted.connect(self._forget)
+        self.fill()
+        self._go_to_open()
+
+    def _forget(self) -> None:
+        """Forget a layer that leaves the project."""
+        self.review = None
+        self.fill()
+
+    def _changed(self, fid: Optional[int]) -> None:
+        """List the buildings anew, and go to the one of which a step was undone."""
+        if fid is not None and not self.review.layer.isEditCommandActive():
+            self._fid = fid
+        self._later.start()
+
+    @property
+    def row(self) -> int:
+        """The row of the current building."""
+        return self.list.currentIndex().row()
+
+    def fill(self, *_: Any) -> None:
+        """List the buildings, and stay at the current one."""
+        which = list(_FILTERS)[self.filter.currentIndex()]
+        self._listed = self.review.buildings(which) if self.review else []
+        fids = [one.id() for one in self._listed]
+        row = fids.index(self._fid) if self._fid in fids else max(0, min(self.row, len(fids) - 1))
+        self.list.clear()
+        self.list.addTopLevelItems([QTreeWidgetItem(self._texts(one)) for one in self._listed])
+        self.go_to(row)
+        self._count()
+
+    def _texts(self, building: QgsFeature) -> list[str]:
+        """Return the texts of a building in the list."""
+        values = {name: self.review.value(building, name) for name in _COLUMNS}
+        numbers = {CONFIDENCE: ".2f", "area": ",.0f"}
+        return ["" if one is None else format(one, numbers.get(name, "")) for name, one in values.items()]
+
+    def go_to(self, row: int) -> None:
+        """Go to the building of a row, if there is one."""
+        if 0 <= row < len(self._listed):
+            self.list.setCurrentItem(self.list.topLevelItem(row))
+
+    def _go_to_open(self) -> None:
+        """Go to the first building without a decision, from the current one on."""
+        rows = [*range(max(self.row, 0), len(self._listed)), *range(self.row)]
+        self.go_to(next((row for row in rows if self.review.value(self._listed[row], REVIEW) is None), -1))
+
+    def _show(self, *_: Any) -> None:
+        """Show the current building: in words, on the map and in space."""
+        before, self._fid = self._fid, self._listed[self.row].id() if 0 <= self.row < len(self._listed) else None
+        if self._tool is not None:
+            self.canvas.setMapTool(self._tool)
+            self.review.layer.removeSelection()
+            self._tool = None
+        self._band.reset(Qgis.GeometryType.Polygon)
+        if self._fid is None:
+            self.facts.setText(tr("No building is listed; choose a layer of footprints, or list all."))
+            return
+        layer, outline = self.review.layer, self.review.layer.getGeometry(self._fid)
+        why = [self.review.value(self._listed[self.row], name) for name in ("reason", "evidence")]
+        self.facts.setText(html.escape(": ".join(one for one in why if one)))
+        self._band.setToGeometry(outline, layer)
+        if self._fid != before:
+            box = self.canvas.mapSettings().layerExtentToOutputExtent(layer, outline.boundingBox())
+            box.scale(_AROUND)
+            self.canvas.setExtent(box)
+            self.canvas.refresh()
+
+    def _count(self) -> None:
+        """Say how many are reviewed, and that decisions are to be saved."""
+        done = sum(self.review.value(one, REVIEW) is not None for one in self._listed)
+        said = [tr("{} of {} reviewed.").format(done, len(self._listed))]
+        if self.review is not None and self.review.layer.undoStack().index():
+            said.append(tr("Steps to save: {}.").format(self.review.layer.undoStack().index()))
+        if self.review is not None and self.review.layer.isTemporary():
+            said.append(tr("The layer is temporary: export it before QGIS closes."))
+        self.count.setText(" ".join(said))
+
+    def decide(self, decision: str) -> None:
+        """Record a decision on the current building, and go to the next without one."""
+        self.review.decide(self._fid, decision)
+        self.fill()
+        self._go_to_open()
+
+    def merge(self, review: Review) -> None:
+        """Merge the current building with others."""
+        self._fid = review.merge(self._fid)
+
+    def divide(self, review: Review) -> None:
+        """Have a line drawn that divides the current building; afterwards the tool is the one before."""
+        review.prepare_division(self._fid)
+        self._tool = self.canvas.mapTool()
+        self.iface.actionSplitFeatures().trigger()
+
+    def _try(self, run: Callable[[Review], None]) -> None:
+        """Do something, or say why it can't be done; the layer becomes the active one, for QGIS's own undo."""
+        if self.review is None:
+            return
+        self.iface.setActiveLayer(self.review.layer)
+        try:
+            run(self.review)
+        except ValueError as error:
+            self.iface.messageBar().pushWarning(self.windowTitle(), str(error))
+
+    def closeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt asks for this name
+        self._begin(None)
+        super().closeEvent(event)

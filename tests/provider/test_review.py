@@ -1,0 +1,247 @@
+"""The review of doubtful buildings: keys, decisions that are stored and undone, and outlines that change."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+import pytest
+from qgis.core import (
+    NULL,
+    QgsFeatureRequest,
+    QgsGeometry,
+    QgsLineString,
+    QgsPoint,
+    QgsProject,
+    QgsVectorFileWriter,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtCore import QCoreApplication, Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QApplication
+
+from lidar_buildings.provider.review import Review
+from lidar_buildings.provider.review_dock import show_review
+from lidar_buildings.tests.provider.helpers import vector
+
+FIELDS = "&".join(
+    f"field={one}"
+    for one in (
+        "id:int",
+        "area:double",
+        "volume:double",
+        "points:int",
+        "confidence:double",
+        "reason:string",
+        "evidence:string",
+    )
+)
+EVIDENCE = "38 % of the beam passes (limit 40 %)"
+
+
+def value_of(layer, feature, name):
+    """By the fields of the layer: a feature lacks those that were added in this edit."""
+    at = layer.fields().lookupField(name)
+    return None if at < 0 or feature[at] == NULL else feature[at]
+
+
+def square(x, size=10):
+    return f"Polygon (({x} 0, {x + size} 0, {x + size} {size}, {x} {size}, {x} 0))"
+
+
+@pytest.fixture
+def layer(qgis_iface):
+    """Footprints in a GeoPackage's way: two that touch, one apart, and one without a confidence."""
+    rows = [
+        (square(0), [1, 100.0, 300.0, 200, 0.9, "Solid plane", ""]),
+        (square(10, 5), [2, 25.0, 50.0, 40, 0.6, "Rough", EVIDENCE]),
+        (square(40), [3, 100.0, 200.0, 100, 0.3, "Penetrated", "<b>"]),
+        (square(60), [4, 100.0, 200.0, 100, None, None, None]),
+    ]
+    layer = vector("Polygon", rows, fields=FIELDS)
+    QgsProject.instance().addMapLayer(layer)
+    yield layer
+    QgsProject.instance().clear()
+
+
+@pytest.fixture
+def dock(layer, qgis_iface):
+    dock = show_review(qgis_iface, layer)
+    dock.setFloating(True)
+    QApplication.setActiveWindow(dock)
+    QTest.qWaitForWindowActive(dock)
+    yield dock
+    dock.close()
+    dock.setParent(None)
+    dock.deleteLater()
+
+
+def listed(dock):
+    return [dock.list.topLevelItem(i).text(0) for i in range(dock.list.topLevelItemCount())]
+
+
+def decisions(layer):
+    return {value_of(layer, one, "id"): value_of(layer, one, "review") for one in layer.getFeatures()}
+
+
+def press(dock, key, modifier=Qt.KeyboardModifier.NoModifier):
+    QTest.keyClick(dock.list, key, modifier)
+    QCoreApplication.processEvents()
+
+
+def current(dock):
+    return dock.list.currentItem().text(0)
+
+
+def test_the_least_sure_come_first_and_filters_choose(dock):
+    assert listed(dock) == ["3", "2"]
+    dock.filter.setCurrentIndex(2)
+    assert listed(dock) == ["3", "2", "1", "4"]
+    dock.filter.setCurrentIndex(1)
+    press(dock, Qt.Key.Key_K)
+    dock.fill()
+    assert listed(dock) == ["2", "1", "4"]
+
+
+def test_keys_decide_and_go_on_to_the_next(dock, layer):
+    assert current(dock) == "3"
+    press(dock, Qt.Key.Key_D)
+    assert current(dock) == "2"
+    assert EVIDENCE in dock.facts.text()
+    press(dock, Qt.Key.Key_K)
+    assert decisions(layer) == {1: None, 2: "kept", 3: "deleted", 4: None}
+    when = {value_of(layer, one, "reviewed_at") for one in layer.getFeatures()}
+    assert all(datetime.fromisoformat(one).tzinfo for one in when if one)
+    assert "2 of 2 reviewed" in dock.count.text()
+    press(dock, Qt.Key.Key_P)
+    assert current(dock) == "3"
+    assert "&lt;b&gt;" in dock.facts.text()
+    press(dock, Qt.Key.Key_N)
+    assert current(dock) == "2"
+
+
+def test_keys_hold_on_the_map_and_only_while_the_window_is_open(dock, layer, qgis_iface):
+    actions = [one for one in qgis_iface.mapCanvas().actions() if one.shortcut().toString() == "D"]
+    assert [one.isEnabled() for one in actions] == [True]
+    dock.hide()
+    assert [one.isEnabled() for one in actions] == [False]
+
+
+def test_a_step_is_undone_and_its_building_shown(dock, layer):
+    before = layer.fields().names()
+    press(dock, Qt.Key.Key_D)
+    assert current(dock) == "2"
+    assert "Steps to save: 1" in dock.count.text()
+    next(one for one in dock.actions() if one.text() == "Undo").trigger()
+    QCoreApplication.processEvents()
+    assert current(dock) == "3"
+    assert decisions(layer)[3] is None
+    assert layer.fields().names() == before
+    assert "Steps to save" not in dock.count.text()
+
+
+def test_the_reviewed_layer_is_the_active_one_for_the_undo_of_qgis(dock, layer, qgis_iface):
+    other = vector("Polygon", [])
+    QgsProject.instance().addMapLayer(other)
+    qgis_iface.setActiveLayer(other)
+    press(dock, Qt.Key.Key_K)
+    assert qgis_iface.activeLayer() == layer
+
+
+def test_decisions_are_saved_with_the_layer_when_the_window_closes(layer, qgis_iface, tmp_path, request):
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    path = str(tmp_path / "footprints.gpkg")
+    QgsVectorFileWriter.writeAsVectorFormatV3(layer, path, QgsProject.instance().transformContext(), options)
+    stored = QgsVectorLayer(path, "stored")
+    QgsProject.instance().addMapLayer(stored)
+    dock = request.getfixturevalue("dock")
+    dock.follow(stored)
+    press(dock, Qt.Key.Key_D)
+    assert "Steps to save: 1" in dock.count.text()
+    dock.close()
+    assert decisions(QgsVectorLayer(path, "again")) == {1: None, 2: None, 3: "deleted", 4: None}
+    again = show_review(qgis_iface, stored)
+    assert again is dock
+    assert current(again) == "2"
+
+
+def test_deleted_buildings_are_faint_until_they_are_removed(dock, layer):
+    press(dock, Qt.Key.Key_D)
+    symbol = layer.renderer().symbol()
+    opacity = symbol.dataDefinedProperties().property(symbol.Property.Opacity)
+    assert "deleted" in opacity.expressionString()
+    assert layer.featureCount() == 4
+    next(one for one in dock.actions() if one.text() == "Remove deleted").trigger()
+    QCoreApplication.processEvents()
+    assert sorted(decisions(layer)) == [1, 2, 4]
+    assert listed(dock) == ["2"]
+    layer.undoStack().undo()
+    QCoreApplication.processEvents()
+    assert sorted(decisions(layer)) == [1, 2, 3, 4]
+
+
+def test_a_building_is_merged_with_the_one_it_touches(dock, layer):
+    press(dock, Qt.Key.Key_N)
+    press(dock, Qt.Key.Key_M)
+    assert listed(dock) == ["3"]
+    merged = layer.getFeature(1)
+    wanted = {"area": 125.0, "volume": 350.0, "points": 240, "confidence": 0.9, "review": "changed"}
+    assert {name: value_of(layer, merged, name) for name in wanted} == wanted
+    assert layer.featureCount() == 3
+
+
+def test_buildings_apart_are_not_merged(dock, layer, qgis_iface):
+    layer.selectByExpression('"id" = 1')
+    press(dock, Qt.Key.Key_M)
+    assert layer.featureCount() == 4
+    assert not layer.undoStack().canUndo()
+    with pytest.raises(ValueError, match="don't touch"):
+        dock.review.merge(dock._fid)
+    layer.removeSelection()
+    with pytest.raises(ValueError, match="0 buildings touch this one"):
+        dock.review.merge(dock._fid)
+
+
+def split(layer):
+    """What QGIS's tool does with a line across the third square."""
+    layer.beginEditCommand("Features split")
+    layer.splitFeatures(QgsLineString([QgsPoint(44, -1), QgsPoint(44, 11)]), False, False)
+    layer.endEditCommand()
+
+
+def test_a_divided_building_shares_its_numbers(dock, layer, qgis_iface):
+    press(dock, Qt.Key.Key_L)
+    assert qgis_iface.actionSplitFeatures().trigger.called
+    assert layer.selectedFeatureIds() == [dock._fid]
+    split(layer)
+    QCoreApplication.processEvents()
+    parts = list(layer.getFeatures(QgsFeatureRequest().setFilterExpression("\"review\" = 'changed'")))
+    found = sorted(
+        (value_of(layer, one, "area"), value_of(layer, one, "volume"), value_of(layer, one, "points")) for one in parts
+    )
+    assert found == [(40.0, 80.0, 40), (60.0, 120.0, 60)]
+    assert sorted(value_of(layer, one, "id") for one in parts) == [3, 5]
+    layer.undoStack().undo()
+    QCoreApplication.processEvents()
+    assert decisions(layer) == {1: None, 2: None, 3: None, 4: None}
+    assert layer.featureCount() == 4
+
+
+def test_an_outline_that_any_tool_changes_is_recorded(layer):
+    review = Review(layer, print)
+    layer.startEditing()
+    layer.beginEditCommand("Moved vertex")
+    layer.changeGeometry(1, QgsGeometry.fromWkt(square(0, 20)))
+    layer.endEditCommand()
+    assert value_of(layer, layer.getFeature(1), "review") == "changed"
+    assert value_of(layer, layer.getFeature(1), "area") == 400.0
+    layer.undoStack().undo()
+    assert value_of(layer, layer.getFeature(1), "review") is None
+    assert layer.undoStack().canRedo()
+    review.end()
+
+
+def test_a_layer_that_leaves_the_project_is_forgotten(dock, layer):
+    QgsProject.instance().removeMapLayer(layer)
+    QCoreApplication.processEvents()
+    assert dock.review is None
+    assert listed(dock) == []
