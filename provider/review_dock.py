@@ -26,6 +26,7 @@ from qgis.PyQt.QtWidgets import (
 from ..algorithms.quality.report_buildings import SURE
 from .menu import REVIEW_WINDOW
 from .review import CONFIDENCE, DELETED, KEPT, REVIEW, Review, is_reviewable
+from .review_views import PointViews
 from .texts import tr
 
 # Columns of the list: attributes, and what they are called.
@@ -95,9 +96,10 @@ class ReviewDock(QDockWidget):
         self.list.header().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         self.list.currentItemChanged.connect(self._show)
         self.facts, self.count = QLabel(wordWrap=True), QLabel(wordWrap=True)
+        self.views = PointViews()
         self.setWidget(QWidget())
         layout = QVBoxLayout(self.widget())
-        for widget in (self.filter, self.list, self.facts):
+        for widget in (self.filter, self.list, self.facts, self.views):
             layout.addWidget(widget)
         layout.addLayout(self._buttons())
         layout.addWidget(self.count)
@@ -205,6 +207,7 @@ class ReviewDock(QDockWidget):
         why = [self.review.value(self._listed[self.row], name) for name in ("reason", "evidence")]
         self.facts.setText(html.escape(": ".join(one for one in why if one)))
         self._band.setToGeometry(outline, layer)
+        self.views.show_building(layer, outline)
         if self._fid != before:
             box = self.canvas.mapSettings().layerExtentToOutputExtent(layer, outline.boundingBox())
             box.scale(_AROUND)

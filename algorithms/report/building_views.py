@@ -1,9 +1,8 @@
-"""Views of single buildings: their points from above and from the side, as SVG within the page."""
+"""Views of single buildings: their points from above and in sections, as SVG."""
 
 from __future__ import annotations
 
 import html
-from typing import Optional
 
 import numpy as np
 
@@ -16,7 +15,13 @@ _WIDTH, _HEIGHT = 340, 240
 # Width of the surroundings of a building in its view, m.
 _AROUND = 4.0
 
-# Height left empty below the lowest and above the highest point of a view from the south, m.
+# Half of the thickness of a section, m: each roof has points in it where there is one per square meter.
+_HALF = 1.0
+
+# Colors of the sections along and across a building.
+_CUTS = ("#004488", "#aa4499")
+
+# Height left empty below the lowest and above the highest point of a section, m.
 _ROOM = 1.0
 
 # Colors of a view (red, green, blue): background, other points, points of buildings.
@@ -60,46 +65,74 @@ def boxes_around(geometries: list) -> np.ndarray:
 def draw_views(views: Views, geometries: list, captions: list[str]) -> str:
     """Return the HTML of the views of doubtful buildings (rings of each, m), each under its caption."""
     parts = ["<h2>Doubtful buildings</h2>"]
-    parts.append("<p>From above with the footprint, and from the south. Points of buildings are red.</p>")
+    parts.append(
+        "<p>From above with the footprint, and in sections of 2 m along and across it. Points of buildings are red.</p>"
+    )
     for rings, (low, high), caption in zip(geometries, boxes_around(geometries), captions):
-        outer = np.asarray(rings[0])[:, :2]
         rows = views.near(low, high)
-        xyz, is_building = views.xyz[rows], views.is_building[rows]
         middle = position(*((low + high) / 2).tolist())
         parts.append(f'<div class="building"><p>{html.escape(caption)} At {middle}.</p>')
-        parts.append(_view(xyz[:, :2], xyz[:, 2], is_building, low, high, outer))
-        if len(xyz):
-            floor, top = xyz[:, 2].min() - _ROOM, xyz[:, 2].max() + _ROOM
-            ends = np.array([low[0], floor]), np.array([high[0], top])
-            parts.append(_view(xyz[:, [0, 2]], -xyz[:, 1], is_building, *ends, None))
+        parts += draw_sections(views.xyz[rows], views.is_building[rows], np.asarray(rings[0])[:, :2])
         parts.append("</div>")
     return "\n".join(parts)
+
+
+def draw_sections(xyz: np.ndarray, kind: np.ndarray, ring: np.ndarray, colors: np.ndarray = _COLORS) -> list[str]:
+    """Return the SVGs of the points around a building: from above, and in sections along and across its middle.
+
+    Parameters
+    ----------
+    xyz, kind : ndarray of shape (n, 3) and (n,)
+        Coordinates (m), and which color each point has, counted from the second. Without points there are no sections.
+    ring : ndarray of shape (m, 2)
+        Closed outline of the building, m. Its longest side is the direction of the first section.
+    colors : ndarray of shape (k, 3)
+        Red, green and blue of the background and of the points.
+    """
+    sides = np.diff(ring, axis=0)
+    east, north = sides[np.argmax(np.hypot(*sides.T))]
+    axes = np.array([[east, -north], [north, east]]) / np.hypot(east, north)
+    turned, corners = xyz[:, :2] @ axes, ring @ axes
+    ends = np.array([corners.min(axis=0), corners.max(axis=0)])
+    lines, sections = [(ring, "#222")], []
+    for axis, color in enumerate(_CUTS if len(xyz) else ()):
+        cut = np.repeat([ends.mean(axis=0)], 2, axis=0)
+        is_in = np.abs(turned[:, 1 - axis] - cut[0, 1 - axis]) <= _HALF
+        cut[:, axis] = ends[:, axis] + (-_AROUND, _AROUND)
+        lines.append((cut @ axes.T, color))
+        seen = xyz[is_in, 2] if is_in.any() else xyz[:, 2]
+        heights = np.array([seen.min() - _ROOM, seen.max() + _ROOM])
+        walls = [(np.column_stack([[at, at], heights]), color) for at in ends[:, axis]]
+        plane = np.column_stack([turned[:, axis], xyz[:, 2]])[is_in]
+        sections.append(
+            _view(plane, plane[:, 1], kind[is_in], *np.column_stack([cut[:, axis], heights]), walls, colors)
+        )
+    return [_view(xyz[:, :2], xyz[:, 2], kind, *boxes_around([[ring]])[0], lines, colors), *sections]
 
 
 def _view(
     plan: np.ndarray,
     depth: np.ndarray,
-    is_building: np.ndarray,
+    kind: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
-    ring: Optional[np.ndarray],
+    lines: list[tuple[np.ndarray, str]],
+    colors: np.ndarray,
 ) -> str:
-    """Return the SVG of points (n, 2), those of the greatest ``depth`` (n,) drawn last, and of a ring (m, 2) over them.
+    """Return the SVG of points (n, 2), those of the greatest ``depth`` (n,) drawn last, and of colored lines over them.
 
     All are in meters within the box from ``low`` to ``high`` (2,).
     """
     size = float(max((high - low) / (_WIDTH, _HEIGHT)))
-    columns, lines = np.maximum(np.ceil((high - low) / size), 1).astype(int)
-    image = np.zeros((lines, columns), np.uint8)
+    columns, rows = np.maximum(np.ceil((high - low) / size), 1).astype(int)
+    image = np.zeros((rows, columns), np.uint8)
     order = np.argsort(depth, kind="stable")
     column, row = ((plan[order] - low) / size).astype(int).T
     for right, up in _DOT:
-        image[np.clip(row + up, 0, lines - 1), np.clip(column + right, 0, columns - 1)] = 1 + is_building[order]
-    drawn = svg_image(image[::-1], _COLORS, (0.0, 0.0, columns, lines))
-    outline = ""
-    if ring is not None:
-        points = " ".join(f"{x:.1f},{lines - y:.1f}" for x, y in (ring - low) / size)
-        outline = f'<polygon points="{points}" fill="none" stroke="#222" stroke-width="1.2"/>'
-    return (
-        f'<svg class="view" viewBox="0 0 {columns} {lines}" width="{columns}" height="{lines}">{drawn}{outline}</svg>'
-    )
+        image[np.clip(row + up, 0, rows - 1), np.clip(column + right, 0, columns - 1)] = 1 + kind[order]
+    drawn = svg_image(image[::-1], colors, (0.0, 0.0, columns, rows))
+    for line, color in lines:
+        points = " ".join(f"{x:.1f},{rows - y:.1f}" for x, y in (line - low) / size)
+        drawn += f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.2"/>'
+    names = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+    return f'<svg class="view" {names} viewBox="0 0 {columns} {rows}" width="{columns}" height="{rows}">{drawn}</svg>'

@@ -7060,6 +7060,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Points of a building</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Points of a class in both are TP, in the reference only FN and in the input only FP. Completeness is TP / (TP + FN), correctness TP / (TP + FP), F their harmonic mean and intersection over union TP / (TP + FN + FP). The mean of the latter is that of the classes, as merged, that the reference has. Figures of ground (2), vegetation (3-5), building (6), water (9), wires and masts (13-16), bridges (17) and noise (7, 18) are outputs, too, however classes are merged. Classes of a reference that mean "everything else" (1) are best ignored.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8397,6 +8401,10 @@
     </message>
     <message>
         <source>The probability of building that was learned from the scene, from blue to red.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>The project has no point cloud here.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -11,7 +11,9 @@ from qgis.core import (
     QgsGeometry,
     QgsLineString,
     QgsPoint,
+    QgsPointCloudLayer,
     QgsProject,
+    QgsRectangle,
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
@@ -19,6 +21,8 @@ from qgis.PyQt.QtCore import QCoreApplication, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication
 
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.provider.review import Review
 from lidar_buildings.provider.review_dock import show_review
 from lidar_buildings.tests.provider.helpers import vector
@@ -238,6 +242,30 @@ def test_an_outline_that_any_tool_changes_is_recorded(layer):
     assert value_of(layer, layer.getFeature(1), "review") is None
     assert layer.undoStack().canRedo()
     review.end()
+
+
+def wait_for(pictures, tries=200):
+    while tries and (pictures[0].pixmap() is None or pictures[0].pixmap().isNull()):
+        QTest.qWait(20)
+        tries -= 1
+
+
+def test_the_points_of_the_current_building_are_drawn_by_class(layer, dock, town, tmp_path):
+    """A square with a roof of 8 m in its middle; the footprints of the layer lie elsewhere."""
+    assert "no point cloud" in dock.views.pictures[0].text()
+    path = tmp_path / "town.copc.laz"
+    write_cloud(create_cloud(town, wkt="EPSG:28992"), path)
+    QgsProject.instance().addMapLayer(QgsPointCloudLayer(str(path), "town", "copc"))
+    outline = QgsGeometry.fromRect(QgsRectangle(85_006, 446_006, 85_014, 446_014))
+    dock.views.show_building(layer, outline)
+    wait_for(dock.views.pictures)
+    for picture in dock.views.pictures:
+        image = picture.pixmap().toImage()
+        colors = [image.pixelColor(x, y) for x in range(image.width()) for y in range(image.height())]
+        # Roofs are red and ground is brown, as in the style of classes; scaling has paled both.
+        warm = [one.red() - one.green() for one in colors if one.red() - one.blue() > 40]
+        assert max(warm) > 80
+        assert min(warm) < 45
 
 
 def test_a_layer_that_leaves_the_project_is_forgotten(dock, layer):

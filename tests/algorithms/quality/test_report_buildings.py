@@ -54,9 +54,10 @@ def test_doubtful_buildings_come_least_sure_first_and_their_texts_are_escaped(fo
     page = report_buildings(*cloud, footprints).html
     assert re.findall(r"Building (\d+): confidence ([\d.]+)", page) == [("8", "0.45"), ("9", "0.65")]
     assert "Solid &amp; more; 38 % of the beam passes" in page
-    # Each from above and from the side; a footprint without points has one view.
-    assert page.count('<svg class="view"') == 4
-    assert page.count("<polygon") == 2
+    # Each from above and in two sections.
+    assert page.count('<svg class="view"') == 6
+    # The outline and two cuts, and two walls in each section.
+    assert page.count("<polyline") == 2 * (1 + 2 + 2 * 2)
 
 
 def test_the_map_has_each_footprint_in_the_color_of_its_confidence(footprints, cloud):
