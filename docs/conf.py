@@ -51,6 +51,14 @@ numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
 autodoc_typehints = "none"
 
+
+def trimmed(gallery_conf, fname) -> None:
+    """Save the pictures of examples without their margins."""
+    import matplotlib as mpl
+
+    mpl.rcParams["savefig.bbox"] = "tight"
+
+
 sphinx_gallery_conf = {
     "examples_dirs": "gallery_src",
     "gallery_dirs": "gallery",
@@ -59,6 +67,8 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "show_memory": False,
     "min_reported_time": 1,
+    "capture_repr": (),
+    "reset_modules": ("matplotlib", trimmed),
     "remove_config_comments": True,
     "within_subsection_order": "FileNameSortKey",
     "nested_sections": False,

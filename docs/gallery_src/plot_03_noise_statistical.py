@@ -3,11 +3,23 @@ Noise by distance
 =================
 
 A point is noise when the mean distance to its nearest points exceeds the mean of the cloud by several
-standard deviations.
+standard deviations. Noise is yellow here.
 """
 
-from scenes import profile, step, town
+import matplotlib.pyplot as plt
+import numpy as np
 
-cloud, truth = town(size=80.0, noise_points=200.0)
-found = step("classify_noise_statistical", cloud).cloud
-profile(found, title="noise in black", aspect="auto")
+from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.stages import STAGES
+
+cloud = run_stage(STAGES["simulate_town"], size=80.0, density=8.0, noise_points=200.0).cloud
+cloud.set("classification", np.zeros(len(cloud), np.uint8))
+found = run_stage(STAGES["classify_noise_statistical"], cloud).cloud
+
+xyz = found.get("xyz")
+is_noise = np.isin(found.get("classification"), [7, 18])
+plt.style.use("dark_background")
+ax = plt.subplots(figsize=(8, 4))[1]
+ax.scatter(xyz[:, 0], xyz[:, 2], s=1, c=xyz[:, 2], cmap="cool", vmax=20)
+ax.scatter(xyz[is_noise, 0], xyz[is_noise, 2], s=8, c="yellow")
+ax.set(xlabel="easting (m)", ylabel="elevation (m)")

@@ -8,17 +8,26 @@ Planes of the roof, an arrangement of their lines in the footprint, and a closed
 import matplotlib.pyplot as plt
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-from scenes import after, town
 
-cloud, truth = town(size=60.0)
-results = after("model_buildings", cloud)
-figure = plt.figure(figsize=(7, 6))
-ax = figure.add_subplot(projection="3d")
-for name, color in (("walls", "#d7ccc8"), ("roofs", "#c62828")):
-    for rings in results.layers[name].geometries:
-        ring = np.asarray(rings[0])
-        if ring.shape[1] == 3:
-            ax.add_collection3d(Poly3DCollection([ring], facecolor=color, edgecolor="#5d4037", linewidth=0.4))
-xyz = results.cloud.get("xyz")
-ax.set(xlim=(xyz[:, 0].min(), xyz[:, 0].max()), ylim=(xyz[:, 1].min(), xyz[:, 1].max()))
-ax.set_zlim(xyz[:, 2].min(), xyz[:, 2].min() + 30)
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline, run_stage
+from lidar_buildings.algorithms.stages import STAGES
+
+town = {"size": 80.0, "density": 8.0, "buildings": 34.0, "trees": 25.0, "forest": 0.05, "river": False}
+cloud = run_stage(STAGES["simulate_town"], noise_points=0.0, **town).cloud
+cloud.set("classification", np.zeros(len(cloud), np.uint8))
+results = run_pipeline(PIPELINES["model_buildings"], cloud)
+
+# %%
+# Walls and roofs are layers of polygons in three dimensions.
+plt.style.use("dark_background")
+ax = plt.figure(figsize=(8, 4.5)).add_axes((0, 0, 1, 1), projection="3d")
+for name, color in (("walls", "wheat"), ("roofs", "tomato")):
+    faces = [np.asarray(rings[0]) for rings in results.layers[name].geometries]
+    ax.add_collection3d(Poly3DCollection(faces, facecolor=color, edgecolor="black", linewidth=0.5))
+corners = np.concatenate([np.asarray(rings[0]) for rings in results.layers["walls"].geometries])
+(west, south, bottom), (east, north, top) = corners.min(axis=0), corners.max(axis=0)
+ax.set(xlim=(west, east), ylim=(south, north), zlim=(bottom, top))
+ax.set_box_aspect((east - west, north - south, top - bottom), zoom=1.3)
+ax.view_init(elev=35, azim=-65)
+ax.set_axis_off()

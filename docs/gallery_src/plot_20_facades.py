@@ -2,21 +2,33 @@
 Facades of a street
 ===================
 
-Upright planes of a vehicle's scan, their outlines, windows and doors :cite:p:`peng2018`.
+Upright planes of a vehicle's scan, with their outlines, and the windows and doors in them :cite:p:`peng2018`.
 """
 
 import matplotlib.pyplot as plt
 import numpy as np
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-from scenes import simulated, step
 
-cloud = simulated("simulate_street", length=30.0, clutter=False, line_rate=50.0).cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline, run_stage
+from lidar_buildings.algorithms.stages import STAGES
+
+cloud = run_stage(STAGES["simulate_street"], length=30.0, clutter=False, line_rate=50.0).cloud
 cloud.set("classification", np.zeros(len(cloud), np.uint8))
-found = step("extract_facades", cloud)
-figure = plt.figure(figsize=(8, 5))
-ax = figure.add_subplot(projection="3d")
-for rings in found.layers["facades"].geometries:
-    ax.add_collection3d(Poly3DCollection([np.asarray(rings[0])], facecolor="#ffcc80", edgecolor="#5d4037"))
-xyz = found.cloud.get("xyz")
-ax.set(xlim=(xyz[:, 0].min(), xyz[:, 0].max()), ylim=(xyz[:, 1].min(), xyz[:, 1].max()))
-ax.set_zlim(xyz[:, 2].min(), xyz[:, 2].max())
+results = run_pipeline(PIPELINES["model_facades"], cloud)
+
+# %%
+# Both sides of the street: facades that look north, and those that look south, with their windows and doors.
+facades, openings = results.layers["openings_facades"], results.layers["openings"]
+looks_north = np.cos(np.deg2rad(facades.columns["azimuth"])) > 0
+side_of = dict(zip(facades.columns["id"], looks_north))
+plt.style.use("dark_background")
+axes = plt.subplots(2, 1, figsize=(8, 6))[1]
+for number, rings in enumerate(facades.geometries):
+    wall, color = np.asarray(rings[0]), plt.get_cmap("Set2")(number % 8)
+    axes[int(looks_north[number])].fill(wall[:, 0], wall[:, 2], facecolor=color, edgecolor="white")
+for facade, rings in zip(openings.columns["facade"], openings.geometries):
+    hole = np.asarray(rings[0])
+    axes[int(side_of[facade])].fill(hole[:, 0], hole[:, 2], facecolor="midnightblue", edgecolor="white")
+for ax, title in zip(axes, ("facades that look south", "facades that look north")):
+    ax.set(aspect="equal", title=title, ylabel="elevation (m)")
+plt.tight_layout()
