@@ -1,11 +1,12 @@
-"""Questions to the user."""
+"""Questions to the user, and messages with something to do."""
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Any, Callable, Optional
 
+from qgis.core import Qgis
 from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QMessageBox, QWidget
+from qgis.PyQt.QtWidgets import QMessageBox, QPushButton, QWidget
 
 
 def question_box(parent: Optional[QWidget], title: str, text: str) -> QMessageBox:
@@ -23,3 +24,12 @@ def question_box(parent: Optional[QWidget], title: str, text: str) -> QMessageBo
 def is_answered_yes(parent: Optional[QWidget], title: str, text: str) -> bool:
     """Ask, and return whether the answer is Yes."""
     return question_box(parent, title, text).exec() == QMessageBox.StandardButton.Yes
+
+
+def push_with_button(iface: Any, title: str, text: str, label: str, run: Callable[[], Any]) -> None:
+    """Show a message above the map with a button."""
+    item = iface.messageBar().createMessage(title, text)
+    button = QPushButton(label, item)
+    button.clicked.connect(run)
+    item.layout().addWidget(button)
+    iface.messageBar().pushWidget(item, Qgis.MessageLevel.Info)

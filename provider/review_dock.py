@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from typing import Any, Callable, Optional
 
-from qgis.core import Qgis, QgsFeature, QgsProject, QgsVectorLayer
+from qgis.core import Qgis, QgsExpression, QgsFeature, QgsFeatureRequest, QgsProject, QgsVectorLayer
 from qgis.gui import QgsMapTool, QgsRubberBand
 from qgis.PyQt.QtCore import QEvent, Qt, QTimer
 from qgis.PyQt.QtGui import QColor, QKeySequence
@@ -25,9 +25,11 @@ from qgis.PyQt.QtWidgets import (
 
 from ..algorithms.quality.report_buildings import SURE
 from .menu import REVIEW_WINDOW
+from .questions import push_with_button
 from .review import CONFIDENCE, DELETED, KEPT, REVIEW, Review, is_reviewable
 from .review_views import PointViews
 from .texts import tr
+from .view3d import look_at, view_angles
 
 # Columns of the list: attributes, and what they are called.
 _COLUMNS = {
@@ -45,6 +47,9 @@ _FILTERS = {
     f'"{REVIEW}" IS NULL': "Not yet reviewed",
     "TRUE": "All buildings",
 }
+
+# Attributes with the elevation of the ground, and the height above it.
+_HEIGHTS = ("ground_elevation", "height")
 
 # Width of the map, in those of the building.
 _AROUND = 4.0
@@ -68,6 +73,19 @@ def show_review(iface: Any, layer: Optional[QgsVectorLayer] = None) -> ReviewDoc
     dock.follow(next(filter(is_reviewable, offered), None))
     dock.list.setFocus()
     return dock
+
+
+def offer_review(iface: Any, layer: QgsVectorLayer) -> None:
+    """Say how many buildings a run has found, with a button for their review."""
+    doubtful = QgsFeatureRequest(QgsExpression(next(iter(_FILTERS)))).setFlags(Qgis.FeatureRequestFlag.NoGeometry)
+    count, name = sum(1 for _ in layer.getFeatures(doubtful)), layer.id()
+    push_with_button(
+        iface,
+        tr("LiDAR Buildings"),
+        tr("{} buildings, {} of them doubtful.").format(layer.featureCount(), count),
+        tr("Review buildings…"),
+        lambda: show_review(iface, QgsProject.instance().mapLayer(name)),
+    )
 
 
 class ReviewDock(QDockWidget):
@@ -213,6 +231,9 @@ class ReviewDock(QDockWidget):
             box.scale(_AROUND)
             self.canvas.setExtent(box)
             self.canvas.refresh()
+            low, height = (self.review.value(self._listed[self.row], name) or 0.0 for name in _HEIGHTS)
+            for canvas in self.iface.mapCanvases3D():
+                look_at(canvas, box, low, low + height, *view_angles([]))
 
     def _count(self) -> None:
         """Say how many are reviewed, and that decisions are to be saved."""

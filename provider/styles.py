@@ -19,6 +19,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 from qgis.PyQt import sip
+from qgis.utils import iface
 
 try:
     from qgis._3d import QgsPointCloudLayer3DRenderer
@@ -84,6 +85,11 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         stack_results(context)
         if len(context.layersToLoadOnCompletion()) == 1:
             put_below(layer, context)
+        if self.stem == "footprints" and iface is not None:
+            # Late: without a desktop nobody needs its widgets.
+            from .review_dock import offer_review
+
+            offer_review(iface, layer)
         node = context.project().layerTreeRoot().findLayer(layer.id()) if self.is_off else None
         if node is not None:
             node.setItemVisibilityChecked(False)

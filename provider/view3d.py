@@ -8,7 +8,6 @@ from itertools import islice
 from typing import Any
 
 from qgis.core import (
-    Qgis,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsLayerTree,
@@ -21,9 +20,9 @@ from qgis.core import (
     QgsWkbTypes,
 )
 from qgis.gui import QgsProjectionSelectionDialog
-from qgis.PyQt.QtWidgets import QPushButton
 
 from .named_clouds import SIMULATED_CRS
+from .questions import push_with_button
 from .texts import tr
 
 # Angle (°) of the camera from straight down: seen from above, walls would be lines.
@@ -61,11 +60,15 @@ def show_view(iface: Any) -> None:
     for layer in layers:
         change = QgsCoordinateTransform(layer.crs(), settings.crs(), QgsProject.instance())
         extent.combineExtentWith(change.transformBoundingBox(layer.extent()))
-    middle, origin = extent.center(), settings.origin()
-    low, high = heights_of(layers)
+    look_at(canvas, extent, *heights_of(layers), *view_angles(layers))
+
+
+def look_at(canvas: Any, extent: QgsRectangle, low: float, high: float, pitch: float, yaw: float) -> None:
+    """Look at a box: its extent in the system of the view, its elevations, and the angles (°) of the camera."""
+    middle, origin = extent.center(), canvas.mapSettings().origin()
     at = QgsVector3D(middle.x() - origin.x(), (low + high) / 2 - origin.z(), -(middle.y() - origin.y()))
     away = _AWAY * max(extent.width(), extent.height(), high - low, 1.0)
-    canvas.cameraController().setLookingAtPoint(at, away, *view_angles(layers))
+    canvas.cameraController().setLookingAtPoint(at, away, pitch, yaw)
 
 
 def _give_metric_system(iface: Any, layers: list[QgsMapLayer]) -> None:
@@ -78,13 +81,8 @@ def _give_metric_system(iface: Any, layers: list[QgsMapLayer]) -> None:
     project.setCrs(found or QgsCoordinateReferenceSystem(SIMULATED_CRS))
     if found is not None:
         return
-    item = iface.messageBar().createMessage(
-        tr("3D"), tr("The layers name no coordinate reference system; they are shown in local meters.")
-    )
-    button = QPushButton(tr("Choose a system…"))
-    button.clicked.connect(lambda: _choose_system(iface))
-    item.layout().addWidget(button)
-    iface.messageBar().pushWidget(item, Qgis.MessageLevel.Info)
+    text = tr("The layers name no coordinate reference system; they are shown in local meters.")
+    push_with_button(iface, tr("3D"), text, tr("Choose a system…"), lambda: _choose_system(iface))
 
 
 def _choose_system(iface: Any) -> None:

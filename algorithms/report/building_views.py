@@ -104,10 +104,10 @@ def draw_sections(xyz: np.ndarray, kind: np.ndarray, ring: np.ndarray, colors: n
         heights = np.array([seen.min() - _ROOM, seen.max() + _ROOM])
         walls = [(np.column_stack([[at, at], heights]), color) for at in ends[:, axis]]
         plane = np.column_stack([turned[:, axis], xyz[:, 2]])[is_in]
-        sections.append(
-            _view(plane, plane[:, 1], kind[is_in], *np.column_stack([cut[:, axis], heights]), walls, colors)
-        )
-    return [_view(xyz[:, :2], xyz[:, 2], kind, *boxes_around([[ring]])[0], lines, colors), *sections]
+        low, high = np.column_stack([cut[:, axis], heights])
+        sections.append(_view(plane, plane[:, 1], kind[is_in], low, high, walls, colors))
+    low, high = boxes_around([[ring]])[0]
+    return [_view(xyz[:, :2], xyz[:, 2], kind, low, high, lines, colors), *sections]
 
 
 def _view(

@@ -5904,6 +5904,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>LiDAR Buildings</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>LiDAR Buildings: installation</source>
         <translation type="unfinished"></translation>
     </message>
@@ -9109,6 +9113,10 @@
     </message>
     <message>
         <source>{} buildings touch this one; select those to merge it with.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>{} buildings, {} of them doubtful.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

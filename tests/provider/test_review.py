@@ -14,15 +14,17 @@ from qgis.core import (
     QgsPointCloudLayer,
     QgsProject,
     QgsRectangle,
+    QgsVector3D,
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QCoreApplication, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QApplication
+from qgis.PyQt.QtWidgets import QApplication, QDockWidget, QPushButton
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import write_cloud
+from lidar_buildings.provider import styles
 from lidar_buildings.provider.review import Review
 from lidar_buildings.provider.review_dock import show_review
 from lidar_buildings.tests.provider.helpers import vector
@@ -266,6 +268,47 @@ def test_the_points_of_the_current_building_are_drawn_by_class(layer, dock, town
         warm = [one.red() - one.green() for one in colors if one.red() - one.blue() > 40]
         assert max(warm) > 80
         assert min(warm) < 45
+
+
+class View3D:
+    """What is asked of a 3D view: its origin, and where its camera looks."""
+
+    def mapSettings(self):
+        return self
+
+    def origin(self):
+        return QgsVector3D(100.0, 0.0, 0.0)
+
+    def cameraController(self):
+        return self
+
+    def setLookingAtPoint(self, *given):
+        self.given = given
+
+
+def test_open_3d_views_look_at_the_building(dock, qgis_iface, monkeypatch):
+    view = View3D()
+    monkeypatch.setattr(qgis_iface, "mapCanvases3D", lambda: [view], raising=False)
+    press(dock, Qt.Key.Key_N)
+    at, away, pitch, _ = view.given
+    # The second building is 5 m wide, from 10 m on.
+    assert (at.x(), at.z()) == (12.5 - 100.0, -2.5)
+    assert away > 10.0
+    assert pitch == 55.0
+
+
+def test_a_run_that_made_footprints_offers_the_review(layer, qgis_iface, context, log, monkeypatch, request):
+    monkeypatch.setattr(styles, "iface", qgis_iface)
+    styles.Styler("facades").postProcessLayer(layer, context, log)
+    assert qgis_iface.messageBar().currentItem() is None
+    styles.Styler("footprints").postProcessLayer(layer, context, log)
+    item = qgis_iface.messageBar().currentItem()
+    assert item.text() == "4 buildings, 2 of them doubtful."
+    item.findChild(QPushButton).click()
+    dock = qgis_iface.mainWindow().findChild(QDockWidget, "LidarBuildingsReview")
+    assert dock.review.layer == layer
+    qgis_iface.messageBar().clearWidgets()
+    assert request.getfixturevalue("dock") is dock
 
 
 def test_a_layer_that_leaves_the_project_is_forgotten(dock, layer):
