@@ -13,13 +13,14 @@ from qgis.core import (
     QgsProject,
     QgsReferencedRectangle,
 )
+from qgis.PyQt.QtCore import Qt, QUrl
 from qgis.PyQt.QtGui import QIcon
-from qgis.PyQt.QtWidgets import QAction, QDockWidget
+from qgis.PyQt.QtWidgets import QAction, QDockWidget, QTextBrowser
 
 from . import PROVIDER_ID
 from .clouds import file_of_layer
 from .inputs import EXTENT, INPUT
-from .paths import GROUP_ICONS, ICON
+from .paths import GROUP_ICONS, ICON, PLUGIN
 from .texts import tr
 
 MENU = "LiDAR Buildings"
@@ -41,7 +42,8 @@ def add_menu(iface: Any) -> Callable[[], None]:
     review = _action(iface, tr("Review buildings…"), GROUP_ICONS / "quality.svg", lambda: _review(iface))
     sample = _action(iface, tr("Open sample data"), GROUP_ICONS / "simulation.svg", lambda: _open_sample(iface))
     check = _action(iface, tr("Check installation…"), ICON, lambda: _check_installation(iface))
-    actions = (find, view, review, sample, check)
+    steps = _action(iface, tr("First steps"), ICON, lambda: _show_first_steps(iface))
+    actions = (find, view, review, sample, steps, check)
     for action in actions:
         iface.addPluginToMenu(MENU, action)
     iface.addToolBarIcon(find)
@@ -81,6 +83,16 @@ def _open_sample(iface: Any) -> None:
     from .sample import open_sample
 
     open_sample(iface)
+
+
+def _show_first_steps(iface: Any) -> None:
+    page = QTextBrowser(iface.mainWindow())
+    page.setWindowFlags(Qt.WindowType.Window)
+    page.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    page.setWindowTitle(tr("First steps"))
+    page.setSource(QUrl.fromLocalFile(str(PLUGIN / "docs" / "first_steps.md")))
+    page.resize(1060, 800)  # pixels: its pictures are 1000 wide
+    page.show()
 
 
 def _check_installation(iface: Any) -> None:

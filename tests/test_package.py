@@ -131,10 +131,11 @@ def test_icon_is_in_the_zip(contents, general):
     assert f"{PLUGIN}/{general['icon']}" in contents
 
 
-def test_pictures_that_the_readme_shows_are_in_the_zip(contents):
-    shown = re.findall(r"!\[[^]]*\]\(([^)]+)\)", contents[f"{PLUGIN}/README.md"].decode())
+@pytest.mark.parametrize(("folder", "page"), [("", "README.md"), ("docs/", "first_steps.md")])
+def test_pictures_that_users_are_shown_are_in_the_zip(contents, folder, page):
+    shown = re.findall(r"!\[[^]]*\]\(([^)]+)\)", contents[f"{PLUGIN}/{folder}{page}"].decode())
     assert shown
-    assert not [name for name in shown if f"{PLUGIN}/{name}" not in contents]
+    assert not [name for name in shown if f"{PLUGIN}/{folder}{name}" not in contents]
 
 
 def test_what_is_for_developers_stays_out(contents):

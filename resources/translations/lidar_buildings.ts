@@ -5152,6 +5152,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>First steps</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Flat halls</source>
         <translation type="unfinished"></translation>
     </message>

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
@@ -14,15 +15,16 @@ from qgis.core import (
     QgsProcessingOutputLayerDefinition,
     QgsRectangle,
 )
-from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QMessageBox
+from qgis.PyQt.QtCore import Qt, QUrl
+from qgis.PyQt.QtGui import QTextDocument
+from qgis.PyQt.QtWidgets import QMainWindow, QMessageBox, QTextBrowser
 
 import lidar_buildings
 from lidar_buildings.algorithms import package_versions, packages
 from lidar_buildings.algorithms.cloud import laspy_library
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.provider import dependencies, installation, questions
+from lidar_buildings.provider import dependencies, installation, menu, questions
 from lidar_buildings.provider.menu import open_dialog, view_parameters
 from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
 from lidar_buildings.provider.plugin import LOG, Plugin
@@ -54,6 +56,24 @@ def test_the_toolbox_menu_opens_graphs_of_composites_only(provider, qgis_applica
     assert not action.isEnabled()
     action.setData("a group", None)
     assert not action.isEnabled()
+
+
+def test_the_menu_shows_the_first_steps_with_their_pictures():
+    class Window:
+        window = QMainWindow()
+
+        def mainWindow(self):
+            return self.window
+
+    menu._show_first_steps(Window())
+    page = Window.window.findChild(QTextBrowser)
+    assert page.isVisible()
+    assert "A first result" in page.toPlainText()
+    shown = re.findall(r'<img src="([^"]+)"', page.toHtml())
+    assert "pictures/toolbox.png" in shown
+    for name in shown:
+        assert page.loadResource(QTextDocument.ResourceType.ImageResource, QUrl(name)), name
+    page.close()
 
 
 def test_the_graph_for_the_designer_is_a_model_of_the_users_own(provider):

@@ -69,7 +69,7 @@ def test_all_texts_of_menu_dialogs_and_options_are_in_the_file(provider, script,
     monkeypatch.setattr(ParametersPanel, "iface", None)
     interface = Interface()
     remove = add_menu(interface)
-    assert len(interface.entries) == 5
+    assert len(interface.entries) == 6
     assert all(entry.startswith("[") for entry in interface.entries), "nothing of the menu is left out"
     remove()
     add_options()()
