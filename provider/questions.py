@@ -27,9 +27,10 @@ def is_answered_yes(parent: Optional[QWidget], title: str, text: str) -> bool:
 
 
 def push_with_button(iface: Any, title: str, text: str, label: str, run: Callable[[], Any]) -> None:
-    """Show a message above the map with a button."""
+    """Show a message above the map with a button, which closes it."""
     item = iface.messageBar().createMessage(title, text)
     button = QPushButton(label, item)
     button.clicked.connect(run)
+    button.clicked.connect(lambda: iface.messageBar().popWidget(item))
     item.layout().addWidget(button)
     iface.messageBar().pushWidget(item, Qgis.MessageLevel.Info)

@@ -136,8 +136,7 @@ class Review:
 
     def prepare_division(self, fid: int) -> None:
         """Have QGIS's tool split this building alone, and share its volume and points by area."""
-        with self._command(tr("Attributes of the review")):
-            self._add_fields()
+        self._edit()
         for name in _SUMS:
             at = self._index(name)
             if at >= 0:
@@ -167,12 +166,16 @@ class Review:
             symbol.setDataDefinedProperty(QgsSymbol.Property.Opacity, faint)
         self.layer.triggerRepaint()
 
-    @contextmanager
-    def _command(self, text: str) -> Iterator[None]:
-        """Make all edits within it one step to undo."""
+    def _edit(self) -> None:
+        """Begin to edit, or say that it can't be."""
         if not (self.layer.isEditable() or self.layer.startEditing()):
             what = tr("{} can't be edited; export it to a GeoPackage and review that.")
             raise ValueError(what.format(self.layer.name()))
+
+    @contextmanager
+    def _command(self, text: str) -> Iterator[None]:
+        """Make all edits within it one step to undo."""
+        self._edit()
         self.layer.beginEditCommand(text)
         try:
             yield

@@ -66,7 +66,7 @@ def show_review(iface: Any, layer: Optional[QgsVectorLayer] = None) -> ReviewDoc
     dock = iface.mainWindow().findChild(QDockWidget, REVIEW_WINDOW)
     if dock is None:
         dock = ReviewDock(iface)
-        iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, dock)
+        iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, dock, [], True)
     offered = (layer, iface.activeLayer(), *QgsProject.instance().mapLayers().values())
     dock.show()
     dock.raise_()
@@ -197,7 +197,7 @@ class ReviewDock(QDockWidget):
     def _texts(self, building: QgsFeature) -> list[str]:
         """Return the texts of a building in the list."""
         values = {name: self.review.value(building, name) for name in _COLUMNS}
-        numbers = {CONFIDENCE: ".2f", "area": ",.0f"}
+        numbers = {CONFIDENCE: ".2f", "area": ",.0f", "points": ",.0f"}
         return ["" if one is None else format(one, numbers.get(name, "")) for name, one in values.items()]
 
     def go_to(self, row: int) -> None:

@@ -3732,10 +3732,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Attributes of the review</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Automatic: 0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.</source>
         <translation type="unfinished"></translation>
     </message>
