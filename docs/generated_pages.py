@@ -9,6 +9,7 @@ from pathlib import Path
 
 from constants import constants_page, tiling_page
 
+from lidar_buildings.algorithms.captions import captions
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.cloud.reasons import Reason
@@ -17,6 +18,8 @@ from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Stage
 from lidar_buildings.algorithms.stages import STAGES
+
+ROOT = Path(__file__).resolve().parents[1]
 
 # Boxes of flow charts, in pixels of the picture.
 _BOX, _GAP, _WIDTH, _CHARACTER = 44, 46, 560, 6.6
@@ -95,7 +98,11 @@ def _passing(pipeline: Pipeline, step: Step) -> list[str]:
 
 
 def _page(path: Path, title: str, body: str) -> None:
-    path.write_text(f"---\norphan: true\n---\n# {title}\n\n```{{raw}} html\n{body}\n```\n", encoding="utf-8")
+    """Write the page on an algorithm: the picture of its help, where it has one, and its help."""
+    picture = ROOT / "resources" / "help" / "pictures" / f"{path.stem}.png"
+    shown = f"![{captions()[path.stem]}](../../../{picture.relative_to(ROOT)})\n\n" if picture.is_file() else ""
+    text = f"---\norphan: true\n---\n# {title}\n\n{shown}```{{raw}} html\n{body}\n```\n"
+    path.write_text(text, encoding="utf-8")
 
 
 def _algorithms() -> str:
