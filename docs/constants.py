@@ -106,7 +106,7 @@ def constants_of(module: ModuleType) -> list[Constant]:
     ]
     short = module.__name__.rsplit(".", 1)[1]
     return [
-        Constant(f"{short}.{name}", value, unit, why, f"{file}:{line}")
+        Constant(f"{short}.{name}", value, unit, re.sub(r":\w+:`\.?", "`", why), f"{file}:{line}")  # names, no roles
         for line, name, value, unit, why in sorted([*found, *_commented(lines)], key=lambda one: one[0])
     ]
 
