@@ -169,7 +169,7 @@ class ReviewDock(QDockWidget):
 
     def _forget(self) -> None:
         """Forget a layer that leaves the project."""
-        self.review = None
+        self.review, self._tool = None, None
         self.fill()
 
     def _changed(self, fid: Optional[int]) -> None:
@@ -185,6 +185,7 @@ class ReviewDock(QDockWidget):
 
     def fill(self, *_: Any) -> None:
         """List the buildings, and stay at the current one."""
+        self._later.stop()
         which = list(_FILTERS)[self.filter.currentIndex()]
         self._listed = self.review.buildings(which) if self.review else []
         fids = [one.id() for one in self._listed]
@@ -219,7 +220,7 @@ class ReviewDock(QDockWidget):
             self._tool = None
         self._band.reset(Qgis.GeometryType.Polygon)
         if self._fid is None:
-            self.facts.setText(tr("No building is listed; choose a layer of footprints, or list all."))
+            self.facts.setText(_nothing())
             return
         layer, outline = self.review.layer, self.review.layer.getGeometry(self._fid)
         why = [self.review.value(self._listed[self.row], name) for name in ("reason", "evidence")]
@@ -247,19 +248,25 @@ class ReviewDock(QDockWidget):
 
     def decide(self, decision: str) -> None:
         """Record a decision on the current building, and go to the next without one."""
-        self.review.decide(self._fid, decision)
+        self.review.decide(self._current(), decision)
         self.fill()
         self._go_to_open()
 
     def merge(self, review: Review) -> None:
         """Merge the current building with others."""
-        self._fid = review.merge(self._fid)
+        self._fid = review.merge(self._current())
 
     def divide(self, review: Review) -> None:
         """Have a line drawn that divides the current building; afterwards the tool is the one before."""
-        review.prepare_division(self._fid)
+        review.prepare_division(self._current())
         self._tool = self.canvas.mapTool()
         self.iface.actionSplitFeatures().trigger()
+
+    def _current(self) -> int:
+        """Return the current building, or refuse."""
+        if self._fid is None:
+            raise ValueError(_nothing())
+        return self._fid
 
     def _try(self, run: Callable[[Review], None]) -> None:
         """Do something, or say why it can't be done; the layer becomes the active one, for QGIS's own undo."""
@@ -274,3 +281,8 @@ class ReviewDock(QDockWidget):
     def closeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt asks for this name
         self._begin(None)
         super().closeEvent(event)
+
+
+def _nothing() -> str:
+    """Return what to do where the list is empty."""
+    return tr("No building is listed; choose a layer of footprints, or list all.")

@@ -243,6 +243,17 @@ def test_an_outline_that_any_tool_changes_is_recorded(layer):
     layer.undoStack().undo()
     assert value_of(layer, layer.getFeature(1), "review") is None
     assert layer.undoStack().canRedo()
+    # What a tool gives up is undone while its command is open; here the attributes stay.
+    review.decide(2, "kept")
+    changed = []
+    layer.attributeValueChanged.connect(lambda *given: changed.append(given))
+    layer.beginEditCommand("Given up")
+    layer.changeGeometry(1, QgsGeometry.fromWkt(square(0, 20)))
+    changed.clear()
+    layer.destroyEditCommand()
+    assert "changed" not in [value for *_, value in changed]
+    assert value_of(layer, layer.getFeature(1), "review") is None
+    assert value_of(layer, layer.getFeature(1), "area") == 100.0
     review.end()
 
 
@@ -268,6 +279,16 @@ def test_the_points_of_the_current_building_are_drawn_by_class(layer, dock, town
         warm = [one.red() - one.green() for one in colors if one.red() - one.blue() > 40]
         assert max(warm) > 80
         assert min(warm) < 45
+
+
+def test_keys_do_nothing_where_no_building_is_listed(dock, layer, qgis_iface):
+    layer.setSubsetString("false")
+    dock.fill()
+    assert listed(dock) == []
+    for key in "KDMLPN":
+        press(dock, getattr(Qt.Key, f"Key_{key}"))
+    assert not layer.isEditable()
+    assert "No building is listed" in dock.facts.text()
 
 
 class View3D:
