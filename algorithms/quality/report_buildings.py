@@ -69,7 +69,7 @@ def report_buildings(
     """Write a page on the buildings found: number, areas, heights, volumes, a map, and the doubtful ones.
 
     The map shows footprints colored by their confidence over a hillshade of the points. The ten buildings of the least
-    confidence below ``SURE`` are shown one by one, from above and from the side.
+    confidence below ``SURE`` are shown one by one, from above and in sections along and across.
 
     Parameters
     ----------

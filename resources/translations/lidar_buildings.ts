@@ -8328,7 +8328,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The map shows footprints colored by their confidence over a hillshade of the points. The ten buildings of the least confidence below 0.7 are shown one by one, from above and from the side.</source>
+        <source>The map shows footprints colored by their confidence over a hillshade of the points. The ten buildings of the least confidence below 0.7 are shown one by one, from above and in sections along and across.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
