@@ -20,6 +20,8 @@ from ..sampling.sufficiency import doubted, why_doubtful
 from ..stage import Monitor, Param, stage
 from .building_columns import column_size
 from .cell_features import CellFeatures, CellPoints
+from .edge_classes import decided_together
+from .scene_learning import RULES as HALVES
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
 from .space_cells import SpaceCells
 
@@ -40,9 +42,9 @@ class _Rules:
     edge: float = rule(
         2.0, "m", "fitted: points up to this far from a building's edge change; 3 m gain the same, 5 m 0.1 less"
     )
-    becomes: float = rule(0.7, "probability", "fitted: over it a point becomes building; over 0.8 gains 0.1 less")
+    becomes: float = rule(0.65, "probability", "fitted: over it a point by itself becomes building; 0.5 gains 0.2 less")
     ceases: float = rule(
-        0.15, "probability", "fitted: under it a point ceases to be building; under 0.1 gains 0.1 less"
+        0.17, "probability", "fitted: under it a point by itself ceases to be building; 0.2 gains the same"
     )
 
 
@@ -59,9 +61,9 @@ _RULES = _Rules()
         "reason": "where the cloud has them",
         "building_probability": "where the buildings of the scene could be learned",
     },
-    # Farther (m) than points change from an edge, and than two rings of cells around a point, of 4 m at 1 point/m²: one
-    # for the features of a cell, and one for smoothing.
-    reach=10.0,
+    # Squares with the margin that points are decided together in, and two rings of cells around each point, of 4 m at
+    # 1 point/m²: one for the features of a cell, and one for smoothing.
+    reach=HALVES.half + _RULES.edge + 8.0,
     of_whole=(_LEARNED,),
     cost=2.5,
 )
@@ -94,8 +96,9 @@ def refine_buildings(
 
     The classes at hand are the labels of a logistic regression. On one half of the scene it learns how points of
     buildings differ from all others in shape, height, returns and intensity. It then gives a probability to each point
-    of the other half, and the reverse. Points up to ``_RULES.edge`` m from the edge of a building change their class
-    where that strongly contradicts it. Nothing comes from outside the cloud.
+    of the other half, and the reverse. Points up to ``_RULES.edge`` m from the edge of a building then get new classes,
+    all together: those that contradict the probabilities, the classes so far and each other least. A minimum cut in the
+    graph of nearest neighbors finds them. Nothing comes from outside the cloud.
 
     Parameters
     ----------
@@ -152,6 +155,9 @@ def refine_buildings(
     neighborhoods, relevant features and efficient classifiers. ISPRS Journal of Photogrammetry and Remote Sensing 105,
     286-304 (features). [weinmann2015]
 
+    Greig, D.M., Porteous, B.T., Seheult, A.H., 1989. Exact maximum a posteriori estimation for binary images. Journal
+    of the Royal Statistical Society B 51(2), 271-279 (minimum cut). [greig1989]
+
     Examples
     --------
     >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
@@ -193,7 +199,7 @@ def refine_buildings(
     del labeled, likely
     monitor.progress(0.9)
 
-    # 3. Points near edges that strongly contradict their class.
+    # 3. The classes of points near edges, all together.
     becomes, ceases, nearest = scene.changes(probability[used], density)
     becomes, ceases = used[becomes], used[ceases]
     monitor.resolved(points_added=len(becomes), points_removed=len(ceases))
@@ -274,10 +280,15 @@ class _Scene:
         np.maximum.at(building, tuple(index[self.is_building] for index in cell), self.cluster_id[self.is_building])
         outside, nearest = ndimage.distance_transform_edt(building == 0, return_indices=True)
         inside = ndimage.distance_transform_edt(building > 0)
-        may_change = self.is_raised & (self.height > LASER.foot)
-        may_change &= (np.maximum(outside, inside)[cell] * size <= _RULES.edge) & (building.max() > 0)
-        becomes = np.flatnonzero(may_change & ~self.is_building & (probability > _RULES.becomes))
-        ceases = np.flatnonzero(may_change & self.is_building & (probability < _RULES.ceases))
+        distance = np.maximum(outside, inside)[cell] * size
+        # Points beyond the edges are neighbors of those that change. A part of a survey may hold no building.
+        near = (distance <= 2 * _RULES.edge) & (building.max() > 0)
+        rows = np.flatnonzero(self.is_raised & (self.height > LASER.foot) & near)
+        was = self.is_building[rows]
+        gain = _log_odds(probability[rows]) - _log_odds(np.where(was, _RULES.ceases, _RULES.becomes))
+        gain = np.where(distance[rows] <= _RULES.edge, gain, np.where(was, np.inf, -np.inf))
+        together = decided_together(self.xyz[rows], gain, 1 / float(np.sqrt(density)), HALVES.half, _RULES.edge)
+        becomes, ceases = rows[together & ~was], rows[was & ~together]
         of_nearest = building[tuple(nearest)]
         return becomes, ceases, of_nearest[tuple(index[becomes] for index in cell)]
 
@@ -289,6 +300,11 @@ def _returns(
     if return_number is None or number_of_returns is None or number_of_returns.max(initial=0) < 2:
         return None
     return return_number, number_of_returns
+
+
+def _log_odds(probability: np.ndarray) -> np.ndarray:
+    """Return the logarithms (n,) of the odds of probabilities (n,)."""
+    return np.log(probability / (1 - probability))
 
 
 def _of(values: Optional[np.ndarray], rows: np.ndarray) -> Optional[np.ndarray]:

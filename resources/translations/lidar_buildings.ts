@@ -5296,6 +5296,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Greig, D.M., Porteous, B.T., Seheult, A.H., 1989. Exact maximum a posteriori estimation for binary images. Journal of the Royal Statistical Society B 51(2), 271-279 (minimum cut).</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Grid cell size</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8236,7 +8240,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The classes at hand are the labels of a logistic regression. On one half of the scene it learns how points of buildings differ from all others in shape, height, returns and intensity. It then gives a probability to each point of the other half, and the reverse. Points up to 2 m from the edge of a building change their class where that strongly contradicts it. Nothing comes from outside the cloud.</source>
+        <source>The classes at hand are the labels of a logistic regression. On one half of the scene it learns how points of buildings differ from all others in shape, height, returns and intensity. It then gives a probability to each point of the other half, and the reverse. Points up to 2 m from the edge of a building then get new classes, all together: those that contradict the probabilities, the classes so far and each other least. A minimum cut in the graph of nearest neighbors finds them. Nothing comes from outside the cloud.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
