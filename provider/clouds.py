@@ -186,8 +186,8 @@ def file_of_layer(layer: QgsPointCloudLayer) -> Optional[Path]:
 def _known(title: str, path: Path) -> Path:
     if path.suffix.lower() not in SUFFIXES and (path.suffix or not is_on_web(path)):
         raise ValueError(
-            f"{title} must be a .las, .laz, .copc.laz or .vpc file, or STAC items (.json), got {path.name}; convert it "
-            "first."
+            f"{title} must be a .las, .laz, .copc.laz or .vpc file, ept.json or STAC items (.json), got {path.name}; "
+            "convert it first."
         )
     return path
 

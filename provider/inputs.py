@@ -54,7 +54,7 @@ def input_parameter(several: bool, title: str = "Point cloud") -> QgsProcessingP
         return with_help(
             CloudsParameter(INPUTS, tr("Point clouds")), tr("Files, layers or addresses on the web, one or more.")
         )
-    of_one = tr("File or layer of the points, or the address of a COPC file on the web (https://…).")
+    of_one = tr("File or layer of the points, or an address on the web (https://…) of COPC, EPT, VPC or STAC items.")
     return with_help(CloudParameter(INPUT, tr(title)), of_one)
 
 

@@ -26,6 +26,9 @@ _LOOK, _WORK = 100, 20
 class QgisTransport:
     """Requests by the network manager of QGIS, which each thread has its own of."""
 
+    # Replies of several threads at once end the process now and then: Python takes one for another that Qt deleted.
+    at_once = 1
+
     def get(self, url: str, first: int, last: int, login: str, is_stopped: Callable[[], bool]) -> Reply:
         """Ask for the bytes from ``first`` to ``last``; redirections are not followed."""
         request = QNetworkRequest(QUrl(url))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
 from .header import COPC_INFO, Header, truncated
+from .octree import Nodes, nodes_of
 
 # center, halfsize, spacing, root hierarchy offset and size, GPS time range, reserved
 INFO = struct.Struct("<3dddQQdd11Q")
@@ -17,21 +17,6 @@ INFO = struct.Struct("<3dddQQdd11Q")
 ENTRY = np.dtype([("key", "<i4", 4), ("offset", "<u8"), ("size", "<i4"), ("count", "<i4")])
 # In the field for the number of points: the entry leads to a further page of entries.
 _PAGE = -1
-# No octree is deeper: a cell of this level of the whole Earth is a hundredth of a millimeter wide.
-_DEEPEST = 42
-
-
-@dataclass(frozen=True)
-class CopcIndex:
-    """Nodes that have points, in the order of their chunks in the file."""
-
-    #: low, high, (m, 2): least and greatest easting and northing of each node, in coordinates of the file
-    low: np.ndarray
-    high: np.ndarray
-
-    def touch(self, box: np.ndarray) -> np.ndarray:
-        """Return which nodes (m,) touch a box (2, 2) in plan."""
-        return ((self.low <= box[1]) & (self.high >= box[0])).all(axis=1)
 
 
 def has_index(header: Header) -> bool:
@@ -46,8 +31,8 @@ def has_index(header: Header) -> bool:
     )
 
 
-def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray) -> CopcIndex:
-    """Return the index of a COPC file, checked against the chunks of points that the file has.
+def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray) -> Nodes:
+    """Return the nodes with points of a COPC file, in its order, checked against the chunks that the file has.
 
     Parameters
     ----------
@@ -74,17 +59,8 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
     held = chunks[chunks[:, 2] > 0]
     if not np.array_equal(found, held):
         raise _damaged(path, f"it names {len(found)} nodes that are not the {len(held)} chunks of the file")
-    level, position = nodes["key"][:, 0], nodes["key"][:, 1:3]
-    is_odd = (level < 0) | (level > _DEEPEST)
-    is_odd |= ((position < 0) | (position >= 2.0 ** np.clip(level, 0, _DEEPEST)[:, None])).any(axis=1)
-    if is_odd.any():
-        key = tuple(nodes["key"][is_odd][0, :3].tolist())
-        raise _damaged(path, f"it names a node {key} (level, column, row)")
-    side = (2 * half / 2.0**level)[:, None]
-    # Coordinates are rounded to steps of the scale, also those on the faces of nodes.
-    margin = header.scale[:2]
-    low = np.array([x, y]) - half + position * side
-    return CopcIndex(low - margin, low + side + margin)
+    keys, points = nodes["key"].astype(np.int64), found[:, 2]
+    return nodes_of(path, keys, points, np.array([x, y]) - half, np.full(2, 2 * half), header.scale[:2])
 
 
 def _nodes(path: Path, stream: BinaryIO, at: int, size: int, most: int) -> np.ndarray:

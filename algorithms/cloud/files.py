@@ -50,12 +50,12 @@ def read_cloud(
     read: CrsReader = read_crs,
     box: Optional[np.ndarray] = None,
 ) -> Cloud:
-    """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC) or of STAC items.
+    """Read a LAS, LAZ or COPC file, Entwine point tiles, or all tiles of a virtual point cloud (VPC) or of STAC items.
 
     Parameters
     ----------
     path : str or Path
-        Its extension (.las, .laz, .vpc, .json) says what it is.
+        Its extension (.las, .laz, .vpc, .json) says what it is; Entwine point tiles are described by their ept.json.
     monitor : Monitor, optional
         Receives progress, and warnings about units.
     read : callable
@@ -202,13 +202,15 @@ def _opened(
 ) -> tuple[list[Path], list[Header]]:
     """Return a file, or all its tiles that have points and are to be opened for a box, and their headers."""
     with readable(path):
-        return open_named(touching(named_files_of(path), box), monitor)
+        return open_named(touching(named_files_of(path), box), monitor, box)
 
 
-def open_named(named: dict[Path, Named], monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
-    """Return those of some files that have points, and their headers, with the CRS by which each is named."""
+def open_named(
+    named: dict[Path, Named], monitor: Optional[Monitor] = None, box: Optional[np.ndarray] = None
+) -> tuple[list[Path], list[Header]]:
+    """Return those of some files that have points, and their headers, with the CRS of each and a box as reach."""
     files, headers = open_headers(list(named), monitor)
-    return files, [replace(header, named=named[file].crs) for file, header in zip(files, headers)]
+    return files, [replace(header, named=named[file].crs, reach=box) for file, header in zip(files, headers)]
 
 
 def touching(named: dict[Path, Named], box: Optional[np.ndarray]) -> dict[Path, Named]:
@@ -266,8 +268,8 @@ def named_files_of(path: Path) -> dict[Path, Named]:
     kind = kind_of(path) or (STAC if is_on_web(path) and not path.suffix else "")
     if not kind:
         raise ValueError(
-            f"{path.name} is no point cloud that can be read; choose a .las, .laz, .copc.laz or .vpc file, or STAC "
-            "items (.json)."
+            f"{path.name} is no point cloud that can be read; choose a .las, .laz, .copc.laz or .vpc file, ept.json, "
+            "or STAC items (.json)."
         )
     if not path.is_file():
         raise ValueError(f"{path} does not exist; check the name.")

@@ -124,6 +124,8 @@ class Header:
     points_at: int = 0  #: Position of the points in the file
     vlrs: list[Vlr] = field(default_factory=list)
     evlrs: list[Vlr] = field(default_factory=list)
+    #: (2, 2): box in plan that nothing is read outside of, None for everywhere; it is not written
+    reach: Optional[np.ndarray] = None
     named: str = ""  #: CRS (WKT or "EPSG:code") that a virtual point cloud names for the file; it is not written
 
     @property

@@ -25,7 +25,7 @@ try:
 except ImportError:  # all others
     msvcrt = None  # type: ignore[assignment]
 
-LAS, LAZ, COPC, VPC, STAC = ".las", ".laz", ".copc.laz", ".vpc", ".json"
+LAS, LAZ, COPC, VPC, STAC, EPT = ".las", ".laz", ".copc.laz", ".vpc", ".json", "ept.json"
 
 # Working folders, hidden beside the targets: their names, which say what computer made them. Then the file that a
 # running program keeps open and locked in each, and the folder in it for old files while new ones take their places.
@@ -40,15 +40,17 @@ _UNLOCKED = 2.0
 
 
 def kind_of(path: Path) -> str:
-    """Return the extension that says how a file is written: LAS, LAZ, COPC, VPC, STAC or "" for any other."""
+    """Return the extension that says how a file is written: LAS, LAZ, COPC, VPC, STAC, EPT or "" for any other."""
     name = path.name.lower()
+    if name == EPT:
+        return EPT
     return next((kind for kind in (COPC, LAZ, LAS, VPC, STAC) if name.endswith(kind)), "")
 
 
 def stem_of(path: Path) -> str:
     """Return the name of a file without the extension that says how it is written."""
     kind = kind_of(path)
-    return path.name[: -len(kind)] if kind else path.name
+    return path.name[: -len(kind)] or "ept" if kind else path.name
 
 
 def check_output(path: Path, sources: Iterable[Path]) -> None:

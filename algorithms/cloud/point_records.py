@@ -11,6 +11,7 @@ import numpy as np
 from .crs import Crs
 from .dimensions import DIMENSIONS, Dimension
 from .extra_bytes import ExtraField, new_field
+from .header import LARGEST_STEP, Header
 from .point_formats import FORMATS, UPGRADED, Layout
 
 Index = Union[slice, np.ndarray]
@@ -199,3 +200,37 @@ def convert(points: np.ndarray, source: Layout, target: Layout, out: np.ndarray)
         stored = points[f"extra{at}"]
         same = not _has_numbers(field) or source.extras[at].same_numbers(field)
         out[f"extra{i}"] = stored if same else source.extras[at].decode(stored)
+
+
+def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Header) -> None:
+    """Write ``records`` (n,) of a tile to ``out`` (n,) as records of the merged cloud.
+
+    Parameters
+    ----------
+    out : ndarray of shape (n,)
+        Receives the records.
+    records : ndarray of shape (n,)
+        Records of the tile.
+    tile : Header
+        Header of the tile.
+    merged : Header
+        Header of the merged cloud.
+
+    Raises
+    ------
+    ValueError
+        If a point lies where the scale of the merged cloud doesn't reach.
+    """
+    convert(records, tile.layout, merged.layout, out)
+    _rescale(records, tile, merged, out)
+
+
+def _rescale(chunk: np.ndarray, tile: Header, merged: Header, out: np.ndarray) -> None:
+    """Write the coordinates of records of a tile in steps of the merged cloud."""
+    for i, axis in enumerate("XYZ"):
+        if tile.scale[i] == merged.scale[i] and tile.offset[i] == merged.offset[i]:
+            continue
+        steps = np.rint((chunk[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
+        if len(steps) and not np.abs(steps).max() <= LARGEST_STEP:
+            raise ValueError("A tile has points outside the bounds in its header; repair its header first.")
+        out[axis] = steps

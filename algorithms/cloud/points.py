@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
 from io import DEFAULT_BUFFER_SIZE, BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO, Callable, Optional
+from typing import Any, BinaryIO, Callable, Optional, Union
 
 import numpy as np
 
 from ..geometry.groups import run_starts
 from ..stage import Monitor
 from .copc_index import has_index, read_index
+from .ept import Ept, EptOctree, is_ept
 from .header import Header, read_header, truncated
 from .laspy_library import explained, need_laspy
 from .laz import POINTS_PER_CHUNK, first_records, has_variable_chunks, open_chunks, open_laz, writing_backend
+from .octree import FETCHED, fetched_to
 from .outputs import KeptFailure
+from .point_records import fill_merged
 from .web_file import WebStream, is_on_web
 
 # Points that are read or written at once. A multiple of the LAZ chunk, so that every call decompresses whole chunks, in
@@ -35,9 +39,6 @@ _PROBES = 16
 
 # A box in plan that all points lie in.
 _EVERYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
-
-# Bytes of chunks on the web that are fetched before they are decompressed.
-_FETCHED = 2**26
 
 # Bytes that are read at once of a file on the web without an index.
 _BUFFER = 2**22
@@ -96,11 +97,9 @@ def _names(paths: list[Path]) -> str:
 
 def _checked_header(path: Path) -> Header:
     """Return the header of a file after its number of points and its bounds were held against what it holds."""
-    header = read_header(path)
-    left = path.stat().st_size - header.points_at
-    most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize
-    if header.count > most:
-        raise truncated(path, f"it promises {header.count} points, but {left} bytes hold at most {most}")
+    if is_ept(path):
+        return Ept(path).header(_held_header)
+    header = _held_header(path)
     if is_on_web(path):
         if not np.isfinite([header.low, header.high]).all():
             raise truncated(path, "the bounds in its header are no numbers")
@@ -109,6 +108,16 @@ def _checked_header(path: Path) -> Header:
     if header.count == 0 or (measured := _measured(path, state.st_size, state.st_mtime_ns)) is None:
         return header
     return replace(header, low=measured[0], high=measured[1], is_measured=True)
+
+
+def _held_header(path: Path) -> Header:
+    """Return the header of a file after its number of points was held against its size."""
+    header = read_header(path)
+    left = path.stat().st_size - header.points_at
+    most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize
+    if header.count > most:
+        raise truncated(path, f"it promises {header.count} points, but {left} bytes hold at most {most}")
+    return header
 
 
 @lru_cache(maxsize=1024)
@@ -166,7 +175,9 @@ def check_points(path: Path, header: Header) -> None:
     ValueError
         If it is LAZ and its record or chunk table is damaged, or the package for it is missing.
     """
-    if _is_read_by_chunks(path, header):
+    if is_ept(path):
+        EptOctree(path, header, _node_records)
+    elif _is_read_by_chunks(path, header):
         with path.open("rb") as stream:
             open_chunks(path, header, stream)
     elif header.is_compressed and not is_on_web(path):
@@ -207,18 +218,21 @@ def read_points(path: Path, header: Header, monitor: Monitor) -> np.ndarray:
 
 def _is_read_by_chunks(path: Path, header: Header) -> bool:
     """Whether also the whole of a file is read by its index: several ranges of a file on the web come at once."""
-    return is_on_web(path) and has_index(header) and has_variable_chunks(header)
+    return is_ept(path) or (is_on_web(path) and has_octree(path, header))
+
+
+def has_octree(path: Path, header: Header) -> bool:
+    """Whether a part of a file can be read by its octree."""
+    return is_ept(path) or (has_index(header) and has_variable_chunks(header))
 
 
 def size_within(path: Path, header: Header, box: Optional[np.ndarray]) -> tuple[int, int]:
     """Return how many points and bytes of a file are read for those in a box (2, 2) in plan, None for all."""
-    if not (has_index(header) and has_variable_chunks(header)):
+    if not has_octree(path, header):
         return header.count, path.stat().st_size
-    with path.open("rb") as stream:
-        chunks, _ = open_chunks(path, header, stream)
-        chunks = chunks[chunks[:, 2] > 0]
-        wanted = read_index(path, header, stream, chunks).touch(_EVERYWHERE if box is None else box)
-    return int(chunks[wanted, 2].sum()), int(chunks[wanted, 1].sum())
+    with _octree(path, replace(header, reach=box)) as octree:
+        wanted = octree.nodes.touch(_EVERYWHERE if box is None else box)
+    return int(octree.chunks[wanted, 2].sum()), int(octree.chunks[wanted, 1].sum())
 
 
 def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> np.ndarray:
@@ -243,8 +257,8 @@ def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor)
 def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
     """Yield (position of the first point, records) of the parts of a file that may have points in a box (2, 2) in plan.
 
-    Of a COPC file, where lazrs is installed, these are the chunks whose nodes touch the box. Of any other file they are
-    all points if its bounds touch the box, none if not. The array is used again.
+    Of EPT and, where lazrs is installed, of a COPC file these are the nodes that touch the box. Of any other file they
+    are all points if its bounds touch the box, none if not. The array is used again.
 
     Parameters
     ----------
@@ -264,7 +278,7 @@ def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -
     """
     if not may_hold(header, box):
         return
-    if has_index(header) and has_variable_chunks(header):
+    if has_octree(path, header):
         yield from _indexed(path, header, box, monitor)
     else:
         yield from read_chunks(path, header, monitor)
@@ -278,30 +292,63 @@ def may_hold(header: Header, box: np.ndarray) -> bool:
 
 
 def _indexed(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
-    """Yield (position of the first point, records) of the chunks of a COPC file whose nodes touch a box."""
-    with path.open("rb") as stream:
-        chunks, read = open_chunks(path, header, stream)
-        chunks = chunks[chunks[:, 2] > 0]
-        wanted = np.flatnonzero(read_index(path, header, stream, chunks).touch(box))
-        ends = np.cumsum(chunks[:, 2])
+    """Yield (position of the first point, records) of the nodes of an octree that touch a box."""
+    with _octree(path, header) as octree:
+        wanted, counts = np.flatnonzero(octree.nodes.touch(box)), octree.nodes.points
+        ends = np.cumsum(counts)
         fetched = 0
-        for done, some in enumerate(parts := _portions(wanted, chunks[:, 2])):
-            if isinstance(stream, WebStream) and done == fetched:
-                fetched = _fetch(stream, chunks, parts, done, monitor)
+        for done, some in enumerate(parts := _portions(wanted, counts)):
+            if done == fetched:
+                fetched = octree.fetch(parts, done, monitor)
             monitor.progress(done / len(parts))
-            records = np.empty(int(chunks[some, 2].sum()), header.layout.dtype)
-            read(chunks[some], records.view(np.uint8))
-            yield int(ends[some[0]] - chunks[some[0], 2]), records
+            yield int(ends[some[0]] - counts[some[0]]), octree.read(some)
     monitor.progress(1.0)
 
 
-def _fetch(stream: WebStream, chunks: np.ndarray, parts: list[np.ndarray], first: int, monitor: Monitor) -> int:
-    """Fetch the chunks of portions from the first on, as many as are kept; return the portion behind them."""
-    sizes = np.cumsum([chunks[some, 1].sum() for some in parts[first:]])
-    last = first + max(1, int(np.searchsorted(sizes, _FETCHED, side="right")))
-    ranges = [(int(start), int(start + size)) for some in parts[first:last] for start, size in chunks[some, :2]]
-    stream.prefetch(ranges, monitor.part(first / len(parts), last / len(parts)))
-    return last
+@contextmanager
+def _octree(path: Path, header: Header) -> Iterator[Union[_Copc, EptOctree]]:
+    """Open the octree of a file that has one."""
+    if is_ept(path):
+        yield EptOctree(path, header, _node_records)
+        return
+    with path.open("rb") as stream:
+        yield _Copc(path, header, stream)
+
+
+class _Copc:
+    """The octree of a COPC file."""
+
+    def __init__(self, path: Path, header: Header, stream: Any) -> None:
+        self.dtype, self.stream = header.layout.dtype, stream
+        chunks, self._read = open_chunks(path, header, stream)
+        self.chunks = chunks[chunks[:, 2] > 0]
+        self.nodes = read_index(path, header, stream, self.chunks)
+
+    def read(self, some: np.ndarray) -> np.ndarray:
+        """Return the records of nodes that follow each other in the file."""
+        records = np.empty(int(self.chunks[some, 2].sum()), self.dtype)
+        self._read(self.chunks[some], records.view(np.uint8))
+        return records
+
+    def fetch(self, parts: list[np.ndarray], first: int, monitor: Monitor) -> int:
+        """Fetch the chunks of portions from the first on, as many as are kept; return the portion behind them."""
+        if not isinstance(self.stream, WebStream):
+            return len(parts)
+        last = fetched_to(self.chunks, parts, first)
+        ranges = [(int(at), int(at + size)) for some in parts[first:last] for at, size in self.chunks[some, :2]]
+        self.stream.prefetch(ranges, monitor.part(first / len(parts), last / len(parts)))
+        return last
+
+
+def _node_records(path: Path, count: int, header: Header) -> np.ndarray:
+    """Return the points of a node in a LAZ file as records of the whole octree."""
+    own = _held_header(path)
+    if own.count != count:
+        raise truncated(path, f"it holds {own.count} points instead of the {count} of its hierarchy")
+    records = read_points(path, own, Monitor())
+    out = np.zeros(count, header.layout.dtype)
+    fill_merged(out, records, own, header)
+    return out
 
 
 def _portions(wanted: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
@@ -329,7 +376,7 @@ def _reads(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, 
     opened: Any = path.open("rb") if is_on_web(path) else KeptFailure(path)
     with opened as file, BufferedReader(file, _BUFFER if is_on_web(path) else DEFAULT_BUFFER_SIZE) as stream:
         if is_on_web(path):
-            file.prefetch([(0, min(path.stat().st_size, _FETCHED))], monitor.part(0.0, 0.0))
+            file.prefetch([(0, min(path.stat().st_size, FETCHED))], monitor.part(0.0, 0.0))
         read = _compressed(path, header, stream, file) if header.is_compressed else _plain(path, header, stream)
         for start in range(0, header.count, AT_ONCE):
             monitor.progress(start / header.count)

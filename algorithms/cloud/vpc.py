@@ -14,10 +14,11 @@ from urllib.parse import unquote, urlsplit
 import numpy as np
 
 from ..stage import Monitor
+from .catalog_json import read_json
 from .crs import Crs, stated_wkt
 from .header import LARGEST_STEP, OF_OLD_POINTS, WAVEFORMS, WKT_BIT, Header, Vlr
-from .outputs import COPC, LAS, LAZ, kind_of, replacing, stem_of
-from .point_records import convert, merged_layout
+from .outputs import COPC, EPT, LAS, LAZ, kind_of, replacing, stem_of
+from .point_records import fill_merged, merged_layout
 from .points import open_header, points_within, read_chunks
 from .printable import shown
 from .web_addresses import is_address, is_allowed, split_address
@@ -27,12 +28,6 @@ from .web_file import WebFile, is_on_web
 _GPS_TIME_BIT = 1
 # Role by which a STAC item marks the assets that are its point clouds.
 _DATA_ROLE = "data"
-# Memory that the content of a virtual point cloud may take (bytes): enough for 4,000 tiles with the statistics of all
-# their dimensions, of 20 kB each.
-_MOST_MEMORY = 450_000_000
-# Memory that one value of JSON takes at most beside its characters (bytes): that of a text beyond ASCII. The values are
-# bounded by the number of the four signs that may precede one, some of which may be characters of texts.
-_BYTES_PER_VALUE = 90
 # How a URI of a file begins, up to the path on this computer; and the slash before a drive of Windows in it.
 _FILE = re.compile("^file:(?://(?:localhost)?(?=/))?", re.IGNORECASE)
 _BEFORE_DRIVE = re.compile("^/(?=[A-Za-z]:/)")
@@ -57,7 +52,7 @@ class Named(NamedTuple):
 
 
 def tiles_of(path: Path) -> dict[Path, Named]:
-    """Return the tiles that a virtual point cloud or other STAC items name, in their order, and what is said of each.
+    """Return the tiles that a virtual point cloud or other STAC items name, in their order, with CRS and box of each.
 
     Raises
     ------
@@ -65,10 +60,8 @@ def tiles_of(path: Path) -> dict[Path, Named]:
         If the file has no such items, is far too large, is one page of several, or names no tiles; or if one of them is
         missing, or its host not allowed.
     """
-    raw = _content(path)
+    content = read_json(path)
     try:
-        # Of bytes, the encoding is found out, by a byte order mark too.
-        content = json.loads(raw)
         items = content.get("features", [content])
         hrefs = {href: _named(one.get("properties")) for one in items for href in _hrefs(one["assets"])}
         has_more = any(link.get("rel") == "next" for link in content.get("links") or ())
@@ -99,32 +92,6 @@ def _named(properties: Any) -> Named:
     return Named(wkt if isinstance(wkt, str) and wkt else coded, ends[:, :2] if is_box else None)
 
 
-def _content(path: Path) -> bytes:
-    """Return the bytes of a file that is parsed in a bounded memory.
-
-    Raises
-    ------
-    ValueError
-        If it would take more.
-    """
-    size = path.stat().st_size
-    # The bytes, and the text with at least a byte for each.
-    needed = 2 * size
-    if needed <= _MOST_MEMORY:
-        if is_on_web(path):
-            cast(WebFile, path).fetch_whole()
-        raw = path.read_bytes()
-        n_values = sum(map(raw.count, (b"[", b"{", b",", b":")))
-        # Other text than ASCII has up to four bytes for a character.
-        needed = len(raw) * (2 if raw.isascii() else 5) + n_values * _BYTES_PER_VALUE
-    if needed > _MOST_MEMORY:
-        raise ValueError(
-            f"{path.name} ({size / 1e6:.0f} MB) is larger than a virtual point cloud of thousands of tiles; "
-            "build it of fewer tiles."
-        )
-    return raw
-
-
 def _hrefs(assets: dict) -> list[str]:
     """Return the point clouds of one feature; overviews repeat points of the tiles and are left out."""
     all_of_them = list(assets.values())
@@ -136,7 +103,7 @@ def _hrefs(assets: dict) -> list[str]:
 
 def _is_cloud(href: str) -> bool:
     """Whether the name of a tile, a path or an address, ends as one of a file of points."""
-    return kind_of(Path(urlsplit(href).path if is_address(href) else href)) in (LAS, LAZ, COPC)
+    return kind_of(Path(urlsplit(href).path if is_address(href) else href)) in (LAS, LAZ, COPC, EPT)
 
 
 def _tile(path: Path, href: str) -> Path:
@@ -156,7 +123,7 @@ def _tile(path: Path, href: str) -> Path:
     # On Windows, merely looking for a file on another computer sends it the name and a hash of the password.
     if any("://" in name or name.startswith("//") for name in names[1:]):
         why = "is not a local file; download it and"
-    elif kind_of(Path(names[-1])) not in (LAS, LAZ, COPC):
+    elif kind_of(Path(names[-1])) not in (LAS, LAZ, COPC, EPT):
         why = "is no LAS, LAZ or COPC file; leave it out and"
     else:
         for name in names:
@@ -281,29 +248,6 @@ def _records_within(
     return np.concatenate(found)
 
 
-def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Header) -> None:
-    """Write ``records`` (n,) of a tile to ``out`` (n,) as records of the merged cloud.
-
-    Parameters
-    ----------
-    out : ndarray of shape (n,)
-        Receives the records.
-    records : ndarray of shape (n,)
-        Records of the tile.
-    tile : Header
-        Header of the tile.
-    merged : Header
-        Header of the merged cloud.
-
-    Raises
-    ------
-    ValueError
-        If a point lies where the scale of the merged cloud doesn't reach.
-    """
-    convert(records, tile.layout, merged.layout, out)
-    _rescale(records, tile, merged, out)
-
-
 def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
     """Return one header for all points of several files or clouds: with the finest scale and all fields.
 
@@ -361,14 +305,3 @@ def _grid(headers: list[Header], what: str) -> tuple[np.ndarray, np.ndarray]:
             f"The {what} span {(high - low).max():.0f} units, too far for their scale {scale.min():g}; take fewer."
         )
     return scale, offset
-
-
-def _rescale(chunk: np.ndarray, tile: Header, merged: Header, out: np.ndarray) -> None:
-    """Write the coordinates of records of a tile in steps of the merged cloud."""
-    for i, axis in enumerate("XYZ"):
-        if tile.scale[i] == merged.scale[i] and tile.offset[i] == merged.offset[i]:
-            continue
-        steps = np.rint((chunk[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
-        if len(steps) and not np.abs(steps).max() <= LARGEST_STEP:
-            raise ValueError("A tile has points outside the bounds in its header; repair its header first.")
-        out[axis] = steps

@@ -11,10 +11,10 @@ import time
 import zlib
 from bisect import bisect_right, insort
 from collections.abc import Iterable
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from pathlib import Path, PurePosixPath
-from typing import Any, NamedTuple, Optional, Union, cast
-from urllib.parse import unquote
+from typing import Any, Callable, NamedTuple, Optional, Union, cast
+from urllib.parse import unquote, urlsplit
 
 from ..stage import Monitor
 from .printable import shown
@@ -27,9 +27,7 @@ _LEAST = 2**14
 _MOST_AT_ONCE, _MOST_READ = 2**23, 2**29
 # Ranges with no more than this between them (bytes) are fetched as one: a request takes longer than these.
 _GAP = 2**13
-# Requests at once.
-_AT_ONCE = 6
-# Bytes of one file that are kept; those fetched first go first.
+# Bytes of one file, and of all together, that are kept; those fetched or used first go first.
 _KEPT = 2**28
 # Seconds for which a file that nobody reads is known.
 _KNOWN_FOR = 600.0
@@ -60,6 +58,7 @@ class _Content:
         self.size, self.version = -1, ""
         self.used = time.monotonic()
         self.lock = threading.RLock()
+        self.held = 0
         self._parts: dict[int, bytes] = {}
         self._starts: list[int] = []
 
@@ -82,7 +81,9 @@ class _Content:
 
     def _known_size(self) -> int:
         if self.size < 0:
-            self.fetch(0, _LEAST)
+            # Descriptions are read as a whole, for which servers without ranges do.
+            is_points = urlsplit(self.address).path.lower().endswith((".las", ".laz"))
+            self.fetch(0, _LEAST if is_points else _MOST_AT_ONCE)
         return self.size
 
     def missing(self, ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -123,10 +124,11 @@ class _Content:
         if start not in self._parts:
             insort(self._starts, start)
         self._parts[start] = data
-        while sum(map(len, self._parts.values())) > _KEPT and len(self._parts) > 1:
+        while (held := sum(map(len, self._parts.values()))) > _KEPT and len(self._parts) > 1:
             oldest = next(iter(self._parts))
             del self._parts[oldest]
             self._starts.remove(oldest)
+        self.held = held
 
     def _answer(self, start: int, stop: int, stopped: threading.Event) -> Reply:
         """Return the reply to a request that is sent until it is answered, and follows redirections."""
@@ -194,8 +196,11 @@ def _content(address: str, login: str) -> _Content:
     """Return the content of an address; contents that nobody has read for some minutes are forgotten."""
     with _known_lock:
         now = time.monotonic()
-        for key in [key for key, one in _known.items() if now - one.used > _KNOWN_FOR]:
-            del _known[key]
+        held = sum(one.held for one in _known.values())
+        for key, one in sorted(_known.items(), key=lambda entry: entry[1].used):
+            if now - one.used > _KNOWN_FOR or held > _KEPT:
+                held -= one.held
+                del _known[key]
         return _known.setdefault((address, login), _Content(address, login))
 
 
@@ -262,12 +267,6 @@ class WebFile:
     def open(self, mode: str = "rb") -> WebStream:  # noqa: ARG002 - as of a path
         """Return a stream of its bytes."""
         return WebStream(_content(self.address, self.login))
-
-    def fetch_whole(self) -> None:
-        """Have it fetched as a whole, where it is small, by one request, which servers without ranges answer too."""
-        content = _content(self.address, self.login)
-        if content.size < 0:
-            content.fetch(0, _MOST_AT_ONCE)
 
     def read_bytes(self) -> bytes:
         """Return its content."""
@@ -351,19 +350,43 @@ class WebStream(io.RawIOBase):
         Cancelled
             If the monitor says so, soon after.
         """
-        wanted = self._content.missing(ranges)
-        stopped, done, total = threading.Event(), 0, sum(stop - start for start, stop in wanted)
-        pool = ThreadPoolExecutor(_AT_ONCE, "web")
-        try:
-            open_ones = {pool.submit(self._content.fetch, *one, stopped) for one in wanted}
-            while open_ones:
-                monitor.progress(done / total)
-                transport().wait()
-                ended, open_ones = wait(open_ones, _LOOK, FIRST_EXCEPTION)
-                done += sum(one.result() for one in ended)
-        finally:
-            stopped.set()
-            pool.shutdown(wait=False, cancel_futures=True)
+        _fetch_at_once([(self._content, *one) for one in self._content.missing(ranges)], monitor)
+
+
+def fetch_files(files: Iterable[Path], monitor: Monitor) -> None:
+    """Fetch those of some files that are on the web, several at once, and as a whole where they are small.
+
+    Servers without ranges answer this, too.
+    """
+    on_web = cast("list[WebFile]", list(filter(is_on_web, files)))
+    contents = [_content(one.address, one.login) for one in on_web]
+    _fetch_at_once([(one, 0, _MOST_AT_ONCE) for one in contents if one.size < 0], monitor)
+
+
+def _fetch_at_once(wanted: list[tuple[_Content, int, int]], monitor: Monitor) -> None:
+    """Fetch parts (content, start, stop)."""
+    stopped, done, total = threading.Event(), 0, max(1, sum(stop - start for _, start, stop in wanted))
+    open_ones: set[Future] = set()
+    try:
+        while open_ones or wanted:
+            monitor.progress(min(1.0, done / total))
+            room = transport().at_once - len(open_ones)
+            open_ones |= {_in_thread(one.fetch, start, stop, stopped) for one, start, stop in wanted[:room]}
+            wanted = wanted[room:]
+            transport().wait()
+            ended, open_ones = wait(open_ones, _LOOK, FIRST_COMPLETED)
+            done += sum(one.result() for one in ended)
+    finally:
+        stopped.set()
+
+
+def _in_thread(call: Callable[..., int], *arguments: Any) -> Future:
+    """Run a request in a thread of its own: what Qt leaves of one is not taken for another then."""
+    pool = ThreadPoolExecutor(1, "web")
+    try:
+        return pool.submit(call, *arguments)
+    finally:
+        pool.shutdown(wait=False)
 
 
 def file_at(path: Union[str, Path, WebFile]) -> Path:

@@ -11,8 +11,8 @@ import numpy as np
 from ..cloud.crs import header_with_crs
 from ..cloud.laz import writing_backend
 from ..cloud.outputs import LAS, LAZ, os_errors_as_messages, replacing, working_folder
+from ..cloud.point_records import fill_merged
 from ..cloud.points import check_count, chunks_near, write_points
-from ..cloud.vpc import fill_merged
 from ..geometry.groups import run_starts
 from ..stage import Monitor
 from .blocks import Block

@@ -15,9 +15,9 @@ from typing import Any, Callable, NamedTuple, Optional, Union
 
 import numpy as np
 
-from ..cloud.copc_index import has_index
 from ..cloud.laz import writing_backend
 from ..cloud.outputs import LAS
+from ..cloud.points import has_octree
 from ..cloud.web_file import file_at, is_on_web
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
@@ -194,7 +194,7 @@ class _Run:
         Of a COPC file each block reads what it needs.
         """
         large = [source for source in self.survey.sources if source.header.count > self.settings.options.largest_file]
-        self.by_index = [source.path for source in large if has_index(source.header)]
+        self.by_index = [source.path for source in large if has_octree(source.path, source.header)]
         large = [source for source in large if source.path not in self.by_index]
         if not large:
             return

@@ -16,8 +16,9 @@ from ..cloud.crs import Crs, CrsReader, crs_of_tiles, read_crs
 from ..cloud.files import NOWHERE, named_files_of, open_named, readable, state_of, touching
 from ..cloud.header import OF_OLD_POINTS, Header
 from ..cloud.outputs import STAC, check_not_read, kind_of, made_folder, os_errors_as_messages
+from ..cloud.point_records import fill_merged
 from ..cloud.points import check_points, chunks_near, is_within, read_chunks
-from ..cloud.vpc import Named, fill_merged, merged_header
+from ..cloud.vpc import Named, merged_header
 from ..cloud.web_file import file_at
 from ..stage import Monitor
 
@@ -257,7 +258,7 @@ def open_survey(
     monitor = monitor or Monitor()
     named = touching(_named_files(paths), extent)
     states = {file: state_of(file) for file in named}
-    files, headers = open_named(named, monitor)
+    files, headers = open_named(named, monitor, extent)
     for file, header in zip(files, headers):
         check_points(file, header)
     header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]
@@ -320,7 +321,7 @@ def crs_of_survey(paths: Iterable[Union[str, Path]], read: CrsReader = read_crs)
     ValueError
         If a file can't be read, none has points, or they have different systems.
     """
-    files, headers = open_named(touching(_named_files(paths), NOWHERE))
+    files, headers = open_named(touching(_named_files(paths), NOWHERE), box=NOWHERE)
     return crs_of_tiles(headers, [file.name for file in files], read, Monitor())
 
 

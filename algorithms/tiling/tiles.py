@@ -128,7 +128,7 @@ def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor)
     if task.piece is None or position is None:
         # A worker has nothing to look systems up in.
         return read_cloud(path, monitor, lambda _: task.crs, task.extent)
-    header = open_header(path)
+    header = replace(open_header(path), reach=task.extent)
     found = [np.empty(0, header.layout.dtype)]
     with readable(path):
         for start, records in chunks_near(path, header, task.piece / task.crs.horizontal, monitor):

@@ -5016,7 +5016,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>File or layer of the points, or the address of a COPC file on the web (https://…).</source>
+        <source>File or layer of the points, or an address on the web (https://…) of COPC, EPT, VPC or STAC items.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

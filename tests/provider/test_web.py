@@ -26,10 +26,12 @@ from lidar_buildings.provider.clouds import file_of_layer
 from lidar_buildings.provider.menu import view_parameters
 from lidar_buildings.provider.settings import WEB_HOSTS, WEB_LIMIT
 from lidar_buildings.provider.web import QgisTransport
+from lidar_buildings.tests.ept_files import made_points, write_ept
 from lidar_buildings.tests.provider.helpers import Interface, run
 from lidar_buildings.tests.web_server import serving
 
 VIEW = "85000,85300,446000,446300 [EPSG:28992]"
+SRS = {"authority": "EPSG", "horizontal": "28992"}
 BOX = np.array([[85_000.0, 446_000.0], [85_300.0, 446_300.0]])
 
 
@@ -146,6 +148,18 @@ def test_a_vpc_by_address_and_one_whose_host_is_named_are_the_local_one(provider
     finally:
         WEB_HOSTS.set("")
     assert (out / "a.las").read_bytes() == (out / "b.las").read_bytes() == (out / "c.las").read_bytes()
+
+
+@pytest.mark.parametrize("kind", ["laszip", "binary"])
+def test_ept_by_address_and_as_a_layer_is_the_local_one(provider, context, server, folder, out, kind):
+    corner = np.array([85_000.0, 446_000.0])
+    path = write_ept(folder / kind, made_points(40_000, corner, 1000.0), corner, 1000.0, kind, srs=SRS)
+    address = server.address(f"{kind}/ept.json")
+    for name, source in (("a", address), ("b", str(path))):
+        run("toylift", {"INPUT": source, "EXTENT": VIEW, "OUTPUT": str(out / f"{name}.las")}, context, None)
+    assert (out / "a.las").read_bytes() == (out / "b.las").read_bytes()
+    assert len(read_cloud(out / "a.las")) == len(read_cloud(path, box=BOX)) > 1000
+    assert file_of_layer(QgsPointCloudLayer(address, "a", "ept")) == web_file.WebFile(address)
 
 
 def test_a_layer_is_its_address(qgis_application):

@@ -1,0 +1,63 @@
+"""Nodes of an octree of points, as COPC files and Entwine point tiles have it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from .header import truncated
+
+# No octree is deeper: a cell of this level of the whole Earth is a hundredth of a millimeter wide.
+_DEEPEST = 42
+# Bytes of points on the web that are fetched before they are decompressed.
+FETCHED = 2**26
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Nodes that have points, in the order in which they are read."""
+
+    #: low, high, (m, 2): least and greatest easting and northing of each node, in coordinates of the file
+    low: np.ndarray
+    high: np.ndarray
+    points: np.ndarray  #: (m,), int64: number of points
+
+    def touch(self, box: np.ndarray) -> np.ndarray:
+        """Return which nodes (m,) touch a box (2, 2) in plan."""
+        return ((self.low <= box[1]) & (self.high >= box[0])).all(axis=1)
+
+    def take(self, which: np.ndarray) -> Nodes:
+        """Return some of the nodes."""
+        return Nodes(*(getattr(self, one.name)[which] for one in fields(self)))
+
+
+def nodes_of(
+    path: Path, keys: np.ndarray, points: np.ndarray, corner: np.ndarray, side: np.ndarray, margin: np.ndarray
+) -> Nodes:
+    """Return nodes by their keys (m, 4): level, column, row and layer.
+
+    ``corner`` and ``side`` (2,) are those of the root, and ``margin`` (2,) is how far coordinates may be
+    rounded, also those on the faces of nodes.
+
+    Raises
+    ------
+    ValueError
+        If a key is that of no node.
+    """
+    level, position = keys[:, 0], keys[:, 1:3]
+    is_odd = (level < 0) | (level > _DEEPEST)
+    is_odd |= ((position < 0) | (position >= 2.0 ** np.clip(level, 0, _DEEPEST)[:, None])).any(axis=1)
+    if is_odd.any():
+        key = tuple(keys[is_odd][0, :3].tolist())
+        raise truncated(path, f"of its index, it names a node {key} (level, column, row)")
+    sides = side / (2.0**level)[:, None]
+    low = corner + position * sides
+    return Nodes(low - margin, low + sides + margin, points)
+
+
+def fetched_to(chunks: np.ndarray, parts: list[np.ndarray], first: int) -> int:
+    """Return the portion behind those from the first on that are fetched together; chunks (m, 3) name their bytes."""
+    sizes = np.cumsum([chunks[some, 1].sum() for some in parts[first:]])
+    return first + max(1, int(np.searchsorted(sizes, FETCHED, side="right")))
