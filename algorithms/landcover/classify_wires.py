@@ -12,7 +12,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 from .masts import on_masts
 from .wire_candidates import over_free_space, strands, thinned
-from .wire_spans import RULES, Span, Surroundings, spans_of
+from .wire_spans import RULES, Span, Surroundings, parallels_of, spans_of
 
 # Points of these classes may be of wires and masts.
 _OPEN = (
@@ -61,8 +61,9 @@ def classify_wires(
 
     A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is ``RULES.least_length`` m
     long at least and bent upward, with free space below and no building beside it. Spans are found by RANSAC among
-    points that lie on lines; parallel ones one by one. Where spans end, the slender upright object that reaches up to
-    them is a mast. Clouds of matched images are left as they are: wires are thinner than their pixels.
+    points that lie on lines. Beside each, wires of the same masts have its direction and curve. Where spans end, the
+    slender upright object that reaches up to them is a mast. Clouds of matched images are left as they are: wires are
+    thinner than their pixels.
 
     Parameters
     ----------
@@ -118,7 +119,8 @@ def classify_wires(
     solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
     around = Surroundings(points, solid, max(RULES.least_off, RULES.noises * noise))
     spans = _spans(points, height, around, min_height, sampling.spacing, seed, monitor)
-    for span in spans:
+    # Wires beside these are seen in part only, so that their ends show no masts.
+    for span in (*spans, *parallels_of(spans, around)):
         classes[rows[around.on_wire(span, beyond=1.0)]] = PointClass.WIRE_CONDUCTOR
     is_wire = classes[rows] == PointClass.WIRE_CONDUCTOR
     classes[rows[on_masts(points, height, is_wire, spans)]] = PointClass.TRANSMISSION_TOWER

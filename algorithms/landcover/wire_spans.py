@@ -9,6 +9,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.groups import members
+from ..packages import spatial
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,7 @@ class _Rules:
     most_below: float = 0.25
     #: Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings
     beside: float = 1.0
+    line: float = 8.0  #: Distance (m) aside and in height of wires on the same masts: arms of towers are 4 to 10 m long
 
 
 RULES = _Rules()
@@ -124,10 +126,61 @@ class Surroundings:
         sheet = max((beside & is_left).sum(), (beside & ~is_left).sum())
         # Points nearer than twice the tolerance may be of the wire itself.
         below = inside & (aside <= 2 * RULES.aside) & (above < -2 * self.off) & (above > -RULES.below)
+        below = np.flatnonzero(below)[~self._on_parallels(above[below])]
         length = span.end - span.start
         occupied = len(np.unique(np.floor(along[below]))) + self._beside_buildings(span)
         is_line = on_wire.sum() >= RULES.least_points and sheet <= on_wire.sum() / 4
         return bool(is_line and occupied <= RULES.most_below * length)
+
+    def parallels(self, span: Span, is_taken: np.ndarray) -> Iterator[Span]:
+        """Yield the wires beside a span, on the same masts: of its direction and curve, up to ``RULES.line`` m away.
+
+        Points (n,) that ``is_taken`` are of other wires.
+        """
+        rows = self._near(0, span, RULES.line)
+        along, aside, above = span.local(self.xyz[rows])
+        inside = (along >= span.start) & (along <= span.end) & (np.maximum(np.abs(aside), np.abs(above)) <= RULES.line)
+        rows, place = rows[inside], np.column_stack([aside, above])[inside] / [RULES.aside, self.off]
+        tree, failures = spatial.cKDTree(place), 0
+        count = tree.query_ball_point(place, 1.0, return_length=True)
+        for row in np.argsort(-count, kind="stable").tolist():
+            if count[row] < RULES.least_points or failures > RULES.tries:
+                break
+            if is_taken[rows[row]]:
+                continue
+            near = rows[tree.query_ball_point(place[row], 2.0)]
+            other = fitted(self.xyz[near])
+            other = other and self.extended(other)
+            is_taken[near] = True
+            if other is None or not self._is_like(other, span) or not self.is_free(other):
+                failures += 1
+                continue
+            is_taken[self.on_wire(other)] = True
+            yield other
+
+    def _is_like(self, other: Span, span: Span) -> bool:
+        """Return whether another wire is about as long as a span, and has about as many points."""
+        is_as_long = 2 * (other.end - other.start) >= span.end - span.start
+        return is_as_long and 4 * len(self.on_wire(other)) >= len(self.on_wire(span))
+
+    def _on_parallels(self, above: np.ndarray) -> np.ndarray:
+        """Return which points (n,), bool, that high above a wire (m) lie on others at a constant height below it.
+
+        Of points that are spread evenly over the height below a wire, as leaves are, no layer as thick as a wire has
+        twice its share.
+        """
+        thick, on_one = 2 * self.off, np.zeros(len(above), bool)
+        least = max(RULES.least_points, 2 * thick / RULES.below * len(above))
+        order = np.argsort(above, kind="stable")
+        while len(order) >= least:
+            height = above[order]
+            count = np.searchsorted(height, height + thick, side="right") - np.arange(len(order))
+            first = int(count.argmax())
+            if count[first] < least:
+                break
+            on_one[order[first : first + count[first]]] = True
+            order = np.delete(order, np.s_[first : first + count[first]])
+        return on_one
 
     def _beside_buildings(self, span: Span) -> int:
         """Return along how much of a span (m) buildings are beside it."""
@@ -184,6 +237,14 @@ def spans_of(
                 yield span
                 chosen = np.union1d(chosen, np.flatnonzero(span.holds(xyz[remaining], around.off)))
             remaining = np.delete(remaining, chosen)
+
+
+def parallels_of(spans: list[Span], around: Surroundings) -> list[Span]:
+    """Return the wires beside spans, without these."""
+    is_taken = np.zeros(len(around.xyz), bool)
+    for span in spans:
+        is_taken[around.on_wire(span, beyond=1.0)] = True
+    return [other for span in spans for other in around.parallels(span, is_taken)]
 
 
 def _most_points(

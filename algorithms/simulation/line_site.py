@@ -35,8 +35,12 @@ _POLES = 40.0
 # Sag of the wires of poles (m).
 _POLE_SAG = 0.8
 
-# Distances of these wires from the line of the poles (m).
-_SIDES = (-0.8, 0.0, 0.8)
+# Wires of poles: distance from the line of the poles, and from their top (m). Three phases on a cross-arm, a rack of
+# four wires one above the other below it, and a cable of a telephone company.
+_WIRES = ((-0.8, 0.2), (0.0, 0.2), (0.8, 0.2), (0.2, 1.4), (0.2, 1.7), (0.2, 2.0), (0.2, 2.3), (-0.2, 3.2))
+
+# Half of the distance between the two conductors of a bundle (m).
+_BUNDLE = 0.2
 
 # Distance of houses from the line of the poles (m).
 _HOUSE = 16.0
@@ -84,12 +88,14 @@ def _inside(scene: Scene, xy: np.ndarray) -> np.ndarray:
 
 
 def _high_voltage(scene: Scene, direction: float, span: float) -> None:
-    """Put towers with six conductors and a guard wire; those beyond the site carry the wires that reach into it."""
+    """Put towers with six bundles of two and a guard wire; those beyond the site carry the wires that reach into it."""
     feet = _line(scene, direction, 0.22 * scene.size, span)
     across = np.array([-np.sin(direction), np.cos(direction), 0.0])
     for foot in feet[_inside(scene, feet)]:
         _tower(scene, foot, direction)
-    hangs = [(side * _ARM, height - 1.0) for height in _ARMS for side in (-1, 1)] + [(0.0, _TOWER)]
+    sides = [side * _ARM + apart for side in (-1, 1) for apart in (-_BUNDLE, _BUNDLE)]
+    arms = [(side, height - 1.0) for height in _ARMS for side in sides]
+    hangs = [*arms, (0.0, _TOWER)]
     for aside, height in hangs:
         _string(scene, feet + (aside * across + [0.0, 0.0, height]), _SAG * span)
 
@@ -111,7 +117,7 @@ def _add_tower(scene: Scene, rect: Rect, bottom: float, top: float, number: int)
 
 
 def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> None:
-    """Put poles with three wires, and to every second pole a house with a wire of its own."""
+    """Put poles with their wires, and to every second pole a house with a wire of its own."""
     feet = _line(scene, direction, -0.22 * scene.size, _POLES)
     across = np.array([-np.sin(direction), np.cos(direction), 0.0])
     for i, foot in enumerate(feet):
@@ -124,9 +130,9 @@ def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> No
             eave = _house(scene, middle, direction, rng)
             wall = middle + 4.0 * across
             drop = np.append(wall[:2], eave - 0.2)
-            _string(scene, np.array([foot + [0.0, 0.0, _POLE - 0.6], drop]), _DROP_SAG)
-    for aside in _SIDES:
-        _string(scene, feet + (aside * across + [0.0, 0.0, _POLE - 0.2]), _POLE_SAG)
+            _string(scene, np.array([foot + [0.0, 0.0, _POLE - 1.7], drop]), _DROP_SAG)
+    for aside, below in _WIRES:
+        _string(scene, feet + (aside * across + [0.0, 0.0, _POLE - below]), _POLE_SAG)
 
 
 def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Generator) -> float:

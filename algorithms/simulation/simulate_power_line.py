@@ -36,8 +36,9 @@ def simulate_power_line(
 ):
     """Scan made-up power lines from the air, with the true class of every point.
 
-    A transmission line on towers of 30 m carries six conductors and a guard wire; a line of low voltage on poles of 9 m
-    carries three wires, and one to a house at every second pole. Trees and a forest grow under both.
+    A transmission line on towers of 30 m carries six bundles of two conductors and a guard wire. A line on poles of 9 m
+    carries three wires on a cross-arm, four in a rack below it, a telephone cable, and a wire to a house at every
+    second pole. Trees and a forest grow under both.
 
     Returns
     -------

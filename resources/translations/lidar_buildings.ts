@@ -3484,7 +3484,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A transmission line on towers of 30 m carries six conductors and a guard wire; a line of low voltage on poles of 9 m carries three wires, and one to a house at every second pole. Trees and a forest grow under both.</source>
+        <source>A transmission line on towers of 30 m carries six bundles of two conductors and a guard wire. A line on poles of 9 m carries three wires on a cross-arm, four in a rack below it, a telephone cable, and a wire to a house at every second pole. Trees and a forest grow under both.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3492,7 +3492,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is 10 m long at least and bent upward, with free space below and no building beside it. Spans are found by RANSAC among points that lie on lines; parallel ones one by one. Where spans end, the slender upright object that reaches up to them is a mast. Clouds of matched images are left as they are: wires are thinner than their pixels.</source>
+        <source>A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is 10 m long at least and bent upward, with free space below and no building beside it. Spans are found by RANSAC among points that lie on lines. Beside each, wires of the same masts have its direction and curve. Where spans end, the slender upright object that reaches up to them is a mast. Clouds of matched images are left as they are: wires are thinner than their pixels.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -64,6 +64,21 @@ def test_a_single_wire_is_found():
     assert f_score(classified(xyz, kind) == WIRE, kind == WIRE) > 90
 
 
+@pytest.mark.parametrize("density", [4.0, 20.0])
+def test_lines_of_many_wires_are_found(density):
+    """Eight wires on poles, four of them in a rack, 0.3 m above one another: each looked like leaves below the next."""
+    xyz, true, *_, number = simulate_power_line(size=130.0, density=density, angle=25.0, trees=0.0, forest=0.0, seed=4)
+    ground = xyz[true == GROUND]
+    slope = np.polyfit(ground[:, 1], ground[:, 2], 1)
+    height = np.where(true == GROUND, 0.0, xyz[:, 2] - np.polyval(slope, xyz[:, 1])).astype(np.float32)
+    classes = np.where(np.isin(true, (GROUND, 6)), true, 1).astype(np.uint8)
+    made = classify_wires(xyz, classes, height)
+    on_poles = (true == WIRE) & (height < 12)
+    assert len(np.unique(number[on_poles])) >= 8
+    assert (made[on_poles] == WIRE).mean() > 0.6
+    assert f_score(made == WIRE, true == WIRE) > 85
+
+
 def test_a_straight_beam_is_no_wire():
     xyz, kind = line(sides=(0.0,), spans=1)
     xyz[kind == WIRE, 2] = 8.8 + np.random.default_rng(2).normal(0, 0.03, (kind == WIRE).sum())
