@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Optional
-from xml.etree import ElementTree
 
 import numpy as np
 from qgis.core import (
@@ -33,6 +33,9 @@ from .web import check_sizes
 
 # Width of the surroundings that are read, m.
 _AROUND = 4.0
+
+# A class of a style, and its color.
+_CATEGORY = re.compile(r'<category value="(\d+)"[^>]* color="(\d+,\d+,\d+)')
 
 # Classes that can have a color: a picture has one more, of its background.
 _CLASSES = 255
@@ -105,8 +108,8 @@ def _colors() -> np.ndarray:
     """Return the color of the background and those of the classes, as on the map."""
     colors = np.full((1 + _CLASSES, 3), 128)
     colors[0] = 255
-    for category in ElementTree.parse(Styler.file("classification")).iter("category"):
-        colors[1 + int(category.get("value", 0))] = category.get("color", "").split(",")[:3]
+    for number, color in _CATEGORY.findall(Styler.file("classification").read_text(encoding="utf-8")):
+        colors[1 + int(number)] = [int(part) for part in color.split(",")]
     return colors
 
 

@@ -40,6 +40,9 @@ from lidar_buildings.tests.monitors import Listening
 SOURCES = [path for room in ("algorithms", "provider") for path in (Path(__file__).parent.parent / room).rglob("*.py")]
 # Algorithms of QGIS itself that sentences name.
 TITLES_OF_QGIS = {"Fix geometries", "Open in Model Designer"}
+# Options in QGIS's settings, without what is said in brackets.
+SETTINGS = Path(__file__).parent.parent / "provider" / "settings.py"
+OPTIONS = set(re.findall(r'Option\("\w+", "([^"(]+?)(?: \(|")', SETTINGS.read_text(encoding="utf-8")))
 
 # Released ids: people's saved models and scripts call them. A new one is added, none is ever changed.
 STAGE_IDS = {
@@ -506,7 +509,7 @@ def test_titles_that_sentences_name_exist(path):
     """A sentence names a title as the toolbox shows it; stages cannot import each other to derive it."""
     ours = {one.title for one in (*STAGES.values(), *PIPELINES.values())}
     ours |= {tunable.param.label for stage in STAGES.values() for tunable in stage.tunables.values()}
-    assert not set(quoted(path)) - ours - TITLES_OF_QGIS
+    assert not set(quoted(path)) - ours - TITLES_OF_QGIS - OPTIONS
 
 
 @pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
