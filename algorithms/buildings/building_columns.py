@@ -23,6 +23,11 @@ class ColumnRules:
     around: int = rule(7, "cells", "side of the square in which cells and pulses are counted, some 4 m")
     bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
 
+    @property
+    def edge(self) -> float:
+        """Distance (m) from edges of buildings within which points may be called wrong: eaves reach out both ways."""
+        return 2 * self.wall_reach
+
 
 COLUMNS = ColumnRules()
 

@@ -18,6 +18,7 @@ from ..sampling.kinds import IMAGES, LASER, SCENE
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
 from .building_columns import ColumnPoints, Columns, column_size
+from .inner_courts import AROUND, deck_cells
 from .roof_coverage import Coverage, cells_with, covered_cells, mostly_roof, numbered, renumbered, roof_top
 from .roof_extent import RoofExtent, amid_rough, without_vehicles
 
@@ -39,8 +40,9 @@ COMPLETION = CompletionRules()
     tags="building,roof,facade,chimney,dormer,attach",
     writes=("classification", "cluster_id", "confidence", "reason"),
     written_if={"confidence": "where the cloud has them", "reason": "where the cloud has them"},
-    # Gaps are closed from both sides. An automatic gap is wider than this only where points are over 2.5 m apart.
-    reach=lambda tunables: tunables["gap"] or 10.0,
+    # Gaps are closed from both sides. A court at the edge of a tile is seen whole by this, its streets by the reach of
+    # later steps.
+    reach=lambda tunables: max(tunables["gap"] or 0.0, AROUND),
     cost=0.7,
 )
 def complete_buildings(
@@ -104,7 +106,8 @@ def complete_buildings(
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
     the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
     closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has
-    half of their height, and the smeared walls below belong to them. Where the scanner numbered its returns, crowns
+    half of their height, and the smeared walls below belong to them. Ground of an inner court that lies as high over
+    the streets around as a roof is a deck, and of the building. Where the scanner numbered its returns, crowns
     at a wall are separated from it by the pulses that pass through them.
 
     Parameters
@@ -127,7 +130,8 @@ def complete_buildings(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        Buildings 6; roofs of less than the minimum area or share of roof surfaces become 1.
+        Buildings 6, among them decks of inner courts that were ground; roofs of less than the minimum area or share of
+        roof surfaces become 1.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from the south-west northward; 0 if unassigned.
     confidence : ndarray of shape (n,), float32, or None
@@ -185,6 +189,9 @@ def complete_buildings(
     goes_on = return_number < number_of_returns if has_returns else np.zeros(len(xyz), bool)
     points = ColumnPoints(coverage.cell, xyz[:, 2], height_above_ground, coverage.raised, goes_on)
     owner = columns.owners(points, roof_clearance, structure_height)
+    is_ground = classification == PointClass.GROUND
+    decks = deck_cells(coverage.building, coverage.cell, xyz[:, 2], is_ground, coverage.cell_size, min_area)
+    owner = np.where(is_ground & (owner == 0), decks[coverage.cell], owner)
     cluster_id = _in_order(owner, np.ravel_multi_index(coverage.cell, coverage.building.shape))
     monitor.progress(1.0)
 

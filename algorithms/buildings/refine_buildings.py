@@ -18,7 +18,7 @@ from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.sufficiency import doubted, why_doubtful
 from ..stage import Monitor, Param, stage
-from .building_columns import column_size
+from .building_columns import COLUMNS, column_size
 from .cell_features import CellFeatures, CellPoints
 from .edge_classes import decided_together
 from .scene_learning import RULES as HALVES
@@ -38,9 +38,6 @@ class _Rules:
 
     cell_spacings: float = rule(
         4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
-    )
-    edge: float = rule(
-        2.0, "m", "fitted: points up to this far from a building's edge change; 3 m gain the same, 5 m 0.1 less"
     )
     becomes: float = rule(0.65, "probability", "fitted: over it a point by itself becomes building; 0.5 gains 0.2 less")
     ceases: float = rule(
@@ -63,7 +60,7 @@ _RULES = _Rules()
     },
     # Squares with the margin that points are decided together in, and two rings of cells around each point, of 4 m at
     # 1 point/m²: one for the features of a cell, and one for smoothing.
-    reach=HALVES.half + _RULES.edge + 8.0,
+    reach=HALVES.half + COLUMNS.edge + 8.0,
     of_whole=(_LEARNED,),
     cost=2.5,
 )
@@ -96,7 +93,7 @@ def refine_buildings(
 
     The classes at hand are the labels of a logistic regression. On one half of the scene it learns how points of
     buildings differ from all others in shape, height, returns and intensity. It then gives a probability to each point
-    of the other half, and the reverse. Points up to ``_RULES.edge`` m from the edge of a building then get new classes,
+    of the other half, and the reverse. Points up to 2 m from the edge of a building then get new classes,
     all together: those that contradict the probabilities, the classes so far and each other least. A minimum cut in the
     graph of nearest neighbors finds them. Nothing comes from outside the cloud.
 
@@ -282,12 +279,12 @@ class _Scene:
         inside = ndimage.distance_transform_edt(building > 0)
         distance = np.maximum(outside, inside)[cell] * size
         # Points beyond the edges are neighbors of those that change. A part of a survey may hold no building.
-        near = (distance <= 2 * _RULES.edge) & (building.max() > 0)
+        near = (distance <= 2 * COLUMNS.edge) & (building.max() > 0)
         rows = np.flatnonzero(self.is_raised & (self.height > LASER.foot) & near)
         was = self.is_building[rows]
         gain = _log_odds(probability[rows]) - _log_odds(np.where(was, _RULES.ceases, _RULES.becomes))
-        gain = np.where(distance[rows] <= _RULES.edge, gain, np.where(was, np.inf, -np.inf))
-        together = decided_together(self.xyz[rows], gain, 1 / float(np.sqrt(density)), HALVES.half, _RULES.edge)
+        gain = np.where(distance[rows] <= COLUMNS.edge, gain, np.where(was, np.inf, -np.inf))
+        together = decided_together(self.xyz[rows], gain, 1 / float(np.sqrt(density)), HALVES.half, COLUMNS.edge)
         becomes, ceases = rows[together & ~was], rows[was & ~together]
         of_nearest = building[tuple(nearest)]
         return becomes, ceases, of_nearest[tuple(index[becomes] for index in cell)]

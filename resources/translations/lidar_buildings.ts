@@ -4080,7 +4080,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has half of their height, and the smeared walls below belong to them. Where the scanner numbered its returns, crowns at a wall are separated from it by the pulses that pass through them.</source>
+        <source>Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has half of their height, and the smeared walls below belong to them. Ground of an inner court that lies as high over the streets around as a roof is a deck, and of the building. Where the scanner numbered its returns, crowns at a wall are separated from it by the pulses that pass through them.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
