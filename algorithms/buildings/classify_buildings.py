@@ -11,7 +11,7 @@ from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
 from ..params import MinBuildingArea, PointDensity, PointSource, nearest_points
 from ..rules import rule
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import GROUND_NOISE, CloudSampling
 from ..sampling.sufficiency import doubted, why_doubtful
 from ..sampling.surface_noise import plane_roughness
 from ..stage import Monitor, Param, stage
@@ -70,7 +70,7 @@ _MinShareAround = Annotated[
     measures=MEASURES,
     # Of neighborhoods, and of the surroundings of a cluster.
     reach=5.0,
-    of_whole=MEAN_ENTROPIES,
+    of_whole=(*MEAN_ENTROPIES, GROUND_NOISE),
     cost=3.0,
     report_title="Why clusters are buildings",
 )
@@ -91,7 +91,7 @@ def classify_buildings(
         Optional[int], nearest_points("the smallest neighborhood in which neither noise nor scan lines blur a plane.")
     ] = None,
     max_penetration: _MaxPenetration = 0.4,
-    min_share_around: _MinShareAround = 0.4,
+    min_share_around: _MinShareAround = 0.5,
     density: PointDensity = None,
     source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
@@ -146,9 +146,9 @@ def classify_buildings(
     the paper; everything below is this project's.
 
     Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and
-    in a ball. These two stay in the data, each with the weight of 100 clusters, so that a handful of clusters, or
-    clusters of one kind only, are not split in two. In practice the two references decide: in real clouds of 50 to
-    2,900 clusters K-means moved the threshold by 0.02 at most.
+    in a ball. These two stay in the data, each with many times the weight of all clusters, and so decide. A handful of
+    clusters, or clusters of one kind only as in a forest, are not split in two. Surfaces are as rough as the ground at
+    most, since nearly all points of a forest are of crowns.
 
     The confidence is the geometric mean of what entropy and penetration say, and nothing with more penetration than
     the maximum is a building, with one exception. Clusters adjacent to a building (dormers, eaves, parapets) are all
@@ -156,7 +156,9 @@ def classify_buildings(
     cluster smaller than the minimum area is a building only beside another.
 
     Where points are few, larger spots of crowns are smooth by chance. Most of the points around these are leaves, so
-    clusters with too few building points around them are refused.
+    clusters with too few building points around them are refused. Such spots may lie next to each other, but none of
+    them is sure. So adjacent clusters are also decided on together, by their mean confidence times the mean share
+    around them, unless they are so large that ground would be seen in them among trees.
 
     In clouds of matched images, crowns are as closed as roofs, and penetration says nothing. There, roof surfaces are
     buildings, planar over half a meter, if the minimum share of the points around them lie on such surfaces. There, and
@@ -190,14 +192,15 @@ def classify_buildings(
     if doubt:
         monitor.warn(doubt)
     density = sampling.effective_density if density is None else density
-    around = _surface_neighborhood(sampling, density) if n_neighbors is None else Nearest(n_neighbors)
+    noise = sampling.noise_with_ground(xyz, classification)
+    around = _surface_neighborhood(sampling, density, noise) if n_neighbors is None else Nearest(n_neighbors)
     monitor.resolved(density=density, n_neighbors=around.count)
     if not (cluster_id > 0).any():
         return no_clusters(classification, reason, monitor)
 
     # 1. The mean entropy of each cluster, and the two means that separate buildings from everything else.
     entropies = cluster_entropies(xyz, cluster_id, around, monitor.part(0, 0.85), _MEASURED)
-    references = _usual_entropies(sampling, around.count, density)
+    references = _usual_entropies(noise, around.count, density)
     split = split_of_whole(sampling, lambda: held_means(entropies.means, *references, monitor))
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     by_entropy = decide_by_entropy(entropies.means, split)
@@ -266,14 +269,14 @@ def _decided_in_images(
     return decide_in_images(surface_share, is_green, given.evidence, given.min_share)
 
 
-def _surface_neighborhood(sampling: CloudSampling, density: float) -> Union[Nearest, Wide]:
+def _surface_neighborhood(sampling: CloudSampling, density: float, noise: float) -> Union[Nearest, Wide]:
     """Return the smallest neighborhood in which neither noise nor scan lines blur a plane's entropy."""
-    plane = sampling.neighborhood(density, sampling.noise)
+    plane = sampling.neighborhood(density, noise)
     times = ENTROPY.points_on_lines if isinstance(plane, Wide) else ENTROPY.points
     return replace(plane, count=round(times * plane.count))
 
 
-def _usual_entropies(sampling: CloudSampling, n_neighbors: int, density: float) -> tuple[float, float]:
-    """Return the mean entropy of planes as rough as the cloud's surfaces, and that of volumes."""
+def _usual_entropies(noise: float, n_neighbors: int, density: float) -> tuple[float, float]:
+    """Return the mean entropy of planes of that noise, m, and that of volumes."""
     reach = np.sqrt(n_neighbors / (np.pi * density))
-    return reference_entropies(n_neighbors, plane_roughness(sampling.noise, density) / reach)
+    return reference_entropies(n_neighbors, plane_roughness(noise, density) / reach)

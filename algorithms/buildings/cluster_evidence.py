@@ -9,8 +9,9 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
+from ..sampling.kinds import SCENE
 from ..segmentation.cluster_measures import (
-    grow_to_adjacent_clusters,
+    adjacent_groups,
     non_last_return_share,
     penetration,
     plan_areas,
@@ -61,9 +62,18 @@ class ClusterEvidence:
 
     def with_adjacent(self, is_solid: np.ndarray, is_plane: np.ndarray) -> np.ndarray:
         """Return the solid clusters (m,) of a building's size, and adjacent ones that are solid or plane."""
-        strong = self._by_number(is_solid & (self.areas >= self.min_area))
-        weak = self._by_number(is_solid | is_plane)
-        return grow_to_adjacent_clusters(self.xyz, self.group, strong, weak, self.density)[self.numbers]
+        strong, chosen = is_solid & (self.areas >= self.min_area), is_solid | is_plane
+        joined = self.adjacent(chosen)
+        return chosen & np.isin(joined, joined[strong])
+
+    def adjacent(self, is_chosen: np.ndarray) -> np.ndarray:
+        """Return a number (m,) for each cluster, the same for those chosen (m,) that are adjacent, as of a building."""
+        return adjacent_groups(self.xyz, self.group, self._by_number(is_chosen), self.density)[self.numbers]
+
+    def mean_of_buildings(self, values: np.ndarray, building: np.ndarray) -> np.ndarray:
+        """Return the mean of values (m,) over the points of all clusters with the same number ``building`` (m,)."""
+        points = np.bincount(self.group[self.group >= 0])[self.numbers]
+        return (np.bincount(building, points * values) / np.maximum(np.bincount(building, points), 1))[building]
 
     def _by_number(self, mask: np.ndarray) -> np.ndarray:
         """Return a mask of the clusters as one of all numbers, False for numbers without points."""
@@ -115,9 +125,19 @@ def with_penetration(
 
 
 def with_surroundings(decided: Decisions, min_share: float, evidence: ClusterEvidence) -> Decisions:
-    """Decide again, given the share of building points around each cluster."""
+    """Decide again, given the share of building points around each cluster and around each whole building.
+
+    In a forest, spots of crowns that are smooth by chance lie next to each other and pass for surroundings of
+    buildings, but none of them is sure. So the share around a whole building counts times its mean confidence, unless
+    it is so large that ground would be seen in it among trees.
+    """
     around = evidence.share_around(decided.is_building)
-    amid_others = decided.is_building & (around < min_share)
+    is_building = decided.is_building & (around >= min_share)
+    building = evidence.adjacent(is_building)
+    sure = evidence.mean_of_buildings(decided.confidence, building)
+    sure *= evidence.mean_of_buildings(evidence.share_around(is_building), building)
+    is_large = np.bincount(building, evidence.areas)[building] >= np.pi * SCENE.ground_within**2
+    amid_others = decided.is_building & ~(is_building & (is_large | (sure >= min_share)))
     reasons = np.where(amid_others, Reason.AMID_OTHERS, decided.reasons)
     return Decisions(np.where(amid_others, 0.5, decided.confidence), reasons.astype(np.uint8), around, min_share)
 

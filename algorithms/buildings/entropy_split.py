@@ -17,7 +17,7 @@ from ..stage import Monitor
 class SplitRules:
     """How two mean entropies are found."""
 
-    weight: int = rule(100, "clusters", "chosen: a handful of clusters can not move a reference, thousands can")
+    weight: float = rule(10.0, "times the clusters", "chosen: clusters move a reference by a tenth of their distance")
 
 
 SPLIT = SplitRules()
@@ -67,7 +67,8 @@ def split_of_whole(sampling: CloudSampling, measure: Callable[[], Split]) -> Spl
 def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor) -> Split:
     """Separate the clusters' mean entropies (m,) as K-means does, from reference entropies and held by them.
 
-    The references of planes and volumes count as ``SPLIT.weight`` clusters each.
+    The references of planes and volumes count ``SPLIT.weight`` times the clusters each: two means always find two
+    groups, also among thousands of clusters of a forest.
 
     Parameters
     ----------
@@ -86,13 +87,13 @@ def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor)
         The two means, and whether they separate.
     """
     known = np.sort(means[np.isfinite(means)])
-    low, high = plane, volume
+    low, high, weight = plane, volume, SPLIT.weight * max(len(known), 1)
     # Each round but the last moves clusters to the other mean, and none moves back.
     for _ in range(len(known) + 1):
         is_low = known <= (low + high) / 2
         before = low, high
-        low = float((known[is_low].sum() + SPLIT.weight * plane) / (is_low.sum() + SPLIT.weight))
-        high = float((known[~is_low].sum() + SPLIT.weight * volume) / ((~is_low).sum() + SPLIT.weight))
+        low = float((known[is_low].sum() + weight * plane) / (is_low.sum() + weight))
+        high = float((known[~is_low].sum() + weight * volume) / ((~is_low).sum() + weight))
         if (low, high) == before:
             break
     is_one_group = bool(is_low.all() or not is_low.any())

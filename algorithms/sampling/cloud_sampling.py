@@ -7,7 +7,7 @@ from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
-from ..cloud.asprs import NOISE
+from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import plan_box
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
@@ -15,7 +15,7 @@ from .closed_surface import seen_through_share
 from .density import effective_density, point_density
 from .height_resolution import height_resolution, rounding_deviation
 from .kinds import IMAGES, LASER, CloudKind
-from .surface_noise import SurfaceSample, plane_roughness
+from .surface_noise import SURFACES, SurfaceSample, plane_roughness
 
 # Measurements, each with its name and unit in the log.
 _MEASURES = {
@@ -37,6 +37,9 @@ _LEAST_DENSITY = 8.0
 
 # Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
 _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
+
+# Name of the noise of the ground among what parts of a cloud take of the whole.
+GROUND_NOISE = "ground_noise"
 
 # Returns the numbers that a table shows.
 Learn = Callable[[np.ndarray], tuple[float, ...]]
@@ -152,6 +155,17 @@ class CloudSampling:
     def noise(self) -> float:
         """Standard deviation of points across smooth surfaces, m; at least the resolution of heights."""
         return self._surfaces.noise(self.height_resolution)
+
+    def noise_with_ground(self, xyz: np.ndarray, classification: np.ndarray) -> float:
+        """Return the noise, m, and where ground is known no more than that of its points.
+
+        In a forest nearly all points are of crowns, whose smoothest parts are rougher than any surface. Stages that ask
+        for it declare ``GROUND_NOISE``.
+        """
+        ground = xyz.compress(classification == PointClass.GROUND, axis=0)
+        if GROUND_NOISE not in self.of_whole and len(ground) < SURFACES.neighbors:
+            return self.noise
+        return min(self.noise, self.shared(GROUND_NOISE, lambda: CloudSampling(lambda: ground).noise))
 
     @cached_property
     def scan_noise(self) -> float:

@@ -7,8 +7,8 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, lattice
-from ..geometry.groups import least_of
+from ..geometry.grid import Grid, connected_cells, distinct, find_cells, fixed_grid_over, lattice
+from ..geometry.groups import components, least_of
 from ..sampling.closed_surface import CLOSED
 from ..sampling.density import DENSITY
 from ..terrain.free_standing import FREE
@@ -102,34 +102,26 @@ def _numbered(number_of_returns: Optional[np.ndarray]) -> bool:
     return number_of_returns is not None and number_of_returns.max(initial=0) > 1
 
 
-def grow_to_adjacent_clusters(
-    xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np.ndarray, density: float
-) -> np.ndarray:
-    """Return the strong groups, and the weak ones adjacent to them, directly or over other weak ones.
+def adjacent_groups(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:
+    """Return which groups of points are adjacent, directly or over others: a number for those that are.
 
     Parameters
     ----------
     xyz, group, density
         As of :func:`penetration`.
-    strong, weak : ndarray of shape (group.max() + 1,), bool
-        Groups that are always taken, and groups that are taken next to others.
+    chosen : ndarray of shape (group.max() + 1,), bool
+        The groups that are looked at; every other has a number of its own.
 
     Returns
     -------
-    ndarray of shape (group.max() + 1,), bool
-        Groups taken. A weak one is, when a cell of it is a cell of groups taken or next to one.
+    ndarray of shape (group.max() + 1,), int32
+        Numbers from 0. Groups are adjacent when a cell of one is a cell of the other or next to one.
     """
     grid, owner, cell = _occupied(xyz, group, density)
+    owner, cell = (values[chosen[owner]] for values in (owner, cell))
     cells, which = distinct(cell)
-    near, taken, joins = np.zeros(len(cells), bool), strong.copy(), strong
-    while joins.any():
-        fresh = np.unique(cell[joins[owner]])
-        for step in (0, *grid.around):
-            there, found = find_cells(cells, fresh + step)
-            near[there[found]] = True
-        joins = weak & ~taken & (np.bincount(owner, near[which], len(strong)) > 0)
-        taken |= joins
-    return taken
+    connected = connected_cells(grid, cells)[1][which]
+    return components(owner, len(chosen) + connected, len(chosen) + len(cells))[1][: len(chosen)]
 
 
 def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from ..geometry.components import connect, number_large
 from ..neighborhoods.covariance import Nearest
 from ..params import PointDensity, PointSource, SurfaceNoise
 from ..rules import rule
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import GROUND_NOISE, CloudSampling
 from ..sampling.density import DENSITY
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.surface_noise import LEAST_NEIGHBORS, SURFACES, plane_roughness
@@ -54,6 +54,7 @@ SURFACE, IMAGE_SURFACE = RoofSurfaceRules(), ImageSurfaceRules()
     writes=("segment_id", "cluster_id", "reason"),
     # Width (m) of the surroundings that decide on a cluster; clusters themselves may be of any size.
     reach=5.0,
+    of_whole=(GROUND_NOISE,),
     cost=7.0,
 )
 def segment_roofs(
@@ -123,8 +124,9 @@ def segment_roofs(
     Notes
     -----
     The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which
-    a point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². This is the "more robust
-    segmentation" that the paper names as future work.
+    a point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². Noise over that of the
+    ground points is of crowns and does not count. This is the "more robust segmentation" that the paper names as future
+    work.
 
     In clouds of matched images, walls and other points below the surface seen from above are left out, and planes are
     laid through all points within half a meter. Crowns are closed surfaces there, and smooth over less than that.
@@ -148,7 +150,7 @@ def segment_roofs(
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density
-    noise = sampling.noise if noise is None else noise
+    noise = sampling.noise_with_ground(xyz, classification) if noise is None else noise
     kind = sampling.kind(source)
     min_height = kind.lowest_roof if min_height is None else min_height
     monitor.resolved(density=density, noise=noise, min_height=min_height, matched_images=kind.is_surface)

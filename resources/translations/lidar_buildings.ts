@@ -1148,7 +1148,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum share of buildings around&lt;/b&gt;: Share of the points within a few meters around a building that must belong to buildings, its own included. Around smooth spots of crowns it is less. &lt;i&gt;(at least 0 and at most 1; default 0.4)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum share of buildings around&lt;/b&gt;: Share of the points within a few meters around a building that must belong to buildings, its own included. Around smooth spots of crowns it is less. &lt;i&gt;(at least 0 and at most 1; default 0.5)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8340,7 +8340,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which a point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². This is the "more robust segmentation" that the paper names as future work.</source>
+        <source>The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which a point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². Noise over that of the ground points is of crowns and does not count. This is the "more robust segmentation" that the paper names as future work.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8692,7 +8692,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and in a ball. These two stay in the data, each with the weight of 100 clusters, so that a handful of clusters, or clusters of one kind only, are not split in two. In practice the two references decide: in real clouds of 50 to 2,900 clusters K-means moved the threshold by 0.02 at most.</source>
+        <source>Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and in a ball. These two stay in the data, each with many times the weight of all clusters, and so decide. A handful of clusters, or clusters of one kind only as in a forest, are not split in two. Surfaces are as rough as the ground at most, since nearly all points of a forest are of crowns.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8920,7 +8920,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Where points are few, larger spots of crowns are smooth by chance. Most of the points around these are leaves, so clusters with too few building points around them are refused.</source>
+        <source>Where points are few, larger spots of crowns are smooth by chance. Most of the points around these are leaves, so clusters with too few building points around them are refused. Such spots may lie next to each other, but none of them is sure. So adjacent clusters are also decided on together, by their mean confidence times the mean share around them, unless they are so large that ground would be seen in them among trees.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -390,7 +390,7 @@ WHOLE = (
     _out(
         "classify: weight of the references",
         "buildings.entropy_split:SPLIT",
-        _set("buildings.entropy_split:SPLIT", weight=10**9),
+        _set("buildings.entropy_split:SPLIT", weight=1e9),
     ),
     Rule("refine: learned from the scene", tunables={"refine": {"learn": False}}),
     Rule("complete: structures on roofs", tunables={"complete": {"structure_height": 0.0}}),

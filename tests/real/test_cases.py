@@ -61,6 +61,17 @@ def test_two_lists_of_extra_bytes_become_one(case, tmp_path, laspy):
         np.testing.assert_array_equal(again[name], cloud.points[f"extra{number}"])
 
 
+@pytest.mark.parametrize("name", ["forest_megaplot_e.laz", "forest_megaplot_e_hills.laz"])
+@pytest.mark.parametrize("keep", [1.0, 0.5])
+def test_a_forest_has_no_buildings(case, name, keep):
+    """About 6,000 m² of crowns were called buildings in both."""
+    cloud = read_cloud(case(name))
+    cloud = cloud.take(np.flatnonzero(np.random.default_rng(0).random(len(cloud)) < keep))
+    run_pipeline(PIPELINES["detect_buildings"], cloud, wanted=("output",))
+    building = cloud.get("xyz")[cloud.get("classification") == 6, :2]
+    assert len(np.unique(np.floor(building), axis=0)) <= 20
+
+
 def test_withheld_points_are_counted(case):
     monitor = Monitor()
     run_stage(STAGES["filter_points"], read_cloud(case("D1_flags.las")), monitor=monitor)

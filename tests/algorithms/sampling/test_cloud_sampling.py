@@ -88,6 +88,35 @@ def test_nothing_is_measured_before_it_is_asked_for_nor_twice(rng, monkeypatch):
     assert len(calls) == 4
 
 
+def under_crowns(rng, ground=2_000, crowns=8_000):
+    """Return a plane that rises by a tenth, with noise of 0.02 m, under crowns 8 m deep, and the classes of both."""
+    below = gentle_slope(rng, 0.5, 0.02, ground)
+    side = np.sqrt(ground / 0.5)
+    above = np.column_stack([rng.uniform(0, side, (crowns, 2)), rng.uniform(12, 20, crowns)])
+    return np.concatenate([below, above]), np.repeat([2, 1], [ground, crowns])
+
+
+def test_in_a_forest_the_ground_shows_the_noise_and_nowhere_else_more_than_all_points(rng):
+    xyz, classes = under_crowns(rng)
+    sampling = CloudSampling.of(xyz)
+    assert sampling.noise > 0.05
+    assert sampling.noise_with_ground(xyz, classes) == pytest.approx(0.02, rel=0.1)
+    # Of rough ground, and without any but a few points, the noise of all counts.
+    assert sampling.noise_with_ground(xyz, 3 - classes) == sampling.noise
+    few = np.where(np.arange(len(xyz)) < 11, 2, 1)
+    assert sampling.noise_with_ground(xyz, few) == sampling.noise
+
+
+def test_parts_take_the_noise_of_the_ground_of_the_whole(rng):
+    xyz, classes = under_crowns(rng)
+    whole = CloudSampling.of(xyz)
+    found = whole.noise_with_ground(xyz, classes)
+    assert whole.found == {"ground_noise": found}
+    part = whole.without_points()
+    part.of_whole.update(whole.found)
+    assert part.noise_with_ground(xyz[-100:], classes[-100:]) == found
+
+
 def test_the_log_shows_what_was_measured(rng):
     sampling = CloudSampling.of(gentle_slope(rng))
     assert str(sampling) == ""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.segmentation.cluster_measures import (
-    grow_to_adjacent_clusters,
+    adjacent_groups,
     penetration,
     plan_areas,
     share_around,
@@ -72,19 +72,27 @@ def test_penetration_by_hand(depth, expected):
     assert penetration(xyz, group, 1.0, np.ones(12), of_pulse)[1] == pytest.approx((expected + 0.1) / 2)
 
 
-def test_groups_grow_to_adjacent_clusters():
-    """In a row: a strong group, three weak ones that touch, and one apart; and one over a strong one."""
+def test_adjacent_groups_by_hand():
+    """In a row: a group, three that touch one another, and one apart; and two over each other far off."""
     groups = [(0,), (1, 2, 3, 4, 5), (6, 7), (8, 9, 10, 11, 12, 13), (15, 16), (30,), (30,)]
     xyz = at_cells(*[column for columns in groups for column in columns])
     group = np.repeat(np.arange(7), [len(columns) for columns in groups])
-    strong, weak = np.isin(np.arange(7), [0, 5]), np.ones(7, bool)
-    assert np.flatnonzero(~grow_to_adjacent_clusters(xyz, group, strong, weak, 1.0)).tolist() == [4]
-    # Without the second the third and fourth are beside nothing.
-    without = [1, 2, 3, 4]
-    found = grow_to_adjacent_clusters(xyz, group, strong, weak & (np.arange(7) != 1), 1.0)
-    assert np.flatnonzero(~found).tolist() == without
-    found = grow_to_adjacent_clusters(xyz, np.where(group == 1, -1, group), strong, weak, 1.0)
-    assert np.flatnonzero(~found).tolist() == without
+    everything = np.ones(7, bool)
+    assert_same_partition(adjacent_groups(xyz, group, everything, 1.0), [0, 0, 0, 0, 4, 5, 5])
+    # Without the second, the first is alone.
+    assert_same_partition(adjacent_groups(xyz, group, np.arange(7) != 1, 1.0), [0, 1, 2, 2, 4, 5, 5])
+    without = np.where(group == 1, -1, group)
+    assert_same_partition(adjacent_groups(xyz, without, everything, 1.0), [0, 1, 2, 2, 4, 5, 5])
+    assert_same_partition(adjacent_groups(xyz, group, ~everything, 1.0), np.arange(7))
+
+
+def test_parts_of_one_group_are_adjacent_to_all_that_either_is():
+    xyz, group = at_cells(0, 10, 1, 11), np.array([0, 0, 1, 2])
+    assert_same_partition(adjacent_groups(xyz, group, np.ones(3, bool), 1.0), [0, 0, 0])
+
+
+def assert_same_partition(found, expected):
+    np.testing.assert_array_equal(np.equal.outer(found, found), np.equal.outer(expected, expected))
 
 
 def test_what_lies_beneath_by_hand():
