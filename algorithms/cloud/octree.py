@@ -36,10 +36,20 @@ class Nodes:
 def nodes_of(
     path: Path, keys: np.ndarray, points: np.ndarray, corner: np.ndarray, side: np.ndarray, margin: np.ndarray
 ) -> Nodes:
-    """Return nodes by their keys (m, 4): level, column, row and layer.
+    """Return the nodes of an octree.
 
-    ``corner`` and ``side`` (2,) are those of the root, and ``margin`` (2,) is how far coordinates may be
-    rounded, also those on the faces of nodes.
+    Parameters
+    ----------
+    path : Path
+        The file, for the message.
+    keys : ndarray of shape (m, 4), int64
+        Level, column, row and layer of each node.
+    points : ndarray of shape (m,), int64
+        Points of each node.
+    corner, side : ndarray of shape (2,)
+        Lower corner and sides of the root in plan.
+    margin : ndarray of shape (2,)
+        How far coordinates may be rounded, also on the faces of nodes.
 
     Raises
     ------
