@@ -154,13 +154,14 @@ def extract_footprints(
     are drawn as chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each
     cell to a building or to the ground. Clusters whose points lie on one line have no area and give no polygon.
 
-    Houses of a row are parted along straight lines from one side of a building to the other, in its main directions.
-    Along such a line both roofs slope up from it, parallel roofs step by ``ROWS.least_height`` m, any by
-    ``ROWS.large_step`` m, or a wall rises ``ROWS.least_height`` m above both. A row has at least two such lines side by
-    side, ``ROWS.narrowest`` to ``ROWS.largest`` m apart, each seen on half of its length without low parts; 30 % are
-    enough for a further one. Houses are searched again for walls that end at these. One line is not enough, as two
-    roofs may be one house. Low parts and pieces under ``ROWS.least_area`` m² join one. At a step the lower house must
-    have six tenths of the height of the higher one. Houses keep the number of their cluster.
+    Houses of a row are parted along straight lines from one side of a building to the other, in its main directions and
+    in the one in which its roofs slope. Along such a line both roofs slope up from it, parallel roofs step by
+    ``ROWS.least_height`` m, any by ``ROWS.large_step`` m, or a wall rises ``ROWS.least_height`` m above both. One
+    dynamic program chooses all walls of a row. Each pays by the length on which it is seen, less its cost by its length
+    without low parts. A row costs as much as one wall can pay, as two roofs may be one house. Houses cost more the less
+    alike their widths are, from ``ROWS.narrowest`` m on. Each house is searched again for walls that end at these.
+    Pieces under ``ROWS.least_area`` m² join a neighbor. At a step the lower house must have six tenths of the height of
+    the higher one. Houses keep the number of their cluster.
 
     References
     ----------

@@ -1,29 +1,31 @@
 """Houses of a row: where the roofs above an outline show that one house ends and the next begins.
 
-A party wall is seen along a straight line from one side of a building to the other. There two roofs rise away from it
-(the valley between gables side by side), parallel roofs step, or a wall rises above both.
+A party wall runs straight from one side of a building to the other. There two roofs rise away from it (the valley
+between gables side by side), parallel roofs step, or a wall rises above both. The walls of a row are chosen together:
+those that cost least, by the evidence of each and how alike the houses between them are.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Optional
+from dataclasses import dataclass
+from functools import partial
+from typing import Callable
 
 import numpy as np
 
-from ..geometry.groups import components
-from ..geometry.line_segments import edge_distances, segments_meet
-from ..packages import ndimage, spatial
+from ..geometry.groups import components, split_groups
+from ..packages import ndimage
 from ..rules import rule
-from .soft_shares import LEAST_SPACING, NODES, Lattice
+from .soft_shares import LEAST_SPACING, NODES, Lattice, spread_out
 
 
 @dataclass(frozen=True)
 class RowRules:
-    """What shows a party wall, and which walls are of a row."""
+    """What shows a party wall, and what walls and houses of a row cost."""
 
     step: float = rule(0.6, "point spacings", "step of the grid of heights, no finer than the points")
     along: float = rule(1.0, "m", "physics: heights are averaged over it along a line; less than a dormer is wide")
+    points: float = rule(4.0, "point spacings", "heights are averaged over as much at least: enough points for a plane")
     near: float = rule(0.3, "m", "physics: from where the roof beside a line is measured, beyond the wall itself")
     far: float = rule(1.6, "m", "physics: to where the roof is measured, before the ridge of the narrowest house")
     rise: float = rule(0.25, "tangent", "physics: least slope of a roof that rises from a valley")
@@ -36,18 +38,19 @@ class RowRules:
     least_share: float = rule(
         0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
     )
-    seen: float = rule(0.5, "share", "of a wall that shows a row: what is seen of it beside roofs")
-    glimpsed: float = rule(
-        0.3, "share", "of a further wall of a row that is seen beside roofs: hips hide valleys at their ends"
-    )
-    evident: float = rule(0.2, "m, or tangent", "mean strength of a wall; noise of matched images reaches 0.17")
     high: float = rule(0.5, "share", "of the median height: lower parts are no roof of a row")
+    wall: float = rule(
+        0.15,
+        "per spacing",
+        "what a length of wall costs, where one clearly seen pays 1: noise of fewer points pays more",
+    )
+    whole: float = rule(8.0, "m", "physics: a wall that is clearly seen for as long is one wall; houses are as deep")
+    row: float = rule(0.9, "walls", "what a row costs, and the most that one wall pays: two roofs may be one house")
+    unlike: float = rule(0.1, "walls", "what a house e times as wide or narrow as the others of its row costs")
     narrowest: float = rule(3.5, "m", "physics: least width and depth of a house")
-    largest: float = rule(22.0, "m", "physics: greatest width and depth of a house")
+    deepest: float = rule(22.0, "m", "physics: greatest depth of a house")
     least_area: float = rule(25.0, "m²", "physics: smaller pieces that walls cut off are parts of a house next to them")
-    angle: float = rule(10.0, "°", "physics: between party walls of one row, which are nearly parallel")
     same: float = rule(0.8, "m", "closer lines are the same wall")
-    strong: float = rule(0.5, "share", "of the greatest strength, from which the line that parts roofs best is chosen")
 
     @property
     def wide(self) -> float:
@@ -56,18 +59,37 @@ class RowRules:
 
     @property
     def max_spacing(self) -> float:
-        """Spacing (m) up to which six samples of the grid fit in the roof beside a wall, so that noise makes no slope.
-
-        With four and five points per m² simulated single houses were split.
-        """
-        return self.far / (6 * self.step)
+        """Spacing (m) up to which three samples of the grid fit in the roof beside a wall, as few as make a plane."""
+        return self.far / (3 * self.step)
 
 
 ROWS = RowRules()
 
+
 #: Distance (m) between the positions one of which the grid of a building goes through: about the size of a house.
 #: With 22 m, outlines of Delft move by 0.19 instead of 0.08 m (median) when points move by 2 mm.
 _FIXED = 16.0
+
+# Times that a wall moves to the middle of the evidence around it; it hardly moves after half of them.
+_SHIFTS = 10
+
+# Steps per wall in which costs are whole numbers, so that rounding decides nothing.
+_STEPS = 10_000
+
+# Pays for a wall that can't be, in steps: less than all others of a row can bring, and far from the least number.
+_NEVER = -(10**12)
+
+# Widths (m) of the houses of a row that are tried, a fifth apart.
+_WIDTHS = 4.0 * 1.2 ** np.arange(7)
+
+# Lines of a roof within this angle (rad) of a main direction of the building run along it.
+_SAME_DIRECTION = np.radians(2.0)
+
+# Slopes (tangents) of roofs whose direction counts: level ones have none, and steeper ones are walls.
+_SLOPED = (0.2, 1.5)
+
+# Least area (m²) of sloping roof that shows a direction.
+_LEAST_SLOPED = 10.0
 
 
 @dataclass(frozen=True)
@@ -83,8 +105,8 @@ def split_row(
 ) -> Houses:
     """Return the houses of a row, or the building as one.
 
-    A party wall goes from one side of the building, or of a house parted before, to the other, and has another one
-    beside it, a house away.
+    The row that pays most is parted first, along one direction; then each house again, as a wall that ends at another
+    party wall is one from side to side only of what these leave.
 
     Parameters
     ----------
@@ -101,35 +123,51 @@ def split_row(
     spacing : float
         Mean distance between neighboring points, m. Nothing is split where it is greater than ``ROWS.max_spacing``.
     """
-    whole = Houses(np.zeros((0, 2, 2)), is_inside.astype(np.int64))
+    house, walls = is_inside.astype(np.int64), [np.zeros((0, 2, 2))]
     known = np.isfinite(height)
     if spacing > ROWS.max_spacing or is_inside.sum() * lattice.step**2 < 3 * ROWS.least_area or not known.any():
-        return whole
-    found = [_lines(lattice, is_inside, plan[known], height[known], np.radians(angle), spacing) for angle in angles]
-    parted = _parted(lattice, is_inside, found)
-    if parted is None or parted.house.max() == 1:
-        return parted or whole
-    # Each house again: a wall that ends at another party wall is one from side to side only of what these leave.
-    walls, house = [parted.walls], np.zeros_like(parted.house)
-    room = int((ROWS.wide + ROWS.along) / lattice.step) + 1
-    for number, box in enumerate(ndimage.find_objects(parted.house), start=1):
-        rows, columns = (slice(max(0, along.start - room), along.stop + room) for along in box)
-        window = rows, columns
-        part, is_own = lattice.part(window), parted.house[window] == number
-        near = part.holds(plan)
-        own = split_row(part, is_own, plan[near], height[near], angles, spacing)
-        house[window] += np.where(is_own, own.house + house.max(), 0)
-        walls.append(own.walls)
+        return Houses(walls[0], house)
+    plan, height = plan[known], height[known]
+    views = [
+        view
+        for angle in _directions(lattice, is_inside, plan, height, np.radians(angles))
+        for view in _views(lattice, is_inside, plan, height, angle, spacing)
+    ]
+    waiting = [1] if views else []
+    while waiting:
+        number = waiting.pop()
+        is_own = house == number
+        row = max((view.best_row(is_own) for view in views), key=lambda row: row.saved)
+        if row.saved > 0:
+            count = int(house.max())
+            house[is_own] = np.where(row.house > 0, count + row.house, number)[is_own]
+            walls.append(row.walls)
+            waiting += [number, *range(count + 1, int(house.max()) + 1)]
     return Houses(np.concatenate(walls), house)
 
 
-def _lines(
-    lattice: Lattice, is_inside: np.ndarray, plan: np.ndarray, height: np.ndarray, angle: float, spacing: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the ends (w, 2, 2) (m) and strengths (w,) (m²) of what may be party walls, and which (w,) are clear.
+def _directions(
+    lattice: Lattice, is_inside: np.ndarray, plan: np.ndarray, height: np.ndarray, angles: np.ndarray
+) -> list[float]:
+    """Return the directions (rad) of a building, and the one in which most of its roof slopes, if that is another."""
+    near = lattice.holds(plan)
+    seen, total = (ndimage.gaussian_filter(lattice.spread(plan[near], own), NODES) for own in (None, height[near]))
+    north, east = np.gradient(total / np.maximum(seen, 1e-9), lattice.step)
+    slope = np.hypot(east, north)
+    is_roof = ndimage.binary_erosion(is_inside, iterations=2 * NODES) & (slope > _SLOPED[0]) & (slope < _SLOPED[1])
+    found = angles.tolist()
+    if is_roof.sum() * lattice.step**2 >= _LEAST_SLOPED:
+        # Four times the angle is the same along a line and square to it.
+        turn = np.angle((slope * np.exp(4j * np.arctan2(north, east)))[is_roof].sum()) / 4
+        if (np.abs(np.angle(np.exp(4j * (angles - turn)))) > 4 * _SAME_DIRECTION).all():
+            found.append(float(turn))
+    return found
 
-    They run along a direction (rad) or square to it.
-    """
+
+def _views(
+    lattice: Lattice, is_inside: np.ndarray, plan: np.ndarray, height: np.ndarray, angle: float, spacing: float
+) -> list[_View]:
+    """Return the evidence of walls along a direction (rad) and square to it."""
     step = max(LEAST_SPACING, ROWS.step * spacing)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     inside = lattice.in_plan(np.argwhere(is_inside)[:, ::-1])
@@ -141,96 +179,233 @@ def _lines(
     # A point counts at the four positions around it, the more the nearer, so that a wall does not depend on the grid.
     seen, total = (grid.spread(turned[near], weight) for weight in (None, height[near]))
     roof = total / np.maximum(seen, 1e-9)
-    inside = is_inside[lattice.nearest(grid.positions @ turn.T + fixed)].reshape(grid.shape)
+    of_grid = np.ravel_multi_index(lattice.nearest(grid.positions @ turn.T + fixed), lattice.shape).reshape(grid.shape)
+    of_lattice = grid.nearest((lattice.positions - fixed) @ turn)
     # Farther than the building on both sides, so that the line parts it where the outline has a notch, too.
-    beyond = (ROWS.along + spacing) / step
-    found = []
-    for axis, arrays in ((0, (roof.T, seen.T, inside.T)), (1, (roof, seen, inside))):
-        runs = _along_first_axis(*arrays, step)
-        ends = np.empty((len(runs.column), 2, 2))
-        ends[:, 0, axis], ends[:, 1, axis] = runs.first - beyond, runs.last - 1 + beyond
-        ends[..., 1 - axis] = (runs.column + runs.shift)[:, None]
-        found.append((grid.in_plan(ends) @ turn.T + fixed, runs.strength, runs.is_clear))
-    ends, strength, is_clear = map(np.concatenate, zip(*found))
-    return ends, strength, is_clear
+    along = max(ROWS.along, ROWS.points * spacing)
+    beyond = (along + spacing) / step
+
+    def in_plan(along: np.ndarray, across: np.ndarray, axis: int) -> np.ndarray:
+        ends = np.empty((len(across), 2, 2))
+        ends[..., axis], ends[..., 1 - axis] = along + [-beyond, beyond], across[:, None]
+        return grid.in_plan(ends) @ turn.T + fixed
+
+    return [
+        _View(
+            spacing,
+            step,
+            of_grid.T,
+            of_lattice[::-1],
+            partial(in_plan, axis=0),
+            *_evidence(roof.T, seen.T, step, along),
+        ),
+        _View(spacing, step, of_grid, of_lattice, partial(in_plan, axis=1), *_evidence(roof, seen, step, along)),
+    ]
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A row of houses within a part of a building."""
+
+    saved: int  #: By how much its walls pay more than they cost, in steps
+    walls: np.ndarray  #: (w, 2, 2): ends of its party walls, m
+    house: np.ndarray  #: (rows, columns), int64: house, from 0, at the nodes of the lattice
+
+
+@dataclass(frozen=True)
+class _View:
+    """What shows walls along the first axis of a grid, at its nodes (rows, columns)."""
+
+    spacing: float  #: Mean distance between neighboring points, m
+    step: float  #: Distance of nodes, m
+    of_grid: np.ndarray  #: Number of the node of the lattice there
+    of_lattice: tuple[np.ndarray, np.ndarray]  #: Row and column of the grid at each node of the lattice
+    in_plan: Callable  #: Returns the ends (w, 2, 2), m, of walls by their first and last rows (w, 2) and columns (w,)
+    strength: np.ndarray  #: Evidence of a wall, 0 to 1
+    beside: np.ndarray  #: Height of the higher roof beside it, m; NaN where unknown
+
+    @property
+    def closed(self) -> int:
+        """Number of nodes by which notches and gaps are closed, which end no wall: up to two point spacings wide."""
+        return max(1, int(self.spacing / self.step + 0.5))
+
+    def best_row(self, is_own: np.ndarray) -> _Row:
+        """Return the row that saves most in the part of a building at some nodes of the lattice, 0 if none does."""
+        inside = ndimage.binary_closing(is_own.ravel()[self.of_grid], iterations=self.closed)
+        runs = _Runs.of(inside)
+        sums = self._sums(runs, inside)
+        pays = self._pays(runs, *sums)
+        found = [(*_chosen_walls(pays[chain], runs.length[chain], self.step), chain) for chain in runs.chains()]
+        saved, walls, chain = max(found, key=lambda one: one[0], default=(0, *np.zeros((2, 0), np.int64)))
+        house = runs.houses(chain, walls, self.step)
+        if saved <= 0 or not house.any():
+            return _Row(0, np.zeros((0, 2, 2)), np.zeros(is_own.shape, np.int64))
+        ends = np.column_stack([runs.first[chain[walls]], runs.last[chain[walls]] - 1])
+        label = spread_out(np.where(inside, 1 + house[runs.number], 0))[self.of_lattice] - 1
+        places = runs.column[chain[0]] + self._places(sums[1][chain], walls)
+        return _Row(saved, self.in_plan(ends, places), label.reshape(is_own.shape))
+
+    def _sums(self, runs: _Runs, inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return how long (m) roofs that are not low are along each run, and how much (m) of a wall is seen there."""
+        known = self.beside[inside & np.isfinite(self.beside)]
+        is_high = self.beside >= (ROWS.high * np.median(known) if len(known) else 0.0)
+        # A wall that is not quite along the columns is seen in one beside.
+        near = ndimage.maximum_filter1d(self.strength, 3, axis=1)
+        return runs.sums(is_high) * self.step, runs.sums(is_high * near) * self.step
+
+    def _pays(self, runs: _Runs, counted: np.ndarray, seen: np.ndarray) -> np.ndarray:
+        """Return what a wall along each run pays, in steps: its evidence less its cost, both by its length."""
+        pays = (seen - ROWS.wall * self.spacing * counted) / np.clip(counted, ROWS.narrowest, ROWS.whole)
+        # The houses beside a wall that does not pay by itself would be alike, but nothing shows it.
+        is_wall = (counted >= ROWS.narrowest) & (counted <= ROWS.deepest) & (pays > 0)
+        return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), _NEVER).astype(np.int64)
+
+    def _places(self, seen: np.ndarray, walls: np.ndarray) -> np.ndarray:
+        """Return where (columns of the chain) walls are: in the middle of the evidence around them, by mean shift."""
+        column, place = np.arange(len(seen)), walls.astype(float)
+        for _ in range(_SHIFTS):
+            near = seen * np.clip(1 - ((column - place[:, None]) * self.step / ROWS.far) ** 2, 0.0, None)
+            total = near.sum(axis=1)
+            place = np.where(total > 0, near @ column / np.where(total > 0, total, 1.0), place)
+        # A house that would become too narrow by that keeps its width.
+        narrow = np.flatnonzero(np.diff(place) * self.step < ROWS.narrowest)
+        moved = np.union1d(narrow, narrow + 1)
+        place[moved] = walls[moved]
+        return place
 
 
 @dataclass(frozen=True)
 class _Runs:
-    """What may be party walls along the first axis of a grid, (r,) of each."""
+    """Runs of nodes of a part of a building along the first axis of a grid, (r,) of each, column by column."""
 
+    number: np.ndarray  #: (rows, columns), int64: run that each node is in; the last one elsewhere
     column: np.ndarray  #: int64: its column
     first: np.ndarray  #: int64: its first row
     last: np.ndarray  #: int64: the row after its last one
-    shift: np.ndarray  #: Columns from its column to where two lines fit the roof best
-    strength: np.ndarray  #: Sum of the strength of the evidence along it, m² (of valleys m)
-    is_above: np.ndarray  #: bool: whether most of its strength is that of a wall above both roofs
-    misfit: np.ndarray  #: Mean deviation of the roof from two lines that meet, m
-    beyond: np.ndarray  #: Mean deviation of the roof from two lines that begin beyond a wall, m
-    is_clear: np.ndarray  #: bool: whether most of it is seen
+    beside: np.ndarray  #: (p, 2), int64: runs in columns side by side that have rows in common
+    shared: np.ndarray  #: (p,), int64: how many
 
-    def take(self, index: np.ndarray) -> _Runs:
-        """Return some of them."""
-        return _Runs(*(getattr(self, field.name)[index] for field in fields(self)))
+    @classmethod
+    def of(cls, inside: np.ndarray) -> _Runs:
+        """Return the runs of nodes inside."""
+        change = np.diff(np.pad(inside.T, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+        column, first = np.nonzero(change == 1)
+        number = np.cumsum((change == 1)[:, :-1].ravel()).reshape(inside.T.shape).T - 1
+        both = inside[:, :-1] & inside[:, 1:]
+        key = number[:, :-1][both] * len(column) + number[:, 1:][both]
+        pairs, shared = np.unique(key, return_counts=True)
+        beside = np.column_stack(np.divmod(pairs, max(len(column), 1)))
+        return cls(number, column, first, np.nonzero(change == -1)[1], beside, shared)
+
+    @property
+    def length(self) -> np.ndarray:
+        """Return the number of nodes of each."""
+        return self.last - self.first
+
+    def sums(self, values: np.ndarray) -> np.ndarray:
+        """Return the sums of values (rows, columns) in each run."""
+        total = np.cumsum(np.pad(values.astype(float), ((1, 0), (0, 0))), axis=0)
+        return total[self.last, self.column] - total[self.first, self.column]
+
+    def chains(self) -> list[np.ndarray]:
+        """Return the runs that follow each other from column to column, each the one that shares most with the next."""
+        one, other = self.beside.T
+        order = np.argsort(self.shared, kind="stable")
+        after, before = np.full((2, len(self.column)), -1)
+        after[one[order]], before[other[order]] = other[order], one[order]
+        follows = np.flatnonzero(before[after] == np.arange(len(after)))
+        follows = follows[after[follows] >= 0]
+        count, chain = components(follows, after[follows], len(after))
+        return split_groups(chain, count)
+
+    def houses(self, chain: np.ndarray, walls: np.ndarray, step: float) -> np.ndarray:
+        """Return the house (r,), from 0, of each run, with walls before some runs of a chain."""
+        is_cut = np.isin(self.beside[:, 1], chain[walls]) | np.isin(self.beside[:, 0], chain[walls - 1])
+        one, other = self.beside[~is_cut].T
+        piece = components(one, other, len(self.column))[1]
+        return _without_small(piece, self.beside, self.shared, self.length * step**2)
 
 
-def _along_first_axis(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, step: float) -> _Runs:
-    """Return what may be party walls along the first axis, one of those that lie side by side."""
-    counted = is_inside & (seen > 0)
-    least = ROWS.high * np.median(roof[counted]) if counted.any() else 0.0
-    runs = _runs_of_party_walls(roof, seen, is_inside, least, step)
-    return runs.take(_distinct(runs, ROWS.same / step))
+def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[int, np.ndarray]:
+    """Return what the best walls of a chain of runs save (steps), and before which runs they stand, ascending.
 
+    Houses are ``ROWS.narrowest`` m wide at least and have ``ROWS.least_area`` m². One e times as wide as the width that
+    suits the row best costs ``ROWS.unlike`` walls.
 
-def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, least: float, step: float) -> _Runs:
-    """Return the runs like a party wall. Only beside roofs of the ``least`` height (m) a wall has to be seen."""
-    weight, height, is_above, misfit, beyond = _evidence(roof, seen, step)
-    is_high = height >= least
-    column, first, last = _runs(is_inside)
-    length = (last - first) * step
-    is_seen = ndimage.maximum_filter1d(weight, 3, axis=1) > 0
-    counted, supported, strength, above, beyond = (
-        _sums_of_runs(values, column, first, last) * step
-        for values in (is_high, is_seen & is_high, weight, is_above * weight, beyond)
-    )
-    beside = (np.clip(column + at, 0, roof.shape[1] - 1) for at in (-1, 0, 1))
-    before, at_line, after = (_sums_of_runs(misfit, at, first, last) * step / length for at in beside)
-    bend = before - 2 * at_line + after
-    # Beside a wall above both roofs the misfit is that of the wall, and its least value is no evidence.
-    is_sharp = bend > at_line / 2
-    shift = np.where(is_sharp, np.clip((before - after) / np.where(is_sharp, 2 * bend, 1.0), -0.5, 0.5), 0.0)
-    is_clear = (supported >= np.maximum(ROWS.narrowest, ROWS.seen * counted)) & (strength >= ROWS.evident * counted)
-    is_long = (length >= ROWS.narrowest) & (length <= ROWS.largest)
-    good = np.flatnonzero(is_long & (supported >= ROWS.glimpsed * np.maximum(ROWS.narrowest, counted)))
-    is_wall = 2 * above > strength
-    return _Runs(column, first, last, shift, strength, is_wall, at_line, beyond / length, is_clear).take(good)
-
-
-def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
-    """Return the strength of party walls along the first axis at samples (m; of valleys a tangent).
-
-    Further the height beside them (m), whether they are a wall above both roofs, and the misfits of roofs that meet and
-    of those beyond a wall.
+    Parameters
+    ----------
+    pays : ndarray of shape (n,), int64
+        What a wall before each run pays, in steps.
+    length : ndarray of shape (n,), int64
+        Nodes of each run.
+    step : float
+        Distance of nodes, m.
     """
-    sums = _Sums.along(roof, seen, step)
+    count, narrowest = len(pays), int(np.ceil(ROWS.narrowest / step))
+    starts = range(0, count, narrowest)
+    # No more than one wall stands in each strip as wide as the narrowest house.
+    if np.maximum.reduceat(pays, starts).clip(0).sum() <= ROWS.row * _STEPS:
+        return 0, np.zeros(0, np.int64)
+    area = np.concatenate([[0], np.cumsum(length)]) * step**2
+    widths = np.arange(1, count + 1) * step
+    unlike = np.rint(ROWS.unlike * _STEPS * np.abs(np.log(widths / _WIDTHS[:, None]))).astype(np.int64)
+    saved = np.full((len(_WIDTHS), count + 1), _NEVER)
+    before = np.zeros(saved.shape, np.int64)
+    saved[:, 0] = 0
+    for end in range(narrowest, count + 1):
+        # Houses that end here begin before the last of these; the first of equal ones counts.
+        last = min(end - narrowest + 1, int(np.searchsorted(area, area[end] - ROWS.least_area, "right")))
+        if last > 0:
+            total = saved[:, :last] - unlike[:, end - last : end][:, ::-1]
+            before[:, end] = total.argmax(axis=1)
+            saved[:, end] = total.max(axis=1) + (pays[end] if end < count else -round(ROWS.row * _STEPS))
+    width = int(saved[:, count].argmax())
+    walls, at = [], int(before[width, count])
+    while at > 0:
+        walls.append(at)
+        at = int(before[width, at])
+    return int(saved[width, count]), np.array(walls[::-1], np.int64)
+
+
+def _without_small(piece: np.ndarray, pairs: np.ndarray, shared: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """Return the pieces of cells, from 0, with those smaller than a house in the one that they share most border with.
+
+    The smallest comes first.
+    """
+    piece = piece.copy()
+    while True:
+        size = np.bincount(piece, area)
+        beside = piece[pairs]
+        is_border = beside[:, 0] != beside[:, 1]
+        beside, border = beside[is_border], shared[is_border]
+        small = np.flatnonzero((size > 0) & (size < ROWS.least_area) & np.isin(np.arange(len(size)), beside))
+        if not len(small):
+            return np.unique(piece, return_inverse=True)[1]
+        own = beside == small[np.argmin(size[small])]
+        weight = np.repeat(border, own.sum(axis=1))
+        piece[piece == small[np.argmin(size[small])]] = np.bincount(beside[own[:, ::-1]], weight).argmax()
+
+
+def _evidence(roof: np.ndarray, seen: np.ndarray, step: float, along: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the evidence, 0 to 1, of walls along the first axis, and the height (m) of the higher roof beside each.
+
+    It is 0 up to the least that counts, a half from twice as much, and near 1 from many times as much.
+    """
+    sums = _Sums.along(roof, seen, step, along)
     left, right = _side(sums, step, -1), _side(sums, step, 1)
     jump = np.abs(right.at_sample - left.at_sample)
     is_valley = (left.rise > ROWS.rise) & (right.rise > ROWS.rise)
     is_ridge = (left.rise < -ROWS.rise) & (right.rise < -ROWS.rise)
-    is_parallel = (jump > ROWS.least_height) & (np.abs(left.rise + right.rise) < ROWS.parallel)
+    is_parallel = np.abs(left.rise + right.rise) < ROWS.parallel
     is_large = (jump > ROWS.large_step) & ~is_ridge
     is_smooth = np.maximum(left.rough, right.rough) < ROWS.rough
     is_house = np.minimum(left.mean, right.mean) >= ROWS.least_share * np.maximum(left.mean, right.mean)
-    above = _above(sums, left, right, step)
     goes_on = _goes_on(sums.mean(), sums.n >= 1, right.at_sample - left.at_sample, step)
     is_step = (is_parallel | is_large) & is_smooth & is_house & goes_on
-    is_parapet = (above > ROWS.least_height) & is_smooth
-    strength = np.where(is_step, np.minimum(jump, 2 * ROWS.large_step), np.where(is_parapet, above, 0.0))
-    strength = np.where(is_valley, np.minimum(left.rise, right.rise), strength)
-    is_above = is_parapet & ~is_step & (np.maximum(left.rise, right.rise) < ROWS.rise)
-    misfit = np.nan_to_num(left.misfit) + np.nan_to_num(right.misfit)
-    beyond = np.nan_to_num(left.rough) + np.nan_to_num(right.rough)
-    return strength, np.nan_to_num(np.maximum(left.mean, right.mean)), is_above, misfit, beyond
+    above = np.where(is_smooth, _above(sums, left, right, step), 0.0)
+    times = np.maximum(np.where(is_step, jump, 0.0), above) / ROWS.least_height
+    times = np.where(is_valley, np.maximum(times, np.minimum(left.rise, right.rise) / ROWS.rise), times)
+    return 1 - 1 / np.maximum(np.nan_to_num(times), 1.0), np.maximum(left.mean, right.mean)
 
 
 @dataclass(frozen=True)
@@ -245,9 +420,9 @@ class _Sums:
     zz: np.ndarray
 
     @classmethod
-    def along(cls, roof: np.ndarray, seen: np.ndarray, step: float) -> _Sums:
+    def along(cls, roof: np.ndarray, seen: np.ndarray, step: float, along: float) -> _Sums:
         """Return the sums at each sample of the mean heights (m) and numbers of points of cells."""
-        half = round(ROWS.along / 2 / step)
+        half = round(along / 2 / step)
         y = np.arange(-half, half + 1) * step
         count = seen.astype(float)
 
@@ -273,7 +448,6 @@ class _Side:
     slope: np.ndarray  #: How it rises along the line
     rough: np.ndarray  #: Root mean square deviation of the points, m
     mean: np.ndarray  #: Their mean height, m
-    misfit: np.ndarray  #: The deviation where the fit begins at the sample itself, m
 
 
 def _side(sums: _Sums, step: float, sign: int) -> _Side:
@@ -294,12 +468,7 @@ def _side(sums: _Sums, step: float, sign: int) -> _Side:
     across = [total(*term) for term in terms]
     at_sample, rise, slope, rough = _fitted(across, last + 1 - first)
     mean = np.where(np.isfinite(rise), across[6] / np.maximum(across[0], 1.0), np.nan)
-    for offset in range(1, first):
-        own, other = slice(None, -offset), slice(offset, None)
-        own, other = (own, other) if sign > 0 else (other, own)
-        for one, (values, exponent) in zip(across, terms):
-            one[:, own] += values[:, other] * (offset * step) ** exponent
-    return _Side(at_sample, rise, slope, rough, mean, _fitted(across, last)[3])
+    return _Side(at_sample, rise, slope, rough, mean)
 
 
 def _fitted(across: list, count: int) -> tuple[np.ndarray, ...]:
@@ -343,172 +512,3 @@ def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: flo
     up = ndimage.minimum_filter1d(np.nan_to_num(farther, nan=np.inf), same, axis=1)
     down = ndimage.maximum_filter1d(np.nan_to_num(farther, nan=-np.inf), same, axis=1)
     return np.where(jump > 0, up >= jump / 2, down <= jump / 2)
-
-
-def _runs(is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the column of each run of cells inside along the first axis, its first row and the one after its last."""
-    change = np.diff(np.pad(is_inside.T, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    column, first = np.nonzero(change == 1)
-    return column, first, np.nonzero(change == -1)[1]
-
-
-def _sums_of_runs(values: np.ndarray, column: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Return the sum of the values in each run."""
-    total = np.cumsum(np.pad(values.astype(float), ((1, 0), (0, 0))), axis=0)
-    return total[last, column] - total[first, column]
-
-
-def _distinct(runs: _Runs, same: float) -> np.ndarray:
-    """Return one of the runs that lie side by side: where two lines fit best, of those with strong evidence."""
-    found = []
-    column, first, last, strength = runs.column, runs.first, runs.last, runs.strength
-    is_open = np.ones(len(column), bool)
-    for best in np.argsort(-strength, kind="stable").tolist():
-        if not is_open[best]:
-            continue
-        shared = np.minimum(last, last[best]) - np.maximum(first, first[best])
-        beside = is_open & (2 * shared > last[best] - first[best])
-        near = beside & (np.abs(column - column[best]) <= same)
-        strong = np.flatnonzero(near & (strength >= ROWS.strong * strength[best]))
-        fit = runs.beyond if runs.is_above[best] else runs.misfit
-        found.append(int(strong[np.argmin(fit[strong])]))
-        is_open &= ~beside | (np.abs(column - column[found[-1]]) > same)
-        is_open[best] = False
-    return np.array(found, np.int64)
-
-
-def _parted(lattice: Lattice, is_inside: np.ndarray, found: list) -> Optional[Houses]:
-    """Return the houses between party walls, of which ``found`` are ends and strengths; None without any."""
-    if not found:
-        return None
-    ends, strength, is_clear = (np.concatenate(values) for values in zip(*found))
-    order = np.lexsort((-strength, ~is_clear))
-    ends, is_clear = ends[order], is_clear[order]
-    in_rows = _in_rows(ends, is_clear)
-    ends, is_clear = ends[in_rows], is_clear[in_rows]
-    if not len(ends):
-        return None
-    pairs, middle = _pairs(lattice, is_inside)
-    area = lattice.step**2
-    crossed = _crossed(ends, middle[pairs])
-    # Nodes that no wall parts are one cell: there are many fewer of these.
-    is_crossed = np.zeros(len(pairs), bool)
-    is_crossed[np.concatenate(crossed)] = True
-    cell = _pieces(pairs[~is_crossed], len(middle))
-    pairs, number = cell[pairs[is_crossed]], np.cumsum(is_crossed) - 1
-    crossed, size = [number[own] for own in crossed], area * np.bincount(cell)
-    kept = _chosen_walls(ends, crossed, pairs, size)
-    kept = kept[_in_rows(ends[kept], is_clear[kept])]
-    walls = ends[kept]
-    is_cut = np.zeros(len(pairs), bool)
-    for wall in kept:
-        is_cut[crossed[wall]] = True
-    house = np.zeros(is_inside.shape, np.int64)
-    house[is_inside] = 1 + _without_small(_pieces(pairs[~is_cut], len(size)), pairs, size)[cell]
-    return Houses(walls, house) if len(walls) else None
-
-
-def _chosen_walls(ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """Return the party walls, of those that come first, that leave room between them and part two houses.
-
-    ``crossed`` are the ``pairs`` of cells that each parts, ``area`` (m²) is that of the cells.
-    """
-    kept: list = []
-    is_cut, before, houses_before = np.zeros(len(pairs), bool), 1, 1
-    for wall, own in enumerate(crossed):
-        if kept and _is_close(ends[wall], ends[kept]):
-            continue
-        more = is_cut.copy()
-        more[own] = True
-        size = np.bincount(_pieces(pairs[~more], len(area)), area)
-        houses = int((size >= ROWS.least_area).sum())
-        # A wall beside a courtyard parts nothing before another one does on the other side.
-        if houses > houses_before or len(size) == before:
-            kept.append(wall)
-            is_cut, before, houses_before = more, len(size), houses
-    return np.array(kept, np.int64)
-
-
-def _without_small(piece: np.ndarray, pairs: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """Return the pieces of cells, from 0, with those smaller than a house in the one that they share most border with.
-
-    The smallest comes first.
-    """
-    piece = piece.copy()
-    while True:
-        size = np.bincount(piece, area)
-        beside = piece[pairs]
-        beside = beside[beside[:, 0] != beside[:, 1]]
-        small = np.flatnonzero((size > 0) & (size < ROWS.least_area) & np.isin(np.arange(len(size)), beside))
-        if not len(small):
-            return np.unique(piece, return_inverse=True)[1]
-        own = beside == small[np.argmin(size[small])]
-        piece[piece == small[np.argmin(size[small])]] = np.bincount(beside[own[:, ::-1]]).argmax()
-
-
-def _pairs(lattice: Lattice, is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes (p, 2) of a building beside each other, counted among its own, and their positions (m)."""
-    number = np.full(is_inside.shape, -1)
-    number[is_inside] = np.arange(is_inside.sum())
-    beside = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
-    both = np.concatenate([np.column_stack([one.ravel(), other.ravel()]) for one, other in beside])
-    return both[(both >= 0).all(axis=1)], lattice.in_plan(np.argwhere(is_inside)[:, ::-1])
-
-
-def _pieces(pairs: np.ndarray, count: int) -> np.ndarray:
-    """Return the piece, from 0, of each of ``count`` cells that pairs of them connect."""
-    return components(pairs[:, 0], pairs[:, 1], count)[1]
-
-
-def _crossed(ends: np.ndarray, segments: np.ndarray) -> list:
-    """Return for each party wall the segments (n, 2, 2) that lead across it."""
-    middle, step = segments.mean(axis=1), ends[:, 1] - ends[:, 0]
-    length, (east, north) = np.hypot(*step.T), np.ascontiguousarray(middle.T)
-    half = np.hypot(*(segments[:, 1] - segments[:, 0]).T).max(initial=0.0) / 2
-    found = []
-    for start, (x, y), size in zip(ends[:, 0], step / length[:, None], length):
-        # Few segments are as near as half of their length.
-        own = np.flatnonzero(np.abs(x * (north - start[1]) - y * (east - start[0])) <= half)
-        offset = segments[own] - start
-        side = x * offset[..., 1] - y * offset[..., 0] > 0
-        along = (middle[own] - start) @ [x, y]
-        found.append(own[(side[:, 0] != side[:, 1]) & (along >= 0) & (along <= size)])
-    return found
-
-
-def _is_close(wall: np.ndarray, others: np.ndarray) -> bool:
-    """Return whether a party wall (2, 2) crosses one of others (w, 2, 2), or leaves no room for a house beside it."""
-    starts, stops = others[:, 0], others[:, 1]
-    if segments_meet(wall[:1], wall[1:], starts, stops):
-        return True
-    from_wall, to_wall = edge_distances(wall, starts, stops), edge_distances(others.reshape(-1, 2), wall[:1], wall[1:])
-    return bool(min(from_wall.min(), to_wall.min()) < ROWS.narrowest)
-
-
-def _in_rows(ends: np.ndarray, is_clear: np.ndarray) -> np.ndarray:
-    """Return which party walls (w,) are of a row: three houses or more, with two clear walls side by side."""
-    length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-    reach = ROWS.largest + length.max(initial=0.0)
-    near = spatial.cKDTree(ends.mean(axis=1)).query_pairs(reach, output_type="ndarray")
-    near = np.concatenate([near, near[:, ::-1]])
-    one, other = near[_are_next(ends[near[:, 0]], ends[near[:, 1]])].T
-    count, row = components(one, other, len(ends))
-    is_row = np.zeros(count, bool)
-    is_row[row[one[is_clear[one] & is_clear[other]]]] = True
-    return is_row[row]
-
-
-def _are_next(walls: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return which others (p, 2, 2) are nearly parallel to party walls (p, 2, 2) and as far away as a house is wide."""
-    step, other_step = walls[:, 1] - walls[:, 0], others[:, 1] - others[:, 0]
-    length, other_length = np.hypot(*step.T), np.hypot(*other_step.T)
-    x, y = (step / length[:, None]).T
-    offset_x, offset_y = np.moveaxis(others - walls[:, :1], 2, 0)
-    along = np.sort(offset_x * x[:, None] + offset_y * y[:, None], axis=1)
-    shared = np.minimum(along[:, 1], length) - np.maximum(along[:, 0], 0.0)
-    apart = np.abs((x[:, None] * offset_y - y[:, None] * offset_x).mean(axis=1))
-    is_parallel = (
-        np.abs(x * other_step[:, 0] + y * other_step[:, 1]) >= float(np.cos(np.radians(ROWS.angle))) * other_length
-    )
-    is_beside = 2 * shared >= np.minimum(length, other_length)
-    return is_parallel & is_beside & (apart >= ROWS.narrowest) & (apart <= ROWS.largest)

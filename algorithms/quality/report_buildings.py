@@ -131,10 +131,7 @@ def summary_of(values: dict) -> str:
     """Return what was found, in a sentence."""
     count = values["buildings"]
     noun = "building" if count == 1 else "buildings"
-    found = f"{count:,} {noun}, {values['area']:,.0f} m²"
-    if 0 < count == values["doubtful"]:
-        return f"Perhaps no building: {found}, all doubtful."
-    return f"{found}, {values['doubtful']:,} doubtful."
+    return f"{count:,} {noun}, {values['area']:,.0f} m², {values['doubtful']:,} doubtful."
 
 
 @dataclass(frozen=True)

@@ -5468,7 +5468,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions. Along such a line both roofs slope up from it, parallel roofs step by 0.2 m, any by 1 m, or a wall rises 0.2 m above both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low parts; 30 % are enough for a further one. Houses are searched again for walls that end at these. One line is not enough, as two roofs may be one house. Low parts and pieces under 25 m² join one. At a step the lower house must have six tenths of the height of the higher one. Houses keep the number of their cluster.</source>
+        <source>Houses of a row are parted along straight lines from one side of a building to the other, in its main directions and in the one in which its roofs slope. Along such a line both roofs slope up from it, parallel roofs step by 0.2 m, any by 1 m, or a wall rises 0.2 m above both. One dynamic program chooses all walls of a row. Each pays by the length on which it is seen, less its cost by its length without low parts. A row costs as much as one wall can pay, as two roofs may be one house. Houses cost more the less alike their widths are, from 3.5 m on. Each house is searched again for walls that end at these. Pieces under 25 m² join a neighbor. At a step the lower house must have six tenths of the height of the higher one. Houses keep the number of their cluster.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5688,7 +5688,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow yards points just below the ground are left alone.</source>
+        <source>Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three that share a level over meters, to the noise of surfaces, and are most of those around, are a floor, seen through glass or in a shaft. Among crowns and in narrow yards points just below the ground are left alone.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
