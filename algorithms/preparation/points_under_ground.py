@@ -17,7 +17,6 @@ from ..packages import spatial
 from ..rules import rule
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
-from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 
@@ -33,18 +32,8 @@ class UnderGroundRules:
 UNDER_GROUND = UnderGroundRules()
 
 
-def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor) -> np.ndarray:
-    """Return which points (n,) lie under the ground, alone or without a common level.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        Coordinates, m.
-    spacing, noise : float
-        Point spacing, and noise of surfaces, m.
-    monitor : Monitor
-        Receives progress.
-    """
+def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
+    """Return which points (n, 3), m, of a spacing (m) lie under the ground, alone or few together."""
     cell = float(np.sqrt(DENSITY.points_per_cell)) * spacing
     grid = fixed_grid_over(xyz, cell)
     cells, which = distinct(grid.number(xyz))
@@ -72,13 +61,14 @@ def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor
         rows = rows[_is_under(xyz[rows, 2], close, is_smooth, around)]
         near = near_cells(grid, cells, which[rows])
         beside = np.flatnonzero(mask_of(len(cells), near)[which])
-        rows = rows[_at_level(xyz[rows], xyz[beside], cell, UNDER_GROUND.depth) <= UNDER_GROUND.few]
+        rows = rows[_at_level(xyz[rows], xyz[beside], cell) <= UNDER_GROUND.few]
         monitor.progress(1 - 0.5**turn)
         if not len(rows):
             return found
         found[rows] = True
         low = np.flatnonzero(found)
-        is_floor[low] = _on_floor(xyz[low], noise)
+        # Points of a floor that is seen here and there lie apart.
+        is_floor[low] = _at_level(xyz[low], xyz[low], SCENE.ground_within / 2) > UNDER_GROUND.few
         found &= ~is_floor
         n_found = np.bincount(which[found], minlength=len(cells))
         near = near_cells(grid, cells, which[rows])
@@ -179,9 +169,8 @@ def _surroundings(levels: np.ndarray, points: np.ndarray, size: float) -> np.nda
     order = _by_cell_and_height(which, levels)
     n_levels = np.bincount(which)
     start = np.cumsum(n_levels) - n_levels
-    # A field of low points pulls many levels down, and a forest shows few at the ground. As many as the square root of
-    # their number are passed over: more in large cells, but a smaller share.
-    chosen = levels[order[start + np.sqrt(n_levels - 1).astype(np.int64)]]
+    # Levels that low points have pulled down are few.
+    chosen = levels[order[start + np.minimum(UNDER_GROUND.few, n_levels // 2)]]
     number = grid.number(points)
     beside = _beside([find_cells(cells, number + step) for step in grid.around], chosen, points)
     return _flattened(beside, _slope(beside))
@@ -224,18 +213,8 @@ def _middle(values: np.ndarray) -> np.ndarray:
     return np.where(known > 0, middle, 0.0)
 
 
-def _on_floor(low: np.ndarray, noise: float) -> np.ndarray:
-    """Return which low points (n, 3), m, lie on a floor that is seen here and there; ``noise`` (m) is that of surfaces.
-
-    Points of a floor differ by noise alone, and most low points around are on it. Multipath comes at all depths.
-    """
-    reach = SCENE.ground_within / 2
-    at_level = _at_level(low, low, reach, 2 * SURFACES.on_plane * noise)
-    return (at_level > UNDER_GROUND.few) & (2 * at_level >= _at_level(low, low, reach, np.inf))
-
-
-def _at_level(points: np.ndarray, others: np.ndarray, reach: float, height: float) -> np.ndarray:
-    """Return how many of others (m, 3) lie up to ``reach`` (m) in plan and ``height`` (m) from points (n, 3)."""
+def _at_level(points: np.ndarray, others: np.ndarray, reach: float) -> np.ndarray:
+    """Return how many of others (m, 3) lie at the height of points (n, 3), up to a distance ``reach`` (m)."""
     # Heights are stretched so that the neighborhood is a flat disk.
-    stretch = [1.0, 1.0, reach / height]
+    stretch = [1.0, 1.0, reach / UNDER_GROUND.depth]
     return spatial.cKDTree(others * stretch).query_ball_point(points * stretch, reach, return_length=True)

@@ -131,7 +131,10 @@ def summary_of(values: dict) -> str:
     """Return what was found, in a sentence."""
     count = values["buildings"]
     noun = "building" if count == 1 else "buildings"
-    return f"{count:,} {noun}, {values['area']:,.0f} m², {values['doubtful']:,} doubtful."
+    found = f"{count:,} {noun}, {values['area']:,.0f} m²"
+    if 0 < count == values["doubtful"]:
+        return f"Perhaps no building: {found}, all doubtful."
+    return f"{found}, {values['doubtful']:,} doubtful."
 
 
 @dataclass(frozen=True)

@@ -162,10 +162,13 @@ class CloudSampling:
         In a forest nearly all points are of crowns, whose smoothest parts are rougher than any surface. Stages that ask
         for it declare ``GROUND_NOISE``.
         """
-        ground = xyz.compress(classification == PointClass.GROUND, axis=0)
-        if GROUND_NOISE not in self.of_whole and len(ground) < SURFACES.neighbors:
-            return self.noise
-        return min(self.noise, self.shared(GROUND_NOISE, lambda: CloudSampling(lambda: ground).noise))
+        known = {**self.found, **self.of_whole}
+        if GROUND_NOISE not in known:
+            ground = xyz.compress(classification == PointClass.GROUND, axis=0)
+            if len(ground) < SURFACES.neighbors:
+                return self.noise
+            known[GROUND_NOISE] = self.found[GROUND_NOISE] = SurfaceSample(ground).noise(self.height_resolution)
+        return min(self.noise, known[GROUND_NOISE])
 
     @cached_property
     def scan_noise(self) -> float:

@@ -5688,7 +5688,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three that share a level over meters, to the noise of surfaces, and are most of those around, are a floor, seen through glass or in a shaft. Among crowns and in narrow yards points just below the ground are left alone.</source>
+        <source>Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow yards points just below the ground are left alone.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.quality.report_buildings import report_buildings
+from lidar_buildings.algorithms.quality.report_buildings import report_buildings, summary_of
 from lidar_buildings.algorithms.report.page import with_coordinates
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
@@ -48,6 +48,18 @@ def test_totals_by_hand(footprints, cloud):
     assert monitor.infos == ["3 buildings, 425 m², 2 doubtful."]
     for text in ("3,600 m³", "425 m²", "7.0 m", "from 5.0 to 9.0 m"):
         assert text in report.html
+
+
+@pytest.mark.parametrize(
+    ("buildings", "doubtful", "said"),
+    [
+        (3, 3, "Perhaps no building: 3 buildings, 425 m², all doubtful."),
+        (3, 2, "3 buildings, 425 m², 2 doubtful."),
+        (0, 0, "0 buildings, 425 m², 0 doubtful."),
+    ],
+)
+def test_the_summary_begins_with_a_doubt_of_all_buildings(buildings, doubtful, said):
+    assert summary_of({"buildings": buildings, "area": 425.0, "doubtful": doubtful}) == said
 
 
 def test_doubtful_buildings_come_least_sure_first_and_their_texts_are_escaped(footprints, cloud):
