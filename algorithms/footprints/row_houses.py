@@ -24,8 +24,7 @@ class RowRules:
     """What shows a party wall, and what walls and houses of a row cost."""
 
     step: float = rule(0.6, "point spacings", "step of the grid of heights, no finer than the points")
-    along: float = rule(1.0, "m", "physics: heights are averaged over it along a line; less than a dormer is wide")
-    points: float = rule(4.0, "point spacings", "heights are averaged over as much at least: enough points for a plane")
+    along: float = rule(4.0, "point spacings", "heights are averaged over it along a line: enough points for a plane")
     near: float = rule(0.3, "m", "physics: from where the roof beside a line is measured, beyond the wall itself")
     far: float = rule(1.6, "m", "physics: to where the roof is measured, before the ridge of the narrowest house")
     rise: float = rule(0.25, "tangent", "physics: least slope of a roof that rises from a valley")
@@ -38,7 +37,6 @@ class RowRules:
     least_share: float = rule(
         0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
     )
-    high: float = rule(0.5, "share", "of the median height: lower parts are no roof of a row")
     wall: float = rule(
         0.15,
         "per spacing",
@@ -76,20 +74,8 @@ _SHIFTS = 10
 # Steps per wall in which costs are whole numbers, so that rounding decides nothing.
 _STEPS = 10_000
 
-# Pays for a wall that can't be, in steps: less than all others of a row can bring, and far from the least number.
-_NEVER = -(10**12)
-
 # Widths (m) of the houses of a row that are tried, a fifth apart.
 _WIDTHS = 4.0 * 1.2 ** np.arange(7)
-
-# Lines of a roof within this angle (rad) of a main direction of the building run along it.
-_SAME_DIRECTION = np.radians(2.0)
-
-# Slopes (tangents) of roofs whose direction counts: level ones have none, and steeper ones are walls.
-_SLOPED = (0.2, 1.5)
-
-# Least area (m²) of sloping roof that shows a direction.
-_LEAST_SLOPED = 10.0
 
 
 @dataclass(frozen=True)
@@ -153,14 +139,13 @@ def _directions(
     near = lattice.holds(plan)
     seen, total = (ndimage.gaussian_filter(lattice.spread(plan[near], own), NODES) for own in (None, height[near]))
     north, east = np.gradient(total / np.maximum(seen, 1e-9), lattice.step)
-    slope = np.hypot(east, north)
-    is_roof = ndimage.binary_erosion(is_inside, iterations=2 * NODES) & (slope > _SLOPED[0]) & (slope < _SLOPED[1])
+    # Neither level parts nor walls have a direction. Four times the angle is the same along a line and square to it.
+    weight = ndimage.binary_erosion(is_inside, iterations=2 * NODES) * np.hypot(east, north) / (1 + east**2 + north**2)
+    turn = np.angle((weight * np.exp(4j * np.arctan2(north, east))).sum()) / 4
     found = angles.tolist()
-    if is_roof.sum() * lattice.step**2 >= _LEAST_SLOPED:
-        # Four times the angle is the same along a line and square to it.
-        turn = np.angle((slope * np.exp(4j * np.arctan2(north, east)))[is_roof].sum()) / 4
-        if (np.abs(np.angle(np.exp(4j * (angles - turn)))) > 4 * _SAME_DIRECTION).all():
-            found.append(float(turn))
+    # Lines that part by less than a node along a wall are the same.
+    if (np.abs(np.angle(np.exp(4j * (angles - turn)))) > 4 * LEAST_SPACING / ROWS.whole).all():
+        found.append(float(turn))
     return found
 
 
@@ -182,7 +167,7 @@ def _views(
     of_grid = np.ravel_multi_index(lattice.nearest(grid.positions @ turn.T + fixed), lattice.shape).reshape(grid.shape)
     of_lattice = grid.nearest((lattice.positions - fixed) @ turn)
     # Farther than the building on both sides, so that the line parts it where the outline has a notch, too.
-    along = max(ROWS.along, ROWS.points * spacing)
+    along = ROWS.along * spacing
     beyond = (along + spacing) / step
 
     def in_plan(along: np.ndarray, across: np.ndarray, axis: int) -> np.ndarray:
@@ -207,7 +192,7 @@ def _views(
 class _Row:
     """A row of houses within a part of a building."""
 
-    saved: int  #: By how much its walls pay more than they cost, in steps
+    saved: float  #: By how much its walls pay more than they cost, in steps
     walls: np.ndarray  #: (w, 2, 2): ends of its party walls, m
     house: np.ndarray  #: (rows, columns), int64: house, from 0, at the nodes of the lattice
 
@@ -239,7 +224,7 @@ class _View:
         saved, walls, chain = max(found, key=lambda one: one[0], default=(0, *np.zeros((2, 0), np.int64)))
         house = runs.houses(chain, walls, self.step)
         if saved <= 0 or not house.any():
-            return _Row(0, np.zeros((0, 2, 2)), np.zeros(is_own.shape, np.int64))
+            return _Row(0.0, np.zeros((0, 2, 2)), np.zeros(is_own.shape, np.int64))
         ends = np.column_stack([runs.first[chain[walls]], runs.last[chain[walls]] - 1])
         label = spread_out(np.where(inside, 1 + house[runs.number], 0))[self.of_lattice] - 1
         places = runs.column[chain[0]] + self._places(sums[1][chain], walls)
@@ -248,7 +233,7 @@ class _View:
     def _sums(self, runs: _Runs, inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return how long (m) roofs that are not low are along each run, and how much (m) of a wall is seen there."""
         known = self.beside[inside & np.isfinite(self.beside)]
-        is_high = self.beside >= (ROWS.high * np.median(known) if len(known) else 0.0)
+        is_high = self.beside >= (ROWS.least_share * np.median(known) if len(known) else 0.0)
         # A wall that is not quite along the columns is seen in one beside.
         near = ndimage.maximum_filter1d(self.strength, 3, axis=1)
         return runs.sums(is_high) * self.step, runs.sums(is_high * near) * self.step
@@ -258,7 +243,7 @@ class _View:
         pays = (seen - ROWS.wall * self.spacing * counted) / np.clip(counted, ROWS.narrowest, ROWS.whole)
         # The houses beside a wall that does not pay by itself would be alike, but nothing shows it.
         is_wall = (counted >= ROWS.narrowest) & (counted <= ROWS.deepest) & (pays > 0)
-        return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), _NEVER).astype(np.int64)
+        return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), -np.inf)
 
     def _places(self, seen: np.ndarray, walls: np.ndarray) -> np.ndarray:
         """Return where (columns of the chain) walls are: in the middle of the evidence around them, by mean shift."""
@@ -326,7 +311,7 @@ class _Runs:
         return _without_small(piece, self.beside, self.shared, self.length * step**2)
 
 
-def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[int, np.ndarray]:
+def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[float, np.ndarray]:
     """Return what the best walls of a chain of runs save (steps), and before which runs they stand, ascending.
 
     Houses are ``ROWS.narrowest`` m wide at least and have ``ROWS.least_area`` m². One e times as wide as the width that
@@ -334,8 +319,8 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[in
 
     Parameters
     ----------
-    pays : ndarray of shape (n,), int64
-        What a wall before each run pays, in steps.
+    pays : ndarray of shape (n,)
+        What a wall before each run pays, in whole steps; -inf where there can be none.
     length : ndarray of shape (n,), int64
         Nodes of each run.
     step : float
@@ -345,11 +330,11 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[in
     starts = range(0, count, narrowest)
     # No more than one wall stands in each strip as wide as the narrowest house.
     if np.maximum.reduceat(pays, starts).clip(0).sum() <= ROWS.row * _STEPS:
-        return 0, np.zeros(0, np.int64)
+        return 0.0, np.zeros(0, np.int64)
     area = np.concatenate([[0], np.cumsum(length)]) * step**2
     widths = np.arange(1, count + 1) * step
-    unlike = np.rint(ROWS.unlike * _STEPS * np.abs(np.log(widths / _WIDTHS[:, None]))).astype(np.int64)
-    saved = np.full((len(_WIDTHS), count + 1), _NEVER)
+    unlike = np.rint(ROWS.unlike * _STEPS * np.abs(np.log(widths / _WIDTHS[:, None])))
+    saved = np.full((len(_WIDTHS), count + 1), -np.inf)
     before = np.zeros(saved.shape, np.int64)
     saved[:, 0] = 0
     for end in range(narrowest, count + 1):
@@ -364,7 +349,7 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[in
     while at > 0:
         walls.append(at)
         at = int(before[width, at])
-    return int(saved[width, count]), np.array(walls[::-1], np.int64)
+    return float(saved[width, count]), np.array(walls[::-1], np.int64)
 
 
 def _without_small(piece: np.ndarray, pairs: np.ndarray, shared: np.ndarray, area: np.ndarray) -> np.ndarray:
