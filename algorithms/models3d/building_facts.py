@@ -11,6 +11,7 @@ import numpy as np
 
 from ..stage import Field
 from .building_models import BuildingModel
+from .mending import LARGE
 from .roof_points import RULES
 from .solids import ROOF, WALL, Solid
 
@@ -42,6 +43,8 @@ class Checks:
     poor: float = 0.25
     #: Share of the area with points: walls hide a strip of narrow courts, water and glass all of a roof
     covered: float = 0.75
+    #: Share of the points of a large face that lie on it: on the other side of a half it is not the face that was seen
+    weakest: float = 0.5
 
 
 CHECKS = Checks()
@@ -63,6 +66,11 @@ BUILDING_FIELDS = (
     Field("rms", float, "root mean square height of its roof points above or below the model", "m"),
     Field("off", float, f"share of its roof points more than {RULES.off} m above or below the model, 0 to 1"),
     Field("explained", float, "share of its roof points that lie on the model, 0 to 1"),
+    Field(
+        "weakest_face",
+        float,
+        f"least share of the points of a roof face of {LARGE:g} m² or more that lie on it, 0 to 1",
+    ),
     Field("covered", float, "share of its area that has points, 0 to 1"),
     Field(
         "gap_area", float, "area of its footprint without points; sort by it to find holes too small for check", "m²"
@@ -71,9 +79,14 @@ BUILDING_FIELDS = (
         "check",
         int,
         f"2: a simpler level, or over {CHECKS.poor:.0%} of the roof points off; 1: over {CHECKS.doubtful:.0%} off, or "
-        f"points on less than {CHECKS.covered:.0%} of the area; 0: sound",
+        f"points on less than {CHECKS.covered:.0%} of the area, or less than {CHECKS.weakest:.0%} of the points of a "
+        "large face on it; 0: sound",
     ),
-    Field("confidence", float, "confidence in the model: explained times covered, 0 to 1"),
+    Field(
+        "confidence",
+        float,
+        f"confidence in the model: explained times covered, less if weakest_face is under {CHECKS.weakest:g}, 0 to 1",
+    ),
     Field("points", int, "points over its footprint"),
 )
 ROOF_FIELDS = (
@@ -186,10 +199,11 @@ def building_attributes(one: NamedModel) -> dict[str, Any]:
         "rms": model.rms,
         "off": model.off,
         "explained": model.explained,
+        "weakest_face": model.weakest,
         "covered": model.covered,
         "gap_area": (1 - model.covered) * area,
         "check": _check(model),
-        "confidence": model.explained * model.covered,
+        "confidence": model.explained * model.covered * min(1.0, model.weakest / CHECKS.weakest),
         "points": model.n_points,
     }
 
@@ -198,7 +212,7 @@ def _check(model: BuildingModel) -> int:
     """Return 0 for a sound model, 1 for a doubtful and 2 for a poor one."""
     if model.reason or not model.off <= CHECKS.poor:
         return 2
-    return int(model.off > CHECKS.doubtful or model.covered < CHECKS.covered)
+    return int(model.off > CHECKS.doubtful or model.covered < CHECKS.covered or model.weakest < CHECKS.weakest)
 
 
 def _eave(solids: Sequence[Solid]) -> float:

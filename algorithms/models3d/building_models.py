@@ -9,7 +9,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.groups import components
-from .mending import mended
+from .mending import LARGE, mended
 from .roof_partition import FARTHEST, Partition, divide_footprint, empty_partition, inside_rings
 from .roof_planes import RoofPlanes, find_roof_planes, with_level_patches
 from .roof_points import HeightsAround, are_on_roof, distances, root_mean_square, share_off
@@ -62,6 +62,8 @@ class BuildingModel:
     explained: float = np.nan
     off: float = np.nan
     covered: float = np.nan
+    #: Least share of the points of a plane of ``LARGE`` m² or more that lie on it, 1 without any such plane
+    weakest: float = 1.0
     n_points: int = 0  #: Number of points of the building
     face_rms: dict[int, float] = field(default_factory=dict)  #: Root mean square by plane of the best level (m)
 
@@ -250,14 +252,22 @@ def _enter(
     off = _off(top, above, over)
     model.level, model.solids[level] = level, solids
     model.rms = root_mean_square(off)
-    model.explained = float(np.mean(np.abs(off) <= _EXPLAINED * top.settings.tolerance)) if len(off) else np.nan
+    model.explained = _explained(off, top)
     model.off = share_off(off)
     roof = over & are_on_roof(above, top.is_low)
     model.ridge = float(np.percentile(top.xyz[roof, 2], _RIDGE)) if roof.any() else np.nan
     model.covered = _covered(top)
-    model.face_rms = {
-        int(plane): root_mean_square(_off(top, above, label == plane)) for plane in np.unique(label[over])
-    }
+    off_of = {int(plane): _off(top, above, label == plane) for plane in np.unique(label[over])}
+    model.face_rms = {plane: root_mean_square(off) for plane, off in off_of.items()}
+    inside = partition.label >= 0
+    area = np.bincount(partition.label[inside], partition.cells.areas()[inside])
+    large = [off for plane, off in off_of.items() if area[plane] >= LARGE and len(off)]
+    model.weakest = min((_explained(off, top) for off in large), default=1.0)
+
+
+def _explained(off: np.ndarray, top: _Top) -> float:
+    """Return the share of heights (n,), m, above the model that are as good as none, NaN without any."""
+    return float(np.mean(np.abs(off) <= _EXPLAINED * top.settings.tolerance)) if len(off) else np.nan
 
 
 def _covered(top: _Top) -> float:

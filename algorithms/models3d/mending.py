@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional
 
 import numpy as np
@@ -24,6 +24,12 @@ _ROUNDS = 10
 
 # Most rounds that give parts with faults another plane.
 _MENDINGS = 40
+
+# Most single cells of large parts with faults that take another plane before whole parts do.
+_SPARED = 30
+
+# Parts of a roof with more area than this (m²) are more than dormers: one fault does not cost all of it.
+LARGE = 5.0
 
 # First of these rounds, in which parts with faults are lowered: high cells still change in as many after them.
 _LOWERINGS = _ROUNDS // 2
@@ -79,27 +85,49 @@ def mended(
 
     Notes
     -----
-    A part with a fault is lowered a little. If it still has one, it takes the plane of a neighbor or becomes level,
-    whichever is nearer to its points. A level part with a fault always joins a neighbor. All other parts stay as they
-    are. Around a corner above its limit a part is cut off, which takes a plane that keeps to the limit.
+    A part with a fault is lowered a little. If it still has one and is large, single cells at its border take planes
+    of neighbors, the smallest first. Else it takes the plane of a neighbor or becomes level, whichever is nearer to its
+    points. A level part with a fault always joins a neighbor. All other parts stay as they are. Where single cells
+    changed, the same is done without them, and the result nearer to the points is kept. Around a corner above its limit
+    a part is cut off, which takes a plane that keeps to the limit.
     """
-    if limits is not None:
-        # Its cells may be cut; those of the simpler levels stay.
-        partition.cells = partition.cells.copy()
-    mending = _Mending(partition, xyz, limits, percentile)
-    for count in range(_MENDINGS):
+    found = []
+    for spared in (_SPARED, 0):
+        mending = _Mending(
+            replace(partition, cells=partition.cells.copy(), label=partition.label.copy()),
+            xyz,
+            limits,
+            percentile,
+            spared,
+        )
+        found.append((*_mended(mending, base), mending))
+        if mending.spared == spared:
+            break
+    solids, why, best = min(found, key=lambda one: one[2].off() if one[0] else np.inf)
+    for name in ("cells", "label", "coefficients", "cost"):
+        setattr(partition, name, getattr(best.partition, name))
+    return solids, why
+
+
+def _mended(mending: _Mending, base: float) -> tuple[list[Solid], str]:
+    """Return valid solids, or none and why."""
+    count = 0
+    while count < _MENDINGS:
         # Lowering a corner may cause the fault again that was mended by raising it: later rounds lower none.
         if count < _ROUNDS:
             mending.lower_high_cells()
         mending.join_small_parts()
-        pieces = _pieces(partition, base, mending.highest)
+        pieces = _pieces(mending.partition, base, mending.highest)
         if not pieces:
             break
         found = [(piece, *one) for piece in pieces for one in faults_of(piece.solid).items()]
         if not found:
             return [piece.solid for piece in pieces], ""
+        left = mending.spared
         if not mending.relabel([(piece, face) for piece, face, _ in found], count < _LOWERINGS):
             return [], found[0][2]
+        # Rounds in which single cells change are counted by these.
+        count += mending.spared == left
     return [], "no solid could be made"
 
 
@@ -195,9 +223,12 @@ class _Mending:
     """
 
     def __init__(
-        self, partition: Partition, xyz: np.ndarray, limits: Optional[HeightsAround], percentile: float
+        self, partition: Partition, xyz: np.ndarray, limits: Optional[HeightsAround], percentile: float, spared: int
     ) -> None:
         self.partition, self.xyz, self.limits, self.percentile = partition, xyz, limits, percentile
+        # Single cells that may still change, and those that have.
+        self.spared = spared
+        self.changed: set[int] = set()
         self.own: set[int] = set()
         self.lowered: set[int] = set()
         self._measure()
@@ -341,8 +372,34 @@ class _Mending:
                     self.lowered.add(self._add_plane(part, self.partition.coefficients[own] - [0.0, 0.0, _LOWERED]))
                     is_changed = True
                 else:
-                    is_changed |= self._take(part, self._neighbors(part), own not in self.own)
+                    is_changed |= self._spare(part) or self._take(part, self._neighbors(part), own not in self.own)
         return is_changed
+
+    def _spare(self, part: np.ndarray) -> bool:
+        """Give the smallest cell at the border of a large part the plane of a neighbor; return whether one was left."""
+        if not self.spared or self.areas[part].sum() <= LARGE:
+            return False
+        is_part = np.zeros(len(self.areas), bool)
+        is_part[part] = True
+        edges = self.beside[is_part[self.beside].sum(axis=1) == 1]
+        inner, outer = np.where(is_part[edges], edges, 0).sum(axis=1), np.where(is_part[edges], 0, edges).sum(axis=1)
+        cells = set(inner[self.partition.label[outer] >= 0].tolist()) - self.changed
+        if not cells:
+            return False
+        cell = np.array([min(cells, key=lambda cell: (self.areas[cell], cell))])
+        self.spared -= 1
+        self.changed.add(int(cell[0]))
+        return self._take(cell, self._neighbors(cell))
+
+    def off(self) -> float:
+        """Return how far the roof is off its points, the sum of their heights (m) over or under it."""
+        label, cells = self.partition.label, self.partition.cells
+        plane = np.full(len(self.xyz), -1)
+        for cell in np.flatnonzero(label >= 0):
+            plane[cells.members[cell]] = label[cell]
+        a, b, c = self.partition.coefficients[plane].T
+        off = np.abs(self.xyz[:, 2] - a * self.xyz[:, 0] - b * self.xyz[:, 1] - c)
+        return float(np.where(plane >= 0, np.minimum(off, FARTHEST), FARTHEST).sum())
 
     def _neighbors(self, part: np.ndarray) -> list[int]:
         """Return the planes of the neighbors of a part."""

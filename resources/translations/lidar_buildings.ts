@@ -2384,7 +2384,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;check&lt;/i&gt;: 2: a simpler level, or over 25% of the roof points off; 1: over 10% off, or points on less than 75% of the area; 0: sound</source>
+        <source>&lt;i&gt;check&lt;/i&gt;: 2: a simpler level, or over 25% of the roof points off; 1: over 10% off, or points on less than 75% of the area, or less than 50% of the points of a large face on it; 0: sound</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2404,7 +2404,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;confidence&lt;/i&gt;: confidence in the model: explained times covered, 0 to 1</source>
+        <source>&lt;i&gt;confidence&lt;/i&gt;: confidence in the model: explained times covered, less if weakest_face is under 0.5, 0 to 1</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3229,6 +3229,10 @@
     </message>
     <message>
         <source>&lt;i&gt;walls_seen&lt;/i&gt;: how many of the two walls that meet in it have wall points, 0 to 2</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;i&gt;weakest_face&lt;/i&gt;: least share of the points of a roof face of 5 m² or more that lie on it, 0 to 1</source>
         <translation type="unfinished"></translation>
     </message>
     <message>

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from lidar_buildings.algorithms.models3d.building_facts import roof_type
-from lidar_buildings.algorithms.models3d.solids import ROOF, Solid
+from lidar_buildings.algorithms.models3d.building_facts import NamedModel, building_attributes, roof_type
+from lidar_buildings.algorithms.models3d.building_models import BuildingModel
+from lidar_buildings.algorithms.models3d.solids import ROOF, WALL, Solid
 
 
 def roof(*rings):
@@ -34,3 +35,18 @@ def test_a_hip_may_be_of_two_faces():
     back = [(10, 8, 6), (0, 8, 6), (0, 4, 10), (6, 4, 10)]
     hip = [(10, 0, 6), (10, 8, 6), (6, 4, 10)]
     assert roof_type(roof(front, beside, back, hip)) == "hip"
+
+
+def test_one_large_face_off_its_points_makes_a_model_doubtful():
+    """A flat choir on a steep roof was a fourteenth of a church: all shares of the whole were sound."""
+    box = [[0, 1, 2, 3], [7, 6, 5, 4], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
+    low = [(0, 0, 0), (0, 5, 0), (5, 5, 0), (5, 0, 0)]
+    corners = np.array([*low, *[(x, y, 6) for x, y, _ in low]], float)
+    solid = Solid(corners, [[ring] for ring in box], ["GroundSurface", ROOF, *[WALL] * 4], [0, 0, *range(4)])
+
+    def facts(weakest):
+        shares = {"explained": 0.9, "off": 0.03, "covered": 1.0, "weakest": weakest}
+        return building_attributes(NamedModel("1", [], BuildingModel(0.0, "2.2", solids={"2.2": [solid]}, **shares)))
+
+    assert [facts(weakest)["check"] for weakest in (0.6, 0.4)] == [0, 1]
+    assert [facts(weakest)["confidence"] for weakest in (0.6, 0.5, 0.25)] == [0.9, 0.9, 0.45]

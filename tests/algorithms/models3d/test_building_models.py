@@ -1,5 +1,7 @@
 """One building: which level of detail it gets."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from lidar_buildings.algorithms.models3d.building_models import Settings, model_building
@@ -32,3 +34,15 @@ def test_where_a_roof_has_no_points_those_of_a_neighbor_limit_it():
     assert model.level == "2.2"
     assert corners[corners[:, 0] > 11.9, 2].max() <= 3.51
     assert corners[:, 2].max() > 10.0
+
+
+def test_the_weakest_face_tells_of_a_part_that_lies_off_its_points():
+    """A third of the roof is 2 m lower: with planes of its own it is explained, under one level top it is not."""
+    xy = np.random.default_rng(0).uniform((0, 0), (12, 8), (1200, 2))
+    xyz = np.column_stack([xy, np.where(xy[:, 0] > 8, 6.0, 8.0)])
+    found = {
+        level: model_building(xyz, np.zeros(len(xyz), bool), xyz, [RING], 0.0, replace(SETTINGS, level=level)).weakest
+        for level in ("1.2", "2.2")
+    }
+    assert found["2.2"] > 0.95
+    assert 0.6 < found["1.2"] < 0.7

@@ -165,6 +165,27 @@ def test_a_part_with_a_fault_is_lowered_before_it_takes_another_plane(monkeypatc
     assert heights_of(solids).tolist() == [6.0, 8.98]
 
 
+def test_a_fault_costs_a_large_part_one_cell(monkeypatch):
+    """A part of 64 m² and one of 32 m²: a strip of 4 m² at their border changes; all of the smaller part did."""
+    xyz = level_points()
+    xyz[xyz[:, 0] > 8, 2] = 9.0
+
+    def faulty(solid):
+        at_step = solid.vertices[np.isclose(solid.vertices[:, 0], 8.0) & (solid.vertices[:, 2] > 8.0)]
+        roofs = [face for face, kind in enumerate(solid.kinds) if kind == ROOF]
+        highest = max(roofs, key=lambda face: solid.vertices[solid.faces[face][0], 2].max())
+        return {highest: "triangles of a face are not plane"} if len(at_step) else faults_of(solid)
+
+    monkeypatch.setattr(mending, "faults_of", faulty)
+    parts = partition(xyz, [8.0, 8.5], [[0, 0, 6.0], [0, 0, 9.0]], lambda x: int(x > 8))
+    solids, why = mended(parts, 0.0, xyz, HeightsAround(xyz), 70.0)
+    assert why == ""
+    assert heights_of(solids)[0] == pytest.approx(6.0)
+    assert heights_of(solids)[-1] > 8.8
+    high = parts.coefficients[parts.label][:, 2] > 8.0
+    assert parts.cells.areas()[high & (parts.label >= 0)].sum() == pytest.approx(28.0)
+
+
 def test_planes_meet_where_they_intersect():
     """The cut lies 3 cm beside the ridge; the corner on the outline moves along it, and there is no step of 5 cm."""
     xyz = level_points()
