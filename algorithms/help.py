@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import re
 from collections.abc import Iterable
-from typing import Callable, Optional
+from typing import Optional
 
 from .captions import captions
 from .cloud.dimensions import DIMENSIONS
@@ -90,29 +90,19 @@ def step_title(step: Step) -> str:
     return step.name.replace("_", " ").capitalize()
 
 
-def step_label(step: Step, title: str, label: str) -> str:
+def step_label(step: Step, label: str) -> str:
     """Return the composite's label of a parameter of a step: "Ground: cell size (m)", "Look for water".
 
-    ``title`` is what the composite calls the step; a label that has its name already goes without.
+    A label that has the name of the step already goes without.
     """
     names = {word.rstrip("s") for word in re.findall(r"\w+", label.lower())}
     is_named = step.name.split("_")[-1].rstrip("s") in names
-    return label if is_named else f"{title}: {lower_first(label)}"
+    return label if is_named else f"{step_title(step)}: {lower_first(label)}"
 
 
 def lower_first(text: str) -> str:
     """Return ``text`` as it goes on after a colon; an acronym keeps its capitals."""
     return text[:1].lower() + text[1:] if text[1:2].islower() else text
-
-
-def translated(text: str, translate: Callable[[str], str]) -> str:
-    """Return a help with what each of its lines says, without the tags of blocks around it, translated."""
-    return _LINE.sub(lambda line: line[1] + translate(line[2]) + line[3], text)
-
-
-# A line of a help: tags of blocks, what it says, and tags of blocks.
-_BLOCK = r"(?:</?(?:p|li|ul|ol|h3)>)*"
-_LINE = re.compile(rf"^({_BLOCK})(.+?)({_BLOCK})$", re.MULTILINE)
 
 
 def as_text(text: str) -> str:
@@ -132,7 +122,7 @@ def as_text(text: str) -> str:
 _LIST = re.compile("<(/?)[ou]l>(?:</li>)?")
 
 
-def with_picture(text: str, algorithm: str, folder: str, translate: Callable[[str], str] = str) -> str:
+def with_picture(text: str, algorithm: str, folder: str) -> str:
     """Return a help text with the picture of an algorithm, where it has one, below the summary.
 
     Parameters
@@ -143,12 +133,10 @@ def with_picture(text: str, algorithm: str, folder: str, translate: Callable[[st
         Id of the algorithm.
     folder : str
         URL of the folder with the pictures.
-    translate : callable
-        Gives the caption in the language of the user.
     """
     if algorithm not in captions():
         return text
-    caption = html.escape(translate(captions()[algorithm]))
+    caption = html.escape(captions()[algorithm])
     picture = (
         f'<p><img src="{folder}/{algorithm}.png" width="{_PICTURE_WIDTH}" alt="{caption}"></p>\n<p><i>{caption}</i></p>'
     )

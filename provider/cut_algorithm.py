@@ -28,7 +28,6 @@ from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
 from .outputs import target_path
 from .surveys import VPC, WGS84, check_vpc, write_survey
-from .texts import tr
 
 SIDE, COMPRESSED, TILES = "SIDE", "COMPRESSED", "TILES"
 
@@ -55,10 +54,10 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.addParameter(with_setting(side, CUT_SETTINGS))
         self.addParameter(extent_parameter())
         self.addParameter(with_setting(QgsProcessingParameterBoolean(COMPRESSED, "", True), CUT_SETTINGS))
-        folder = QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder of the tiles"))
-        self.addParameter(with_help(folder, tr("It is made where it is missing.")))
-        self.addOutput(QgsProcessingOutputFile(VPC, tr("Virtual point cloud over the tiles")))
-        self.addOutput(QgsProcessingOutputNumber(TILES, tr("Tiles written")))
+        folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
+        self.addParameter(with_help(folder, "It is made where it is missing."))
+        self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
+        self.addOutput(QgsProcessingOutputNumber(TILES, "Tiles written"))
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
         """Find the files of the survey, and refuse invalid input before the run."""

@@ -9,11 +9,10 @@ from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QWidget
 
-from ..algorithms.help import as_text, translated, with_picture
+from ..algorithms.help import as_text, with_picture
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Stage
 from .paths import GROUP_ICONS, HELP, ICON, PICTURES
-from .texts import tr
 
 # The groups that the toolbox shows first.
 _FIRST_GROUPS = ("Models", "Models in tiles", "Models as published")
@@ -36,15 +35,14 @@ class DeclaredAlgorithm:
 
     def displayName(self) -> str:  # noqa: N802 - QGIS asks for these names
         """Return the title."""
-        return tr(self.declared.title)
+        return self.declared.title
 
     def group(self) -> str:
         """Return the group's title.
 
         QGIS sorts groups by it; the space has the models come first.
         """
-        group = tr(self.declared.group)
-        return f" {group}" if self.declared.group in _FIRST_GROUPS else group
+        return f" {self.declared.group}" if self.declared.group in _FIRST_GROUPS else self.declared.group
 
     def groupId(self) -> str:  # noqa: N802
         """Return the group's id."""
@@ -66,7 +64,7 @@ class DeclaredAlgorithm:
 
     def shortDescription(self) -> str:  # noqa: N802
         """Return what it is for, in a sentence."""
-        return tr(self.declared.summary)
+        return self.declared.summary
 
     def helpUrl(self) -> str:  # noqa: N802
         """Return the help page, which comes with the plugin."""
@@ -90,7 +88,7 @@ class DeclaredAlgorithm:
         """Return a help text for the dialog, with the picture, or as plain text for the command line."""
         if on_command_line():
             return as_text(text)
-        return with_picture(translated(text, tr), self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString(), tr)
+        return with_picture(text, self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString())
 
 
 def on_command_line() -> bool:

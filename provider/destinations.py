@@ -15,7 +15,6 @@ from qgis.core import (
 from ..algorithms.stage import CLOUD, Declared, Layer, Raster, Stage, TextFile
 from .inputs import with_help
 from .text_files import file_parameter
-from .texts import tr
 from .vectors import SOURCE_TYPES
 
 
@@ -43,18 +42,18 @@ class Made:
         if isinstance(declared, Layer):
             kind = SOURCE_TYPES[declared.geometry]
             made = QgsProcessingParameterFeatureSink(self.name, self.title, kind, optional=self.optional)
-            with_help(made, tr("A GeoPackage or any other vector format that QGIS writes."))
+            with_help(made, "A GeoPackage or any other vector format that QGIS writes.")
         elif isinstance(declared, Raster):
             made = QgsProcessingParameterRasterDestination(self.name, self.title, optional=self.optional)
-            with_help(made, tr("A GeoTIFF, tiled and compressed."))
+            with_help(made, "A GeoTIFF, tiled and compressed.")
         elif isinstance(declared, TextFile):
             made = file_parameter(declared)
             made.setDescription(self.title)
         elif declared == CLOUD:
             made = QgsProcessingParameterPointCloudDestination(self.name, self.title, optional=self.optional)
-            with_help(made, tr("A .las, .laz or .copc.laz file."))
+            with_help(made, "A .las, .laz or .copc.laz file.")
         else:
             made = QgsProcessingParameterFileDestination(self.name, self.title, "HTML files (*.html)", optional=True)
-            with_help(made, tr("A page that shows the numbers."))
+            with_help(made, "A page that shows the numbers.")
         made.setCreateByDefault(self.by_default)
         return made

@@ -30,7 +30,6 @@ from .inputs import INPUT
 from .pickers import Picker, fill_with_classes, fill_with_names
 from .sections import Section, sections_of
 from .settings import CODES, PRESET
-from .texts import tr
 
 # The parameter of a composite whose class codes are written.
 _CODES = "CODES_CODES"
@@ -170,9 +169,9 @@ class GroupedPanel(ParametersPanel):
                     continue
                 layout, at = holder.layout(), holder.layout().indexOf(field)
                 if kind == DIMENSION:
-                    picker = Picker(field, tr("Dimensions of the point cloud"), self._fill_with_dimensions)
+                    picker = Picker(field, "Dimensions of the point cloud", self._fill_with_dimensions)
                 else:
-                    picker = Picker(field, tr("Classes by their names"), fill_with_classes)
+                    picker = Picker(field, "Classes by their names", fill_with_classes)
                 self._kept.append(picker)
                 layout.insertWidget(at, picker)
 
@@ -191,7 +190,7 @@ class GroupedPanel(ParametersPanel):
             one.name() for one in self.algorithm().destinationParameterDefinitions() if one.name() in self.wrappers
         ]
         if len(names) > _OUTPUTS + 1:
-            layout.insertWidget(layout.count() - 1, self._group(tr("More results"), names[_OUTPUTS:]))
+            layout.insertWidget(layout.count() - 1, self._group("More results", names[_OUTPUTS:]))
 
     def _add_presets(self, layout: QVBoxLayout) -> None:
         """Add the choice of a kind of cloud above all parameters."""
@@ -203,12 +202,12 @@ class GroupedPanel(ParametersPanel):
             return
         self.preset = QComboBox()
         for preset in self._presets:
-            self.preset.addItem(tr(preset.title), preset.name)
-        self.preset.setToolTip(tr("Sets the parameters that are better set than measured for this kind of cloud."))
+            self.preset.addItem(preset.title, preset.name)
+        self.preset.setToolTip("Sets the parameters that are better set than measured for this kind of cloud.")
         holder = QWidget()
         form = QFormLayout(holder)
         form.setContentsMargins(0, 0, 0, 0)
-        form.addRow(tr("Kind of cloud"), self.preset)
+        form.addRow("Kind of cloud", self.preset)
         self._kept.append(holder)
         layout.insertWidget(0, holder)
         self.preset.activated.connect(self.apply_preset)

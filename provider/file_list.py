@@ -20,7 +20,6 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from .clouds import FILTER, names_of
-from .texts import tr
 
 # Rows that are seen at once.
 _ROWS = 4
@@ -38,7 +37,7 @@ class FileList(QWidget):
         # 12 pixels for the frame and the spacing of rows.
         self.list.setMaximumHeight(_ROWS * self.list.fontMetrics().height() + 12)
         self.layers = QToolButton()
-        self.layers.setText(tr("Layers"))
+        self.layers.setText("Layers")
         self.layers.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.layers.setMenu(QMenu(self.layers))
         self.layers.menu().aboutToShow.connect(self._fill_menu)
@@ -47,9 +46,9 @@ class FileList(QWidget):
         grid.addWidget(self.list, 0, 0, 5, 1)
         for row, (text, slot) in enumerate(
             (
-                (tr("Files…"), self._add_files),
-                (tr("Folder…"), self._add_folder),
-                (tr("Remove"), self._remove),
+                ("Files…", self._add_files),
+                ("Folder…", self._add_folder),
+                ("Remove", self._remove),
             )
         ):
             button = QPushButton(text)
@@ -73,12 +72,12 @@ class FileList(QWidget):
 
     def _add_files(self) -> None:
         start = QgsSettings().value(_LAST_FOLDER, "")
-        files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), str(start), f"{FILTER};;VPC (*.vpc)")
+        files, _ = QFileDialog.getOpenFileNames(self, "Point clouds", str(start), f"{FILTER};;VPC (*.vpc)")
         self._keep(files)
 
     def _add_folder(self) -> None:
         folder = QFileDialog.getExistingDirectory(
-            self, tr("Folder of point clouds"), str(QgsSettings().value(_LAST_FOLDER, ""))
+            self, "Folder of point clouds", str(QgsSettings().value(_LAST_FOLDER, ""))
         )
         self._keep([folder] if folder else [])
 

@@ -27,7 +27,6 @@ from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
 from .feedback import is_step
 from .styles import subject_of_file
-from .texts import tr
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
 EXTENT, CRS = "EXTENT", "CRS"
@@ -44,26 +43,24 @@ def with_setting(
 ) -> QgsProcessingParameterDefinition:
     """Return the parameter with title and tooltip of its setting."""
     setting = settings[definition.name()]
-    definition.setDescription(tr(setting.title))
-    return with_help(definition, tr(setting.help))
+    definition.setDescription(setting.title)
+    return with_help(definition, setting.help)
 
 
 def input_parameter(several: bool, title: str = "Point cloud") -> QgsProcessingParameterDefinition:
     """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
     if several:
-        return with_help(
-            CloudsParameter(INPUTS, tr("Point clouds")), tr("Files, layers or addresses on the web, one or more.")
-        )
-    of_one = tr("File or layer of the points, or an address on the web (https://…) of COPC, EPT, VPC or STAC items.")
-    return with_help(CloudParameter(INPUT, tr(title)), of_one)
+        return with_help(CloudsParameter(INPUTS, "Point clouds"), "Files, layers or addresses on the web, one or more.")
+    of_one = "File or layer of the points, or an address on the web (https://…) of COPC, EPT, VPC or STAC items."
+    return with_help(CloudParameter(INPUT, title), of_one)
 
 
 def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:
     """Return the parameter of the second cloud that a stage reads."""
-    definition = CloudParameter(REFERENCE, tr(stage.reference_title))
+    definition = CloudParameter(REFERENCE, stage.reference_title)
     if not stage.needs_reference:
         definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Optional)
-    return with_help(definition, f"{tr('File or layer.')} {tr(stage.reference)}")
+    return with_help(definition, f"File or layer. {stage.reference}")
 
 
 def input_paths(
@@ -82,10 +79,10 @@ def extent_parameter() -> QgsProcessingParameterDefinition:
 
 def crs_parameter(default: Optional[str] = None) -> QgsProcessingParameterDefinition:
     """Return the parameter of the coordinate reference system of clouds that name none."""
-    definition = QgsProcessingParameterCrs(CRS, tr("Coordinate reference system"), default, optional=True)
+    definition = QgsProcessingParameterCrs(CRS, "Coordinate reference system", default, optional=True)
     definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
-    of_clouds = tr("Of clouds that name none, and of their results. Clouds that name one keep it.")
-    return with_help(definition, tr("Of the simulated cloud.") if default else of_clouds)
+    of_clouds = "Of clouds that name none, and of their results. Clouds that name one keep it."
+    return with_help(definition, "Of the simulated cloud." if default else of_clouds)
 
 
 def given_crs(

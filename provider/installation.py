@@ -40,7 +40,6 @@ from .dependencies import (
 from .paths import PLUGIN
 from .questions import is_answered_yes
 from .run_log import plugin_version
-from .texts import tr
 
 _VERSIONS = ("numpy", *packages.REQUIRED.values(), "lazrs")
 _OPTIONAL = ("laszip", "distributed")
@@ -54,12 +53,12 @@ def installation_text() -> str:
         f"Python {platform.python_version()} ({python()})",
         f"System {platform.platform()}",
         *(f"{name} {_version(name)}" for name in _VERSIONS),
-        *(f"{name} {_version(name)} ({tr('optional')})" for name in _OPTIONAL),
+        *(f"{name} {_version(name)} (optional)" for name in _OPTIONAL),
         f"Folder for packages {package_folder()}",
         f"Folder of the plugin {PLUGIN}",
     ]
     return "\n".join(
-        [*lines, "", missing_sentence(packages.REQUIRED.values()) or laz_sentence() or tr("Everything is installed.")]
+        [*lines, "", missing_sentence(packages.REQUIRED.values()) or laz_sentence() or "Everything is installed."]
     )
 
 
@@ -67,7 +66,7 @@ def _version(name: str) -> str:
     try:
         return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
-        return tr("is not installed")
+        return "is not installed"
 
 
 def show_installation(parent: Optional[QWidget]) -> None:
@@ -81,21 +80,21 @@ class InstallationDialog(QDialog):
 
     def __init__(self, parent: Optional[QWidget]) -> None:
         super().__init__(parent)
-        self.setWindowTitle(tr("LiDAR Buildings: installation"))
+        self.setWindowTitle("LiDAR Buildings: installation")
         self.resize(720, 420)
         self.text = QPlainTextEdit(installation_text())
         self.text.setReadOnly(True)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
-        copy = QPushButton(tr("Copy"))
+        copy = QPushButton("Copy")
         copy.clicked.connect(lambda: QApplication.clipboard().setText(self.text.toPlainText()))
         buttons.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
-        self.install = QPushButton(tr("Install…"))
+        self.install = QPushButton("Install…")
         self.install.clicked.connect(self._install)
         buttons.addButton(self.install, QDialogButtonBox.ButtonRole.ActionRole)
         self.install.setVisible(bool(packages.absent()))
         layout = QVBoxLayout(self)
-        layout.addWidget(QLabel(tr("Add this text to a report of a problem.")))
+        layout.addWidget(QLabel("Add this text to a report of a problem."))
         layout.addWidget(self.text)
         layout.addWidget(buttons)
 
@@ -113,8 +112,7 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
         QMessageBox.information(
             parent,
             SOFTWARE,
-            tr("Packages of the system have to be installed in a terminal, then QGIS be started again:")
-            + f"\n\n{by_system}",
+            f"Packages of the system have to be installed in a terminal, then QGIS be started again:\n\n{by_system}",
         )
         return False
     if not absent or not (ask or (lambda command: _is_wanted(parent, command)))(shown_command(absent)):
@@ -124,25 +122,23 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
     _find_new_packages()
     remaining = packages.absent()
     if remaining:
-        reason = output.strip().splitlines()[-1] if output.strip() else tr("the command gave no reason")
-        QMessageBox.warning(
-            parent, SOFTWARE, tr("Not installed: {}. Python says: {}").format(", ".join(remaining), reason)
-        )
+        reason = output.strip().splitlines()[-1] if output.strip() else "the command gave no reason"
+        QMessageBox.warning(parent, SOFTWARE, f"Not installed: {', '.join(remaining)}. Python says: {reason}")
     else:
-        again = tr("Everything is installed; start QGIS again.")
-        done = again if replaces_loaded else tr("Everything is installed; the algorithms can run.")
+        again = "Everything is installed; start QGIS again."
+        done = again if replaces_loaded else "Everything is installed; the algorithms can run."
         QMessageBox.information(parent, SOFTWARE, done)
     return not remaining
 
 
 def _is_wanted(parent: Optional[QWidget], command: str) -> bool:
-    question = tr("Run this command? It installs Python packages for QGIS alone, from the Python Package Index.")
+    question = "Run this command? It installs Python packages for QGIS alone, from the Python Package Index."
     return is_answered_yes(parent, SOFTWARE, f"{question}\n\n{command}")
 
 
 def _run(parent: Optional[QWidget], program: str, arguments: list[str]) -> str:
     """Run a program while a window shows that it is at work; return what it printed, or why it did not start."""
-    waiting = QProgressDialog(tr("Installing Python packages…"), tr("Cancel"), 0, 0, parent)
+    waiting = QProgressDialog("Installing Python packages…", "Cancel", 0, 0, parent)
     waiting.setWindowTitle(SOFTWARE)
     waiting.setWindowModality(Qt.WindowModality.WindowModal)
     waiting.setMinimumDuration(0)
@@ -184,9 +180,9 @@ class _StartMessage:
 
     def __init__(self, iface: Any) -> None:
         self.iface = iface
-        text = tr("Python packages are missing or too old: {}.").format(", ".join(packages.missing(packages.ESSENTIAL)))
+        text = f"Python packages are missing or too old: {', '.join(packages.missing(packages.ESSENTIAL))}."
         self.item = iface.messageBar().createMessage(SOFTWARE, text)
-        self.button = QPushButton(tr("Install…"), self.item)
+        self.button = QPushButton("Install…", self.item)
         self.button.clicked.connect(self.install)
         self.item.layout().addWidget(self.button)
         iface.messageBar().pushWidget(self.item, Qgis.MessageLevel.Warning)

@@ -21,28 +21,25 @@ from . import PROVIDER_ID
 from .clouds import file_of_layer
 from .inputs import EXTENT, INPUT
 from .paths import GROUP_ICONS, ICON, PLUGIN
-from .texts import tr
 
 MENU = "LiDAR Buildings"
+
+# Text of the menu entry and of the button.
+FIND_IN_VIEW = "Find buildings in this view…"
 
 # Name of the window of the review, by which it is found again.
 REVIEW_WINDOW = "LidarBuildingsReview"
 
 
-def find_in_view_text() -> str:
-    """Return the text of the menu entry and of the button that find buildings in the map view."""
-    return tr("Find buildings in this view…")
-
-
 def add_menu(iface: Any) -> Callable[[], None]:
     """Add the menu and the toolbar button; return what takes them away again."""
-    find = _action(iface, find_in_view_text(), GROUP_ICONS / "buildings.svg", lambda: open_dialog(iface))
-    find.setToolTip(tr("Find the buildings of the active point cloud within the map view"))
-    view = _action(iface, tr("Show models in 3D"), GROUP_ICONS / "3d.svg", lambda: _show_in_3d(iface))
-    review = _action(iface, tr("Review buildings…"), GROUP_ICONS / "quality.svg", lambda: _review(iface))
-    sample = _action(iface, tr("Open sample data"), GROUP_ICONS / "simulation.svg", lambda: _open_sample(iface))
-    check = _action(iface, tr("Check installation…"), ICON, lambda: _check_installation(iface))
-    steps = _action(iface, tr("First steps"), ICON, lambda: _show_first_steps(iface))
+    find = _action(iface, FIND_IN_VIEW, GROUP_ICONS / "buildings.svg", lambda: open_dialog(iface))
+    find.setToolTip("Find the buildings of the active point cloud within the map view")
+    view = _action(iface, "Show models in 3D", GROUP_ICONS / "3d.svg", lambda: _show_in_3d(iface))
+    review = _action(iface, "Review buildings…", GROUP_ICONS / "quality.svg", lambda: _review(iface))
+    sample = _action(iface, "Open sample data", GROUP_ICONS / "simulation.svg", lambda: _open_sample(iface))
+    check = _action(iface, "Check installation…", ICON, lambda: _check_installation(iface))
+    steps = _action(iface, "First steps", ICON, lambda: _show_first_steps(iface))
     actions = (find, view, review, sample, steps, check)
     for action in actions:
         iface.addPluginToMenu(MENU, action)
@@ -89,7 +86,7 @@ def _show_first_steps(iface: Any) -> None:
     page = QTextBrowser(iface.mainWindow())
     page.setWindowFlags(Qt.WindowType.Window)
     page.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-    page.setWindowTitle(tr("First steps"))
+    page.setWindowTitle("First steps")
     page.setSource(QUrl.fromLocalFile(str(PLUGIN / "docs" / "first_steps.md")))
     page.resize(1060, 800)  # pixels: its pictures are 1000 wide
     page.show()

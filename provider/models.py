@@ -46,7 +46,7 @@ def pipeline_parameters(pipeline: Pipeline) -> dict[str, QgsProcessingParameterD
         definition = parameter(tunable)
         definition.setName(name.upper())
         if name not in pipeline.shared:
-            definition.setDescription(step_label(step, step_title(step), definition.description()))
+            definition.setDescription(step_label(step, definition.description()))
         if tunable.name in step.tunables:
             default = step.tunables[tunable.name]
             definition.setDefaultValue(list(default) if isinstance(default, tuple) else default)

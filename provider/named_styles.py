@@ -20,7 +20,6 @@ from qgis.PyQt.QtGui import QColor
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from .paths import STYLES
-from .texts import tr
 
 # Attributes of polygons by which these are colored, and what the style is called.
 _BY_ATTRIBUTE = {
@@ -70,8 +69,8 @@ def add_named_styles(layer: QgsMapLayer) -> None:
         for name in names:
             renderer = _renderer(layer, name)
             if renderer is not None:
-                manager.addStyleFromLayer(tr(_BY_ATTRIBUTE[name]))
-                manager.setCurrentStyle(tr(_BY_ATTRIBUTE[name]))
+                manager.addStyleFromLayer(_BY_ATTRIBUTE[name])
+                manager.setCurrentStyle(_BY_ATTRIBUTE[name])
                 layer.setRenderer(renderer)
     elif isinstance(layer, QgsPointCloudLayer):
         on_disk = {one.name() for one in layer.attributes().attributes()}
@@ -79,11 +78,11 @@ def add_named_styles(layer: QgsMapLayer) -> None:
         for name, title in _BY_DIMENSION.items():
             disk = DIMENSIONS[name].disk[0]
             if disk == current_attribute:
-                manager.renameStyle(first, tr(title))
-                first = tr(title)
+                manager.renameStyle(first, title)
+                first = title
             elif disk in on_disk:
-                manager.addStyleFromLayer(tr(title))
-                manager.setCurrentStyle(tr(title))
+                manager.addStyleFromLayer(title)
+                manager.setCurrentStyle(title)
                 layer.loadNamedStyle(str(STYLES / f"{name}.qml"))
     manager.setCurrentStyle(first)
 

@@ -17,7 +17,6 @@ from qgis.core import (
 )
 
 from ..algorithms.stage import Stage, Tunable
-from .texts import tr
 
 _NUMBERS = {float: Qgis.ProcessingNumberParameterType.Double, int: Qgis.ProcessingNumberParameterType.Integer}
 
@@ -36,23 +35,23 @@ def label(tunable: Tunable) -> str:
     """Return the label with its unit, and where it may be empty what that means."""
     facts = [tunable.param.unit] if tunable.param.unit else []
     if tunable.is_optional:
-        facts.append(f"{tr('empty')} = {tr(tunable.param.unset)}")
-    return f"{tr(tunable.param.label)} ({', '.join(facts)})" if facts else tr(tunable.param.label)
+        facts.append(f"empty = {tunable.param.unset}")
+    return f"{tunable.param.label} ({', '.join(facts)})" if facts else tunable.param.label
 
 
 def plain_label(tunable: Tunable) -> str:
     """Return the label with its unit, for a dialog whose fields show what an empty one means."""
     param = tunable.param
-    return f"{tr(param.label)} ({param.unit})" if param.unit else tr(param.label)
+    return f"{param.label} ({param.unit})" if param.unit else param.label
 
 
 def help_text(tunable: Tunable) -> str:
     """Return the tooltip: what the tunable does, its range, what automatic means."""
-    parts = [tr(tunable.param.help)]
+    parts = [tunable.param.help]
     if tunable.param.bounds:
         parts.append(f"Range: {tunable.param.bounds}.")
     if tunable.is_optional:
-        parts.append(tr(tunable.param.unset_text))
+        parts.append(tunable.param.unset_text)
     return " ".join(parts)
 
 
@@ -128,10 +127,10 @@ def number_outputs(stage: Stage) -> dict[str, str]:
     """Return names and titles of the numbers that a run gives: measures, and what automatic tunables took."""
     numbers = {}
     for measure in stage.measures:
-        title = tr(measure.title)
+        title = measure.title
         numbers[measure.name.upper()] = f"{title} ({measure.unit})" if measure.unit else title
     for tunable in automatic_numbers(stage):
-        numbers[used_name(tunable)] = tr("{}, as used").format(plain_label(tunable))
+        numbers[used_name(tunable)] = f"{plain_label(tunable)}, as used"
     return numbers
 
 

@@ -8,7 +8,6 @@ from typing import Callable
 from qgis.PyQt.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QToolButton, QWidget
 
 from ..algorithms.cloud.asprs import PointClass, parse_classes
-from .texts import tr
 
 
 class Picker(QWidget):
@@ -82,4 +81,4 @@ def fill_with_names(names: list[str], menu: QMenu, field: QLineEdit) -> None:
     for name in names:
         menu.addAction(name).triggered.connect(lambda _, name=name: field.setText(name))
     if not names:
-        menu.addAction(tr("Choose a point cloud first")).setEnabled(False)
+        menu.addAction("Choose a point cloud first").setEnabled(False)

@@ -11,7 +11,6 @@ from qgis.core import Qgis, QgsApplication, QgsMessageLog, QgsProcessingRegistry
 
 from .provider import Provider
 from .settings import add_options
-from .texts import install_translation
 
 # Tab of the log messages.
 LOG = "LiDAR Buildings"
@@ -31,7 +30,6 @@ class Plugin:
 
     def initProcessing(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add the provider to Processing."""
-        self._translator = install_translation()
         self._add_dependencies_folder()
         provider = self.provider = Provider()
         self._registry().addProvider(provider)

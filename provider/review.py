@@ -23,7 +23,6 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QMetaType
 
 from .crs import meters_per_unit
-from .texts import tr
 
 # Attributes that are added, and the decisions.
 REVIEW, REVIEWED_AT = "review", "reviewed_at"
@@ -95,7 +94,7 @@ class Review:
 
     def decide(self, fid: int, decision: str) -> None:
         """Record a decision on a building."""
-        with self._command(tr("Review of a building")):
+        with self._command("Review of a building"):
             self._mark(fid, decision)
         self.fade_deleted()
 
@@ -112,9 +111,9 @@ class Review:
         parts = [self.layer.getFeature(one) for one in (fid, *self._partners(fid))]
         outline = QgsGeometry.unaryUnion([part.geometry() for part in parts])
         if outline.constGet().partCount() != 1:
-            raise ValueError(tr("These buildings don't touch; only neighbors that do become one."))
+            raise ValueError("These buildings don't touch; only neighbors that do become one.")
         largest = max(parts, key=lambda part: part.geometry().area()).id()
-        with self._command(tr("Merge buildings")):
+        with self._command("Merge buildings"):
             self.layer.changeGeometry(largest, outline.coerceToType(self.layer.wkbType())[0])
             for name in _SUMS:
                 self._set(largest, name, sum(self.value(part, name) or 0 for part in parts))
@@ -131,7 +130,7 @@ class Review:
         near = self.layer.getFeatures(QgsFeatureRequest().setFilterRect(outline.boundingBox()))
         touching = [one.id() for one in near if one.id() != fid and one.geometry().intersects(outline)]
         if len(touching) != 1:
-            raise ValueError(tr("{} buildings touch this one; select those to merge it with.").format(len(touching)))
+            raise ValueError(f"{len(touching)} buildings touch this one; select those to merge it with.")
         return touching
 
     def prepare_division(self, fid: int) -> None:
@@ -145,7 +144,7 @@ class Review:
 
     def remove_deleted(self) -> None:
         """Take the buildings that are marked as deleted out of the layer."""
-        with self._command(tr("Remove deleted buildings")):
+        with self._command("Remove deleted buildings"):
             self.layer.deleteFeatures([one.id() for one in self.buildings(IS_DELETED)])
 
     def save(self) -> None:
@@ -169,8 +168,7 @@ class Review:
     def _edit(self) -> None:
         """Begin to edit, or say that it can't be."""
         if not (self.layer.isEditable() or self.layer.startEditing()):
-            what = tr("{} can't be edited; export it to a GeoPackage and review that.")
-            raise ValueError(what.format(self.layer.name()))
+            raise ValueError(f"{self.layer.name()} can't be edited; export it to a GeoPackage and review that.")
 
     @contextmanager
     def _command(self, text: str) -> Iterator[None]:

@@ -28,7 +28,6 @@ from .menu import REVIEW_WINDOW
 from .questions import push_with_button
 from .review import CONFIDENCE, DELETED, KEPT, REVIEW, Review, is_reviewable
 from .review_views import PointViews
-from .texts import tr
 from .view3d import look_at, view_angles
 
 # Columns of the list: attributes, and what they are called.
@@ -81,9 +80,9 @@ def offer_review(iface: Any, layer: QgsVectorLayer) -> None:
     count, name = sum(1 for _ in layer.getFeatures(doubtful)), layer.id()
     push_with_button(
         iface,
-        tr("LiDAR Buildings"),
-        tr("{} buildings, {} of them doubtful.").format(layer.featureCount(), count),
-        tr("Review buildings…"),
+        "LiDAR Buildings",
+        f"{layer.featureCount()} buildings, {count} of them doubtful.",
+        "Review buildings…",
         lambda: show_review(iface, QgsProject.instance().mapLayer(name)),
     )
 
@@ -92,7 +91,7 @@ class ReviewDock(QDockWidget):
     """A list of the buildings of the active layer, the evidence for the current one, and the decisions."""
 
     def __init__(self, iface: Any) -> None:
-        super().__init__(tr("Review buildings"), iface.mainWindow())
+        super().__init__("Review buildings", iface.mainWindow())
         self.setObjectName(REVIEW_WINDOW)
         self.iface, self.canvas = iface, iface.mapCanvas()
         self.review: Any = None
@@ -107,10 +106,10 @@ class ReviewDock(QDockWidget):
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.fill)
         self.filter = QComboBox()
-        self.filter.addItems([tr(name) for name in _FILTERS.values()])
+        self.filter.addItems(_FILTERS.values())
         self.filter.currentIndexChanged.connect(self.fill)
         self.list = QTreeWidget(rootIsDecorated=False, uniformRowHeights=True)
-        self.list.setHeaderLabels([tr(name) for name in _COLUMNS.values()])
+        self.list.setHeaderLabels(_COLUMNS.values())
         self.list.header().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         self.list.currentItemChanged.connect(self._show)
         self.facts, self.count = QLabel(wordWrap=True), QLabel(wordWrap=True)
@@ -127,15 +126,15 @@ class ReviewDock(QDockWidget):
         """Return buttons, whose keys hold in this window and on the map."""
         grid = QGridLayout()
         given = (
-            (tr("Keep"), "K", lambda _: self.decide(KEPT)),
-            (tr("Delete"), "D", lambda _: self.decide(DELETED)),
-            (tr("Merge"), "M", self.merge),
-            (tr("Divide"), "L", self.divide),
-            (tr("Previous"), "P", lambda _: self.go_to(self.row - 1)),
-            (tr("Next"), "N", lambda _: self.go_to(self.row + 1)),
-            (tr("Undo"), "", lambda review: review.layer.undoStack().undo()),
-            (tr("Save"), "", Review.save),
-            (tr("Remove deleted"), "", Review.remove_deleted),
+            ("Keep", "K", lambda _: self.decide(KEPT)),
+            ("Delete", "D", lambda _: self.decide(DELETED)),
+            ("Merge", "M", self.merge),
+            ("Divide", "L", self.divide),
+            ("Previous", "P", lambda _: self.go_to(self.row - 1)),
+            ("Next", "N", lambda _: self.go_to(self.row + 1)),
+            ("Undo", "", lambda review: review.layer.undoStack().undo()),
+            ("Save", "", Review.save),
+            ("Remove deleted", "", Review.remove_deleted),
         )
         for number, (text, key, run) in enumerate(given):
             action = QAction(f"{text} ({key})" if key else text, self)
@@ -239,11 +238,11 @@ class ReviewDock(QDockWidget):
     def _count(self) -> None:
         """Say how many are reviewed, and that decisions are to be saved."""
         done = sum(self.review.value(one, REVIEW) is not None for one in self._listed)
-        said = [tr("{} of {} reviewed.").format(done, len(self._listed))]
+        said = [f"{done} of {len(self._listed)} reviewed."]
         if self.review is not None and self.review.layer.undoStack().index():
-            said.append(tr("Steps to save: {}.").format(self.review.layer.undoStack().index()))
+            said.append(f"Steps to save: {self.review.layer.undoStack().index()}.")
         if self.review is not None and self.review.layer.isTemporary():
-            said.append(tr("The layer is temporary: export it before QGIS closes."))
+            said.append("The layer is temporary: export it before QGIS closes.")
         self.count.setText(" ".join(said))
 
     def decide(self, decision: str) -> None:
@@ -285,4 +284,4 @@ class ReviewDock(QDockWidget):
 
 def _nothing() -> str:
     """Return what to do where the list is empty."""
-    return tr("No building is listed; choose a layer of footprints, or list all.")
+    return "No building is listed; choose a layer of footprints, or list all."

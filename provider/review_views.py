@@ -28,7 +28,6 @@ from ..algorithms.report.building_views import draw_sections
 from .clouds import file_of_layer
 from .crs import crs_of_layer, meters_per_unit
 from .styles import Styler
-from .texts import tr
 from .web import check_sizes
 
 # Width of the surroundings that are read, m.
@@ -68,7 +67,7 @@ class PointViews(QWidget):
             self._draw(error)
             return
         task: Any = QgsTask.fromFunction(
-            tr("Points of a building"),
+            "Points of a building",
             lambda _: sections_of(file, ring, around),
             on_finished=lambda *drawn: self._draw(*drawn) if task is self._task else None,
             flags=QgsTask.Flag.Hidden | QgsTask.Flag.Silent,
@@ -132,4 +131,4 @@ def _cloud_around(layer: QgsVectorLayer, outline: QgsGeometry) -> tuple[Path, np
             ring = next(moved.constParts()).exteriorRing()
             corners = np.array([(corner.x(), corner.y()) for corner in ring.points()])
             return file, corners, _AROUND / meters_per_unit(cloud.crs())[0]
-    raise ValueError(tr("The project has no point cloud here."))
+    raise ValueError("The project has no point cloud here.")

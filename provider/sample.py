@@ -24,7 +24,6 @@ from ..algorithms.run import run_stage
 from ..algorithms.stages import STAGES
 from .named_clouds import SIMULATED_CRS, named
 from .styles import Styler, show_in_3d
-from .texts import tr
 
 # Side (m) of the town: with houses, a hall, a river with bridges, and plants.
 _SIZE = 110.0
@@ -56,8 +55,8 @@ def open_sample(iface: Any) -> None:
         QApplication.restoreOverrideCursor()
     iface.mapCanvas().zoomToFullExtent()
     iface.messageBar().pushInfo(
-        tr("Sample data"),
-        tr("A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings in this view…."),
+        "Sample data",
+        "A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings in this view….",
     )
 
 
@@ -86,8 +85,8 @@ def fill_project(project: QgsProject, folder: Path) -> None:
     """Add the town, colored by its elevation, and the truth, switched off, to an empty project, and save that."""
     crs = QgsCoordinateReferenceSystem(SIMULATED_CRS)
     project.setCrs(crs)
-    town = QgsPointCloudLayer(str(folder / TOWN), tr("Town"), "copc")
-    truth = QgsPointCloudLayer(str(folder / TRUTH), tr("Town, true classes"), "copc")
+    town = QgsPointCloudLayer(str(folder / TOWN), "Town", "copc")
+    truth = QgsPointCloudLayer(str(folder / TRUTH), "Town, true classes", "copc")
     for layer in (truth, town):
         if not layer.crs().isValid():
             layer.setCrs(crs)

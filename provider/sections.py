@@ -12,7 +12,6 @@ from ..algorithms.stage import DIMENSION, Tunable
 from ..algorithms.tiling.settings import SETTINGS
 from .inputs import CRS
 from .parameters import parameter_name, plain_label
-from .texts import tr
 
 # "Side of a block (m, empty = automatic)": the title, and what an empty field means.
 _EMPTY = re.compile(r"(.*?)(?:[ (]*empty = (.*)\))?$")
@@ -36,20 +35,20 @@ class Section:
     def add(self, name: str, tunable: Tunable, step: Optional[Step] = None) -> None:
         """Add a parameter; where its group does not name the step, its label does."""
         label = plain_label(tunable)
-        self.labels[name] = step_label(step, tr(step_title(step)), label) if step is not None else label
+        self.labels[name] = step_label(step, label) if step is not None else label
         if tunable.name == DIMENSION:
             self.pickers[name] = DIMENSION
         elif tunable.name in _CLASSES:
             self.pickers[name] = "classes"
         if tunable.is_optional:
-            self.unset[name] = tr(tunable.param.unset)
+            self.unset[name] = tunable.param.unset
 
     def add_setting(self, name: str) -> None:
         """Add a parameter that is no tunable; what an empty field means is in its title."""
         title, empty = _EMPTY.findall(SETTINGS[name].title)[0]
         self.labels[name] = f"{title.rstrip(',')})" if "(" in title else title.rstrip()
         if empty:
-            self.unset[name] = tr(empty)
+            self.unset[name] = empty
 
 
 def sections_of(algorithm: Any) -> list[Section]:
@@ -59,28 +58,26 @@ def sections_of(algorithm: Any) -> list[Section]:
     if pipeline is None:
         section = Section("")
         section.add_setting("EXTENT")
-        section.labels[CRS] = tr("Coordinate reference system")
+        section.labels[CRS] = "Coordinate reference system"
         stage = getattr(algorithm, "stage", None)
         for tunable in stage.tunables.values() if stage is not None else ():
             section.add(parameter_name(tunable), tunable)
         return [section]
     sections = _of_steps(pipeline)
     if tiled is not None:
-        sections.append(Section(tr("Survey: blocks, processes, files")))
+        sections.append(Section("Survey: blocks, processes, files"))
         for name in SETTINGS:
             sections[-1].add_setting(name)
     else:
         sections[0].add_setting("EXTENT")
-    sections[-1 if tiled is not None else 0].labels[CRS] = tr(
-        "Coordinate reference system (of a cloud that names none)"
-    )
+    sections[-1 if tiled is not None else 0].labels[CRS] = "Coordinate reference system (of a cloud that names none)"
     return sections
 
 
 def _of_steps(pipeline: Pipeline) -> list[Section]:
     """Return a group for each step with parameters, after one for those that steps share."""
-    sections = {"": Section(tr("All steps"))}
-    sections.update({step.name: Section(tr(step_title(step))) for step in pipeline.steps})
+    sections = {"": Section("All steps")}
+    sections.update({step.name: Section(step_title(step)) for step in pipeline.steps})
     for name, (step, tunable) in pipeline.parameters.items():
         is_shared = name in pipeline.shared
         # Parameters that are shown at once have no group that names their step.

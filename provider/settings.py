@@ -11,7 +11,6 @@ from ..algorithms.cloud.web_addresses import allow_hosts
 from ..algorithms.landcover.recode_classes import CODES as AGENCIES
 from ..algorithms.presets import PRESETS
 from ..algorithms.threads import use_threads
-from .texts import tr
 
 # The heading of the options in the dialog of QGIS.
 GROUP = "LiDAR Buildings"
@@ -89,7 +88,7 @@ def add_options() -> Callable[[], None]:
 
     for option in OPTIONS:
         kind = {"valuetype": Setting.SELECTION_STORE_STRING, "options": list(option.choices)} if option.choices else {}
-        setting = Setting(GROUP, option.name, tr(option.title), option.default, **kind)
+        setting = Setting(GROUP, option.name, option.title, option.default, **kind)
         setting.read()
         ProcessingConfig.addSetting(setting)
 

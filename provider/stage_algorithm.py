@@ -16,7 +16,6 @@ from .feedback import FeedbackMonitor, announce
 from .inputs import cloud_title
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .run_log import RunLog
-from .texts import tr
 from .vectors import number
 
 
@@ -102,8 +101,8 @@ def _made(stage: Stage) -> list[Made]:
     for name, declared in stage.outputs.items():
         is_one_of_several = isinstance(declared, Raster) and len(stage.rasters) > 1
         optional = declared != CLOUD and (has_other or bool(made) or is_one_of_several)
-        title = cloud_title([stage]) if name == CLOUD else tr(stage.report_title)
+        title = cloud_title([stage]) if name == CLOUD else stage.report_title
         if not isinstance(declared, str):
-            title = tr(declared.title)
+            title = declared.title
         made.append(Made(name.upper(), title, stage, declared, optional))
     return made

@@ -33,7 +33,6 @@ from ..algorithms.stage import Field, Layer, Raster, Stage
 from .crs import crs_of
 from .named_styles import add_named_styles, fit_ramp
 from .paths import STYLES
-from .texts import tr
 
 # Kinds of results from the bottom of the map to the top: QGIS would stack them by the names of their files.
 _DRAWN = ("Raster", "Cloud", "Polygon", "LineString", "Point")
@@ -166,7 +165,7 @@ def store_styles(source: str, stem: Optional[str], fields: Sequence[Field]) -> N
     first = manager.currentStyle()
     for name in manager.styles():
         manager.setCurrentStyle(name)
-        title = tr("Default") if name == first else name
+        title = "Default" if name == first else name
         error = layer.saveStyleToDatabase(title, "", name == first, "")
         if error:
             raise ValueError(f"The styles can't be stored in {Path(source.split('|', maxsplit=1)[0]).name}: {error}")

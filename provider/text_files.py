@@ -11,15 +11,14 @@ from ..algorithms.stage import FileContent, MapFrame, Monitor, TextFile
 from .inputs import with_help
 from .layer_outputs import BETWEEN_CHECKS, UNWANTED
 from .places import Place
-from .texts import tr
 
 
 def file_parameter(file: TextFile) -> QgsProcessingParameterFileDestination:
     """Return the parameter of a text file; its dialog has a filter for each format."""
     filters = ";;".join(f"{called} (*{' *'.join(endings)})" for called, endings in file.formats.items())
-    definition = QgsProcessingParameterFileDestination(file.name.upper(), tr(file.title), filters, optional=True)
+    definition = QgsProcessingParameterFileDestination(file.name.upper(), file.title, filters, optional=True)
     formats = " / ".join(file.formats)
-    return with_help(definition, tr("A text file: {}, as its name ends.").format(formats))
+    return with_help(definition, f"A text file: {formats}, as its name ends.")
 
 
 def write_text(

@@ -66,7 +66,6 @@ from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .text_files import write_text
-from .texts import tr
 
 BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED, LOAD = (
     "BLOCK_SIDE",
@@ -115,13 +114,13 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.addParameter(with_setting(crs_parameter(), SETTINGS))
         for definition in _work_parameters():
             self.addParameter(definition)
-        folder = QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder of the tiles"))
-        self.addParameter(with_help(folder, tr("A tile for each file, and a virtual point cloud over all of them.")))
+        folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
+        self.addParameter(with_help(folder, "A tile for each file, and a virtual point cloud over all of them."))
         for made in self.made:
             self.addParameter(made.definition())
-        self.addOutput(QgsProcessingOutputFile(VPC, tr("Virtual point cloud over the tiles")))
+        self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
         for name, title in _NUMBERS.items():
-            self.addOutput(QgsProcessingOutputNumber(name, tr(title)))
+            self.addOutput(QgsProcessingOutputNumber(name, title))
         self.name_pages()
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
@@ -318,7 +317,7 @@ def _made(tiled: TiledPipeline) -> list[Made]:
     for output in outputs:
         stage, declared = output.step.stage, files.get(output.name, output.declared)
         title = stage.report_title if isinstance(declared, str) else declared.title
-        made.append(Made(output.name.upper(), tr(title), stage, declared))
+        made.append(Made(output.name.upper(), title, stage, declared))
     return made
 
 

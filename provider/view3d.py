@@ -23,7 +23,6 @@ from qgis.gui import QgsProjectionSelectionDialog
 
 from .named_clouds import SIMULATED_CRS
 from .questions import push_with_button
-from .texts import tr
 
 # Angle (°) of the camera from straight down: seen from above, walls would be lines.
 _PITCH = 55.0
@@ -48,10 +47,10 @@ def show_view(iface: Any) -> None:
     """Open a 3D view with the layers of the current group alone, or with all visible ones where it has no vectors."""
     layers = layers_to_show(iface.layerTreeView().currentGroupNode(), iface.mapCanvas().layers())
     if not layers:
-        iface.messageBar().pushInfo(tr("3D"), tr("There is no layer to show; run a model first."))
+        iface.messageBar().pushInfo("3D", "There is no layer to show; run a model first.")
         return
     _give_metric_system(iface, layers)
-    canvas = iface.createNewMapCanvas3D(tr("3D: {}").format(layers[0].name()))
+    canvas = iface.createNewMapCanvas3D(f"3D: {layers[0].name()}")
     settings = canvas.mapSettings()
     settings.setLayers(layers)
     # The flat terrain of a new view lies at 0 and hides what lies below.
@@ -81,8 +80,8 @@ def _give_metric_system(iface: Any, layers: list[QgsMapLayer]) -> None:
     project.setCrs(found or QgsCoordinateReferenceSystem(SIMULATED_CRS))
     if found is not None:
         return
-    text = tr("The layers name no coordinate reference system; they are shown in local meters.")
-    push_with_button(iface, tr("3D"), text, tr("Choose a system…"), lambda: _choose_system(iface))
+    text = "The layers name no coordinate reference system; they are shown in local meters."
+    push_with_button(iface, "3D", text, "Choose a system…", lambda: _choose_system(iface))
 
 
 def _choose_system(iface: Any) -> None:

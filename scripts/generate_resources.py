@@ -1,4 +1,4 @@
-"""Write the generated files of the plugin: help pages, models of pipelines, and texts to translate.
+"""Write the generated files of the plugin: help pages and models of pipelines.
 
 ``make resources`` runs it with the Python of QGIS.
 """
@@ -12,8 +12,7 @@ from pathlib import Path
 # Qt shuffles the attributes of XML unless this is set before it starts: each model would be a new file.
 os.environ["QT_HASH_SEED"] = "0"
 ROOT = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
-from extract_texts import write_texts  # noqa: E402
+sys.path.insert(0, str(ROOT))
 from qgis.core import QgsApplication  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
@@ -50,7 +49,6 @@ def _remove_others(folder: Path, suffix: str, wanted: set[str]) -> None:
 
 def main() -> None:
     """Write all files and remove those of algorithms that no longer exist."""
-    write_texts()
     pages = help_pages()
     _remove_others(HELP, ".html", set(pages))
     for name, text in pages.items():

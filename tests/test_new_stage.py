@@ -94,7 +94,7 @@ def test_five_files_are_written_by_hand(copy):
         "tests/test_contract.py",
         "CHANGELOG.md",
     }
-    assert {file.name for file in generated} == {"segmentstoreys.html", "segmentstoreys.png", "lidar_buildings.ts"}
+    assert {file.name for file in generated} == {"segmentstoreys.html", "segmentstoreys.png"}
 
 
 def same(one: Path, other: Path) -> bool:

@@ -76,6 +76,28 @@ def test_the_menu_shows_the_first_steps_with_their_pictures():
     page.close()
 
 
+def test_the_menu_has_six_entries_until_it_is_taken_away():
+    class Windows:
+        window, entries = QMainWindow(), []
+
+        def mainWindow(self):
+            return self.window
+
+        def addPluginToMenu(self, _, action):
+            self.entries.append(action)
+
+        def removePluginMenu(self, _, action):
+            self.entries.remove(action)
+
+        addToolBarIcon = removeToolBarIcon = lambda *_: None
+
+    remove = menu.add_menu(Windows())
+    assert len({entry.text() for entry in Windows.entries}) == 6
+    assert all(not entry.icon().isNull() for entry in Windows.entries)
+    remove()
+    assert not Windows.entries
+
+
 def test_the_graph_for_the_designer_is_a_model_of_the_users_own(provider):
     algorithm = provider.algorithm("toychain").create()
     assert isinstance(algorithm, PipelineAlgorithm)

@@ -320,6 +320,8 @@ def test_open_3d_views_look_at_the_building(dock, qgis_iface, monkeypatch):
 
 def test_a_run_that_made_footprints_offers_the_review(layer, qgis_iface, context, log, monkeypatch, request):
     monkeypatch.setattr(styles, "iface", qgis_iface)
+    # All tests of a process share the message bar.
+    qgis_iface.messageBar().clearWidgets()
     styles.Styler("facades").postProcessLayer(layer, context, log)
     assert qgis_iface.messageBar().currentItem() is None
     styles.Styler("footprints").postProcessLayer(layer, context, log)
