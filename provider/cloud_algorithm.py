@@ -50,11 +50,13 @@ from .inputs import (
     extent_box,
     extent_parameter,
     given_crs,
+    given_spacing,
     input_parameter,
     input_paths,
     name_of_layer,
     reference_parameter,
     refuse_same,
+    spacing_parameter,
     subject_of,
 )
 from .layer_outputs import UNWANTED, write_layer
@@ -92,6 +94,7 @@ class Job:
     layer: str = ""  #: Name of the layer that gives the cloud, "" for a file
     reference: Optional[Path] = None
     box: Optional[np.ndarray] = None
+    spacing: Optional[np.ndarray] = None  #: Sides (3,) of cubes that one point each is read of, in units of the clouds
     crs: QgsCoordinateReferenceSystem = field(default_factory=QgsCoordinateReferenceSystem)
 
     @property
@@ -102,7 +105,7 @@ class Job:
     @property
     def points(self) -> int:
         """How many points are read."""
-        return sum(count_points(path, self.box) for path in self.paths)
+        return sum(count_points(path, self.box, self.spacing) for path in self.paths)
 
 
 @dataclass
@@ -163,6 +166,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.add_tunables()
         if inputs.clouds:
             self.addParameter(extent_parameter())
+            self.addParameter(spacing_parameter())
         if inputs.clouds or self.creates:
             self.addParameter(crs_parameter(SIMULATED_CRS if self.creates else None))
         for made in self.made:
@@ -198,15 +202,17 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
         if job.clouds:
-            plane = read_extent(job.clouds[0], crs_reader(job.crs), NOWHERE)[2].plane
-            job.box = extent_box(self, plane, parameters, context)
+            crs = read_extent(job.clouds[0], crs_reader(job.crs), NOWHERE)[2]
+            job.box = extent_box(self, crs.plane, parameters, context)
+            spacing = given_spacing(self, parameters, context)
+            job.spacing = spacing / crs.factors if spacing else None
         read = [*files_read(job.paths), *input_layer_files(self, inputs.layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read, job.clouds)
         if job.reference:
             refuse_same(job.clouds, job.reference)
         for path in job.paths:
             check_readable(path, box=job.box)
-        check_sizes(job.paths, job.box)
+        check_sizes(job.paths, job.box, job.spacing)
         if job.clouds:
             refuse_elsewhere(self, inputs.layers, job.clouds, job.box, parameters, context)
         return job
@@ -252,10 +258,10 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         job = self.job
         # Before reading: a process that runs out of memory is ended without a message.
         warn_if_memory_is_short(job.points, monitor)
-        tell_sizes(job.paths, job.box, monitor)
+        tell_sizes(job.paths, job.box, job.spacing, monitor)
         count = max(1, len(job.paths))
         parts = [monitor.part(i / count, (i + 1) / count) for i in range(count)]
-        clouds = read_clouds(job.paths, parts, job.crs, job.box)
+        clouds = read_clouds(job.paths, parts, job.crs, job.box, job.spacing)
         reference = clouds.pop() if job.reference else None
         found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.inputs.layers}
         given = {wanted: layer for wanted, layer in found.items() if layer is not None}

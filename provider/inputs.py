@@ -17,19 +17,24 @@ from qgis.core import (
     QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExtent,
+    QgsProcessingParameterNumber,
     QgsProject,
 )
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.stage import Stage
-from ..algorithms.tiling.settings import SETTINGS, Setting
+from ..algorithms.tiling.settings import READ_SETTINGS, Setting
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
 from .feedback import is_step
+from .parameters import is_given
 from .styles import subject_of_file
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
-EXTENT, CRS = "EXTENT", "CRS"
+EXTENT, SPACING, CRS = "EXTENT", "SPACING", "CRS"
+
+# Bounds of the spacing of points, m: of close scans, and of the overview of a country.
+SPACINGS = 0.001, 1000.0
 
 
 def with_help(definition: QgsProcessingParameterDefinition, text: str) -> QgsProcessingParameterDefinition:
@@ -74,7 +79,15 @@ def input_paths(
 
 def extent_parameter() -> QgsProcessingParameterDefinition:
     """Return the parameter of the part of the cloud that is worked on."""
-    return with_setting(QgsProcessingParameterExtent(EXTENT, "", optional=True), SETTINGS)
+    return with_setting(QgsProcessingParameterExtent(EXTENT, "", optional=True), READ_SETTINGS)
+
+
+def spacing_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter of the level of detail of the cloud that is worked on."""
+    number = Qgis.ProcessingNumberParameterType.Double
+    definition = QgsProcessingParameterNumber(SPACING, "", number, None, True, *SPACINGS)
+    definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
+    return with_setting(definition, READ_SETTINGS)
 
 
 def crs_parameter(default: Optional[str] = None) -> QgsProcessingParameterDefinition:
@@ -127,6 +140,23 @@ def extent_box(
     if rectangle.isNull() or not rectangle.isFinite():
         raise ValueError(f"{parameters[EXTENT]!r} is not an extent; give it as xmin,xmax,ymin,ymax.")
     return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])
+
+
+def given_spacing(algorithm: QgsProcessingAlgorithm, parameters: dict, context: QgsProcessingContext) -> float:
+    """Return the spacing (m) of the points that a user gives, 0 where all points are read.
+
+    Raises
+    ------
+    ValueError
+        If it is no number within the bounds.
+    """
+    if not is_given(parameters.get(SPACING)):
+        return 0.0
+    spacing = algorithm.parameterAsDouble(parameters, SPACING, context)
+    if not SPACINGS[0] <= spacing <= SPACINGS[1]:
+        low, high = SPACINGS
+        raise ValueError(f"{parameters[SPACING]!r} ({SPACING}) is no spacing; give meters from {low:g} to {high:g}.")
+    return spacing
 
 
 def refuse_same(clouds: Sequence[Path], reference: Path) -> None:

@@ -24,8 +24,20 @@ def read_clouds(
     monitors: Sequence[Monitor],
     given: QgsCoordinateReferenceSystem,
     box: Optional[np.ndarray],
+    spacing: Optional[np.ndarray],
 ) -> list[Cloud]:
-    """Return the clouds of files that are worked on together; an invalid ``given`` system adds nothing.
+    """Return the clouds of files that are worked on together.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The files.
+    monitors : sequence of Monitor
+        One for each of them.
+    given : QgsCoordinateReferenceSystem
+        Of clouds that name none; an invalid one adds nothing.
+    box, spacing : ndarray, optional
+        As of :func:`.read_cloud`.
 
     Raises
     ------
@@ -37,7 +49,7 @@ def read_clouds(
         systems = [read_extent(path, read, box)[2] for path in paths]
         leader = common_crs(systems, [path.name for path in paths], monitors[0], whole=False)
         read = crs_reader(given, leader.wkt or leader.stated)
-    return [read_cloud(path, monitor, read, box) for path, monitor in zip(paths, monitors)]
+    return [read_cloud(path, monitor, read, box, spacing) for path, monitor in zip(paths, monitors)]
 
 
 def names_of_crs(crs: QgsCoordinateReferenceSystem) -> list[str]:

@@ -156,7 +156,7 @@ def tunable_values(
     return {
         name: tunable.check(
             _value(algorithm, tunable, names[name], parameters, context)
-            if _is_given(parameters.get(names[name]))
+            if is_given(parameters.get(names[name]))
             else defaults[name],
             names[name],
         )
@@ -164,7 +164,7 @@ def tunable_values(
     }
 
 
-def _is_given(raw: Any) -> bool:
+def is_given(raw: Any) -> bool:
     """Whether a parameter has a value: QGIS passes an empty number as None, as NULL or as empty text."""
     return not (raw is None or raw == "" or (hasattr(raw, "isNull") and raw.isNull()))
 

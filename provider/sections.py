@@ -9,7 +9,7 @@ from typing import Any, Optional
 from ..algorithms.help import step_label, step_title
 from ..algorithms.pipeline import Pipeline, Step
 from ..algorithms.stage import DIMENSION, Tunable
-from ..algorithms.tiling.settings import SETTINGS
+from ..algorithms.tiling.settings import READ_SETTINGS, SETTINGS, Setting
 from .inputs import CRS
 from .parameters import parameter_name, plain_label
 
@@ -43,9 +43,9 @@ class Section:
         if tunable.is_optional:
             self.unset[name] = tunable.param.unset
 
-    def add_setting(self, name: str) -> None:
+    def add_setting(self, setting: Setting) -> None:
         """Add a parameter that is no tunable; what an empty field means is in its title."""
-        title, empty = _EMPTY.findall(SETTINGS[name].title)[0]
+        name, (title, empty) = setting.name, _EMPTY.findall(setting.title)[0]
         self.labels[name] = f"{title.rstrip(',')})" if "(" in title else title.rstrip()
         if empty:
             self.unset[name] = empty
@@ -57,7 +57,8 @@ def sections_of(algorithm: Any) -> list[Section]:
     pipeline = tiled.pipeline if tiled is not None else getattr(algorithm, "pipeline", None)
     if pipeline is None:
         section = Section("")
-        section.add_setting("EXTENT")
+        for setting in READ_SETTINGS.values():
+            section.add_setting(setting)
         section.labels[CRS] = "Coordinate reference system"
         stage = getattr(algorithm, "stage", None)
         for tunable in stage.tunables.values() if stage is not None else ():
@@ -66,11 +67,10 @@ def sections_of(algorithm: Any) -> list[Section]:
     sections = _of_steps(pipeline)
     if tiled is not None:
         sections.append(Section("Survey: blocks, processes, files"))
-        for name in SETTINGS:
-            sections[-1].add_setting(name)
-    else:
-        sections[0].add_setting("EXTENT")
-    sections[-1 if tiled is not None else 0].labels[CRS] = "Coordinate reference system (of a cloud that names none)"
+    section = sections[0 if tiled is None else -1]
+    for setting in (READ_SETTINGS if tiled is None else SETTINGS).values():
+        section.add_setting(setting)
+    section.labels[CRS] = "Coordinate reference system (of a cloud that names none)"
     return sections
 
 

@@ -118,7 +118,7 @@ def web_file(source: str) -> Optional[Path]:
     return cast(Path, WebFile(uri.param("url"), uri.authConfigId())) if is_address(uri.param("url")) else None
 
 
-def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray]) -> None:
+def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray] = None) -> None:
     """Refuse to read more from the web than the user has set as limit.
 
     Raises
@@ -129,25 +129,29 @@ def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray]) -> None:
     text = WEB_LIMIT.value
     if not (text.isdigit() and int(text)):
         raise ValueError(f"'{WEB_LIMIT.title}' in the options of Processing must be a whole number, got {text!r}.")
-    for path, (points, size) in _sizes(paths, box):
+    for path, (points, size) in _sizes(paths, box, spacing):
         if size > int(text) * 1e6:
             which = "the whole cloud" if box is None else "what lies within the extent"
             raise ValueError(
                 f"{path.name} is on the web, and {which} is {size / 1e6:,.0f} MB with {points:,} points, more than the "
-                f"{int(text):,} MB that are read at once; choose {'an' if box is None else 'a smaller'} extent, or set "
-                f"'{WEB_LIMIT.title}' in the options of Processing."
+                f"{int(text):,} MB that are read at once; choose {'an' if box is None else 'a smaller'} extent or a "
+                f"wider spacing, or set '{WEB_LIMIT.title}' in the options of Processing."
             )
 
 
-def tell_sizes(paths: Iterable[Path], box: Optional[np.ndarray], monitor: Monitor) -> None:
+def tell_sizes(
+    paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray], monitor: Monitor
+) -> None:
     """Tell how many bytes and points are read from the web, before they are."""
-    for path, (points, size) in _sizes(paths, box):
+    for path, (points, size) in _sizes(paths, box, spacing):
         host = cast(WebFile, path).host
         monitor.inform(f"{path.name}: {size / 1e6:,.1f} MB with {points:,} points are read from {host}.")
 
 
-def _sizes(paths: Iterable[Path], box: Optional[np.ndarray]) -> Iterable[tuple[Path, tuple[int, int]]]:
+def _sizes(
+    paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray]
+) -> Iterable[tuple[Path, tuple[int, int]]]:
     for path in paths:
-        for file, found in sizes_within(path, box):
+        for file, found in sizes_within(path, box, spacing):
             if isinstance(file, WebFile):
                 yield cast(Path, file), found

@@ -50,7 +50,7 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
     ValueError
         If a page lies outside of the file or comes twice, or the nodes are not those of the chunks.
     """
-    x, y, _, half, _, at, size, *_ = INFO.unpack(header.vlrs[0].data or b"")
+    x, y, _, half, spacing, at, size, *_ = INFO.unpack(header.vlrs[0].data or b"")
     if not (np.isfinite([x, y, half]).all() and half > 0):
         raise _damaged(path, f"its root is a cube of {2 * half:g} around ({x:g}, {y:g})")
     nodes = _nodes(path, stream, at, size, len(chunks))
@@ -60,7 +60,8 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
     if not np.array_equal(found, held):
         raise _damaged(path, f"it names {len(found)} nodes that are not the {len(held)} chunks of the file")
     keys, points = nodes["key"].astype(np.int64), found[:, 2]
-    return nodes_of(path, keys, points, np.array([x, y]) - half, np.full(2, 2 * half), header.scale[:2])
+    side, corner = np.full(2, 2 * half), np.array([x, y]) - half
+    return nodes_of(path, keys, points, corner, side, header.scale[:2], spacing)
 
 
 def _nodes(path: Path, stream: BinaryIO, at: int, size: int, most: int) -> np.ndarray:

@@ -62,7 +62,7 @@ class Ept:
             ends = ends.reshape(2, 2, 3)
             self.fields = [_field(one) for one in content["schema"][: _MOST_DIMENSIONS + 1]]
             names = {name for name, *_ in self.fields}
-            self.srs = content.get("srs") or {}
+            self.srs, span = content.get("srs") or {}, float(content.get("span") or 0)
             is_sound = bool(np.isfinite(ends).all() and (ends[:, 1] >= ends[:, 0]).all())
             is_sound &= (
                 len(names) == len(self.fields) <= _MOST_DIMENSIONS
@@ -79,6 +79,8 @@ class Ept:
                 "be read; convert it to one of these, or to COPC."
             )
         (self.low, self.high), self.bounds = ends
+        #: Distance of the points that the root shows
+        self.spacing = float((self.high - self.low)[0] / span) if span > 0 else 0.0
 
     def file(self, folder: str, key: str, extension: str) -> Path:
         """Return a file of the octree."""
@@ -200,10 +202,10 @@ class EptOctree:
 
     def __init__(self, path: Path, header: Header, read_laz: Callable[[Path, int, Header], np.ndarray]) -> None:
         self.ept, self.header, self.read_laz = Ept(path), header, read_laz
-        reach = None if header.reach is None else tuple(header.reach.ravel().tolist())
+        reach, spacing = (None if one is None else tuple(one.ravel()) for one in (header.reach, header.spacing))
         state = path.stat()
-        self.keys, counts, self.nodes = _hierarchy(path, reach, state.st_size, state.st_mtime_ns)
-        if header.reach is None and counts.sum() != self.ept.count:
+        self.keys, counts, self.nodes = _hierarchy(path, reach, spacing, state.st_size, state.st_mtime_ns)
+        if header.reach is None and header.spacing is None and counts.sum() != self.ept.count:
             raise truncated(path, f"it promises {self.ept.count} points, but its nodes hold {counts.sum()}")
         self.chunks = np.column_stack([counts * 0, counts * self._size(), counts]).astype(np.int64)
 
@@ -241,15 +243,17 @@ class EptOctree:
 def _hierarchy(
     path: Path,
     reach: Optional[tuple],
+    spacing: Optional[tuple],
     size: int,
     changed: int,  # noqa: ARG001
 ) -> tuple[np.ndarray, np.ndarray, Nodes]:
     """Return keys (m, 4), numbers of points (m,) and nodes of those that touch a box; ``size``, ``changed``: its state.
 
-    Pages of the hierarchy are read only where their node touches the box.
+    Pages of the hierarchy are read only where their node touches the box and is needed for the spacing.
     """
     ept = Ept(path)
     box = np.array(reach or (-np.inf, -np.inf, np.inf, np.inf)).reshape(2, 2)
+    sides = None if spacing is None else np.array(spacing)
     found: dict[tuple, int] = {}
     waiting, seen = [(0, 0, 0, 0)], {(0, 0, 0, 0)}
     while waiting:
@@ -260,11 +264,11 @@ def _hierarchy(
             raise truncated(path, f"its hierarchy has more than {_MOST_NODES} nodes or {_MOST_PAGES} pages")
         found.update({key: count for key, count in entries.items() if count > 0})
         pages = [key for key, count in entries.items() if count == _PAGE and key not in seen]
-        waiting = [key for key, touches in zip(pages, _nodes(ept, pages).touch(box)) if touches]
+        waiting = [key for key, touches in zip(pages, _nodes(ept, pages).touch(box, sides)) if touches]
         seen.update(waiting)
     keys = sorted(found)
     nodes = _nodes(ept, keys, [found[key] for key in keys])
-    near = nodes.touch(box)
+    near = nodes.touch(box, sides)
     return np.array(keys, np.int64).reshape(-1, 4)[near], nodes.points[near], nodes.take(near)
 
 
@@ -274,7 +278,7 @@ def _nodes(ept: Ept, keys: list[tuple], counts: Any = ()) -> Nodes:
     points = np.array(counts if len(counts) else [0] * len(keys), np.int64)
     found = np.array(keys, np.int64).reshape(-1, 4)
     side = ept.high - ept.low
-    return nodes_of(ept.path, found, points, ept.low[:2], side[:2], margin)
+    return nodes_of(ept.path, found, points, ept.low[:2], side[:2], margin, ept.spacing)
 
 
 def _page(file: Path) -> dict[tuple, int]:

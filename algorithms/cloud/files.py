@@ -22,8 +22,10 @@ from .outputs import COPC, LAZ, STAC, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS, Layout
 from .point_records import PointRecords, merged_layout
 from .points import (
+    EVERYWHERE,
     check_count,
     check_points,
+    has_octree,
     may_hold,
     open_headers,
     points_within,
@@ -49,6 +51,7 @@ def read_cloud(
     monitor: Optional[Monitor] = None,
     read: CrsReader = read_crs,
     box: Optional[np.ndarray] = None,
+    spacing: Optional[np.ndarray] = None,
 ) -> Cloud:
     """Read a LAS, LAZ or COPC file, Entwine point tiles, or all tiles of a virtual point cloud (VPC) or of STAC items.
 
@@ -63,11 +66,14 @@ def read_cloud(
     box : ndarray of shape (2, 2), optional
         Least and greatest easting and northing, in coordinates of the file: only points within are kept, edges
         included, and only these need memory.
+    spacing : ndarray of shape (3,), optional
+        Sides of cubes, in units of the file: of each only the lowest point is kept. Of COPC and Entwine point tiles
+        only the levels that are coarse enough are read, which leave out most points of dense clouds beforehand.
 
     Returns
     -------
     Cloud
-        All points with all dimensions.
+        All points, or those of the box and the spacing, with all dimensions.
 
     Raises
     ------
@@ -75,10 +81,11 @@ def read_cloud(
         In one sentence, whatever is wrong with the file; or if there are no points in the box.
     """
     path, monitor = file_at(path), monitor or Monitor()
+    box = EVERYWHERE if box is None and spacing is not None else box
     with readable(path):
         files = list(touching(named_files_of(path), box))
         states = [state_of(file) for file in files]
-        with_points, headers = _opened(path, monitor, box)
+        with_points, headers = _opened(path, monitor, box, spacing)
         crs = crs_of_tiles(headers, [file.name for file in with_points], read, monitor)
         with_points, headers = _near(with_points, headers, box)
         header = headers[0]
@@ -87,11 +94,15 @@ def read_cloud(
             points = read_points(file, header, monitor) if box is None else points_within(file, header, box, monitor)
             header = header.without(*(OF_OLD_CHUNKS if box is None else OF_OLD_POINTS))
         else:
-            header, points = read_tiles(with_points, monitor, box)
+            header, points = read_tiles(with_points, headers, monitor, box)
         if [state_of(file) for file in files] != states:
             raise ValueError(f"{path.name} has changed while it was read; run it again when it is complete.")
     if not len(points):
         raise ValueError(f"{path.name} has no points within the extent; choose another extent.")
+    if spacing is not None:
+        total = sum(header.count for header in headers)
+        side = spacing[0] * crs.horizontal
+        monitor.inform(f"{path.name}: {len(points):,} of {total:,} points are used, one of each cube of {side:g} m.")
     header = header if box is None else replace(header, count=len(points))
     crs.report(monitor)
     return Cloud(header, points, crs, files if files == [path] else [*files, path])
@@ -158,28 +169,39 @@ def read_extent(
     return np.min(low, axis=0), np.max(high, axis=0), crs
 
 
-def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None) -> int:
+def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None, spacing: Optional[np.ndarray] = None) -> int:
     """Return the number of points of a file or of all its tiles, by the headers.
 
-    In a ``box`` (2, 2), coordinates of the file, it is that of points spread evenly over each tile.
+    In a ``box`` (2, 2), coordinates of the file, it is that of points spread evenly over each tile. With a ``spacing``
+    (3,) octrees count as far as they are read.
 
     Raises
     ------
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    return round(sum(header.count * _share_in(header, box) for header in _opened(file_at(path), box=box)[1]))
+    files, headers = _opened(file_at(path), None, box, spacing)
+    thins = [spacing is not None and has_octree(file, header) for file, header in zip(files, headers)]
+    found = [
+        size_within(file, header, box)[0] if thin else header.count * _share_in(header, box)
+        for file, header, thin in zip(files, headers, thins)
+    ]
+    return round(sum(found))
 
 
-def sizes_within(path: Union[str, Path], box: Optional[np.ndarray] = None) -> list[tuple[Path, tuple[int, int]]]:
-    """Return how many points and bytes of a file on the web, or of each such tile, are read for those in a box (2, 2).
+def sizes_within(
+    path: Union[str, Path], box: Optional[np.ndarray] = None, spacing: Optional[np.ndarray] = None
+) -> list[tuple[Path, tuple[int, int]]]:
+    """Return how many points and bytes of a file on the web, or of each such tile, are read.
+
+    They are those for a box (2, 2) and a spacing (3,), as of :func:`read_cloud`.
 
     Raises
     ------
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _near(*_opened(file_at(path), box=box), box)
+    files, headers = _near(*_opened(file_at(path), None, box, spacing), box)
     found = [(file, header) for file, header in zip(files, headers) if is_on_web(file)]
     with readable(file_at(path)):
         return [(file, size_within(file, header, box)) for file, header in found]
@@ -198,11 +220,15 @@ def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
 
 
 def _opened(
-    path: Path, monitor: Optional[Monitor] = None, box: Optional[np.ndarray] = None
+    path: Path,
+    monitor: Optional[Monitor] = None,
+    box: Optional[np.ndarray] = None,
+    spacing: Optional[np.ndarray] = None,
 ) -> tuple[list[Path], list[Header]]:
     """Return a file, or all its tiles that have points and are to be opened for a box, and their headers."""
     with readable(path):
-        return open_named(touching(named_files_of(path), box), monitor, box)
+        files, headers = open_named(touching(named_files_of(path), box), monitor, box)
+    return files, [replace(header, spacing=spacing) for header in headers]
 
 
 def open_named(

@@ -126,6 +126,8 @@ class Header:
     evlrs: list[Vlr] = field(default_factory=list)
     #: (2, 2): box in plan that nothing is read outside of, None for everywhere; it is not written
     reach: Optional[np.ndarray] = None
+    #: (3,): sides of cubes of which one point each is read, in units of the file, None for all points; not written
+    spacing: Optional[np.ndarray] = None
     named: str = ""  #: CRS (WKT or "EPSG:code") that a virtual point cloud names for the file; it is not written
 
     @property

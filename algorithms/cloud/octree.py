@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Optional
 
 import numpy as np
 
@@ -23,10 +24,14 @@ class Nodes:
     low: np.ndarray
     high: np.ndarray
     points: np.ndarray  #: (m,), int64: number of points
+    #: (m,): distance of the points that the parent of each node shows, in units of the file; infinite of the root's
+    above: np.ndarray
 
-    def touch(self, box: np.ndarray) -> np.ndarray:
-        """Return which nodes (m,) touch a box (2, 2) in plan."""
-        return ((self.low <= box[1]) & (self.high >= box[0])).all(axis=1)
+    def touch(self, box: np.ndarray, spacing: Optional[np.ndarray] = None) -> np.ndarray:
+        """Return which nodes (m,) touch a box (2, 2) in plan and have points that a spacing (3,) needs."""
+        touch = ((self.low <= box[1]) & (self.high >= box[0])).all(axis=1)
+        # Some writers state no spacing: of theirs, all is read.
+        return touch if spacing is None else touch & ((self.above > spacing[0]) | ~(self.above > 0))
 
     def take(self, which: np.ndarray) -> Nodes:
         """Return some of the nodes."""
@@ -34,7 +39,13 @@ class Nodes:
 
 
 def nodes_of(
-    path: Path, keys: np.ndarray, points: np.ndarray, corner: np.ndarray, side: np.ndarray, margin: np.ndarray
+    path: Path,
+    keys: np.ndarray,
+    points: np.ndarray,
+    corner: np.ndarray,
+    side: np.ndarray,
+    margin: np.ndarray,
+    spacing: float,
 ) -> Nodes:
     """Return the nodes of an octree.
 
@@ -50,6 +61,8 @@ def nodes_of(
         Lower corner and sides of the root in plan.
     margin : ndarray of shape (2,)
         How far coordinates may be rounded, also on the faces of nodes.
+    spacing : float
+        Distance of the points that the root shows, which halves from level to level.
 
     Raises
     ------
@@ -64,7 +77,8 @@ def nodes_of(
         raise truncated(path, f"of its index, it names a node {key} (level, column, row)")
     sides = side / (2.0**level)[:, None]
     low = corner + position * sides
-    return Nodes(low - margin, low + sides + margin, points)
+    above = np.where(level > 0, 2.0 * spacing / 2.0**level, np.inf)
+    return Nodes(low - margin, low + sides + margin, points, above)
 
 
 def fetched_to(chunks: np.ndarray, parts: list[np.ndarray], first: int) -> int:

@@ -13,6 +13,7 @@ from typing import Any, BinaryIO, Callable, Optional, Union
 import numpy as np
 
 from ..geometry.groups import run_starts
+from ..geometry.sparse_voxels import one_per_voxel
 from ..stage import Monitor
 from .copc_index import has_index, read_index
 from .ept import Ept, EptOctree, is_ept
@@ -38,7 +39,7 @@ _NAMED = 5
 _PROBES = 16
 
 # A box in plan that all points lie in.
-_EVERYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
+EVERYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
 
 # Bytes that are read at once of a file on the web without an index.
 _BUFFER = 2**22
@@ -189,7 +190,7 @@ def check_points(path: Path, header: Header) -> None:
 def read_chunks(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
     """Yield (position of the first point, records) until all points are read; the array is used again."""
     if _is_read_by_chunks(path, header):
-        yield from _indexed(path, header, _EVERYWHERE, monitor)
+        yield from _indexed(path, header, EVERYWHERE, monitor)
         return
     buffer = np.empty(min(AT_ONCE, header.count), header.layout.dtype)
     for start, stop, read in _reads(path, header, monitor):
@@ -208,7 +209,7 @@ def read_points(path: Path, header: Header, monitor: Monitor) -> np.ndarray:
             f"{path.name} needs {size:.0f} GB of memory for its points, more than there is; cut it into tiles."
         ) from None
     if _is_read_by_chunks(path, header):
-        for start, chunk in _indexed(path, header, _EVERYWHERE, monitor):
+        for start, chunk in _indexed(path, header, EVERYWHERE, monitor):
             points[start : start + len(chunk)] = chunk
         return points
     for start, stop, read in _reads(path, header, monitor):
@@ -227,11 +228,14 @@ def has_octree(path: Path, header: Header) -> bool:
 
 
 def size_within(path: Path, header: Header, box: Optional[np.ndarray]) -> tuple[int, int]:
-    """Return how many points and bytes of a file are read for those in a box (2, 2) in plan, None for all."""
+    """Return how many points and bytes of a file are read for those in a box (2, 2) in plan, None for all.
+
+    Of an octree, only nodes that the spacing of the header needs count.
+    """
     if not has_octree(path, header):
         return header.count, path.stat().st_size
     with _octree(path, replace(header, reach=box)) as octree:
-        wanted = octree.nodes.touch(_EVERYWHERE if box is None else box)
+        wanted = octree.nodes.touch(EVERYWHERE if box is None else box, header.spacing)
     return int(octree.chunks[wanted, 2].sum()), int(octree.chunks[wanted, 1].sum())
 
 
@@ -243,15 +247,25 @@ def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor)
     path : Path
         The file.
     header : Header
-        Its header.
+        Its header; with a spacing, see :func:`thinned`.
     box : ndarray of shape (2, 2)
         Least and greatest easting and northing, in coordinates of the file.
     monitor : Monitor
         Receives the progress.
     """
     found = [np.empty(0, header.layout.dtype)]
-    found += [chunk[is_within(chunk, header, box)] for _, chunk in chunks_near(path, header, box, monitor)]
-    return np.concatenate(found)
+    chunks = (chunk[is_within(chunk, header, box)] for _, chunk in chunks_near(path, header, box, monitor))
+    found += [thinned(chunk, header) for chunk in chunks]
+    return thinned(np.concatenate(found), header)
+
+
+def thinned(records: np.ndarray, header: Header) -> np.ndarray:
+    """Return the lowest of records (n,) in each cube of the header's spacing, in their order; all without one."""
+    if header.spacing is None or not len(records):
+        return records
+    scale, offset = header.scale / header.spacing, header.offset / header.spacing
+    cubes = [records[axis] * scale[i] + offset[i] for i, axis in enumerate("XYZ")]
+    return records.take(one_per_voxel(np.column_stack(cubes), 1.0))
 
 
 def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
@@ -294,7 +308,7 @@ def may_hold(header: Header, box: np.ndarray) -> bool:
 def _indexed(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
     """Yield (position of the first point, records) of the nodes of an octree that touch a box."""
     with _octree(path, header) as octree:
-        wanted, counts = np.flatnonzero(octree.nodes.touch(box)), octree.nodes.points
+        wanted, counts = np.flatnonzero(octree.nodes.touch(box, header.spacing)), octree.nodes.points
         ends = np.cumsum(counts)
         fetched = 0
         for done, some in enumerate(parts := _portions(wanted, counts)):

@@ -19,7 +19,7 @@ from .crs import Crs, stated_wkt
 from .header import LARGEST_STEP, OF_OLD_POINTS, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, EPT, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import fill_merged, merged_layout
-from .points import open_header, points_within, read_chunks
+from .points import open_header, points_within, read_chunks, thinned
 from .printable import shown
 from .web_addresses import is_address, is_allowed, split_address
 from .web_file import WebFile, is_on_web
@@ -209,19 +209,30 @@ def _href(tile: Path, folder: Path) -> str:
     return f"./{tile.relative_to(folder).as_posix()}" if folder in tile.parents else str(tile)
 
 
-def read_tiles(paths: list[Path], monitor: Monitor, box: Optional[np.ndarray] = None) -> tuple[Header, np.ndarray]:
+def read_tiles(
+    paths: list[Path], headers: list[Header], monitor: Monitor, box: Optional[np.ndarray] = None
+) -> tuple[Header, np.ndarray]:
     """Return all tiles as one cloud, tile after tile: its header and its records.
 
     The merged cloud has the finest scale of the tiles, all their dimensions and all their VLRs, the first tile's first.
-    With a ``box`` (2, 2), least and greatest easting and northing in the coordinates of the tiles, it has only the
-    points within, and tiles are read only where their headers meet it.
+
+    Parameters
+    ----------
+    paths : list of Path
+        The tiles.
+    headers : list of Header
+        Of each.
+    monitor : Monitor
+        Receives progress.
+    box : ndarray of shape (2, 2), optional
+        Least and greatest easting and northing in the coordinates of the tiles: only points within, or those of the
+        headers' spacing among them, are kept, and tiles are read only where their headers meet it.
 
     Raises
     ------
     ValueError
         If tiles span more than their scale can store.
     """
-    headers = [open_header(path) for path in paths]
     header = merged_header(headers, "tiles", monitor)
     if box is not None:
         return header, _records_within(paths, headers, header, box, monitor)
@@ -245,7 +256,7 @@ def _records_within(
         records = points_within(path, tile, box, part)
         found.append(np.zeros(len(records), merged.layout.dtype))
         fill_merged(found[-1], records, tile, merged)
-    return np.concatenate(found)
+    return thinned(np.concatenate(found), merged)
 
 
 def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:

@@ -33,6 +33,20 @@ _EXTENT = Setting(
 )
 _COMPRESSED = Setting("COMPRESSED", "Write LAZ", "Tiles are compressed (.laz); otherwise they are .las files.")
 
+# Of a cloud that is read as a whole.
+READ_SETTINGS = by_name(
+    (
+        _EXTENT,
+        Setting(
+            "SPACING",
+            "Spacing (m, empty = all points)",
+            "Of each cube of this side only the lowest point is used, where no full density is needed: terrain of "
+            "coarse cells, or a first look at a large cloud. Of COPC and Entwine point tiles only the coarse levels "
+            "are read, which takes much less time and memory. Empty: all points.",
+        ),
+    )
+)
+
 # Of a composite in tiles.
 SETTINGS = by_name(
     (

@@ -8,6 +8,7 @@ from qgis.PyQt.QtWidgets import QMainWindow
 
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.presets import PRESETS
+from lidar_buildings.algorithms.tiling.settings import READ_SETTINGS, SETTINGS
 from lidar_buildings.provider.pickers import Picker, fill_with_classes, with_class
 from lidar_buildings.provider.sections import Section, sections_of
 from lidar_buildings.provider.settings import CODES, PRESET, THREADS, apply_options
@@ -119,9 +120,11 @@ def test_presets_set_parameters_that_there_are_to_values_that_they_take(preset):
 def test_titles_of_settings_say_what_empty_is():
     section = Section("")
     for name in ("BLOCK_SIDE", "PROCESSES", "SCHEDULER"):
-        section.add_setting(name)
-    assert list(section.labels.values()) == ["Side of a block (m)", "Processes", "Address of a Dask scheduler"]
-    assert section.unset == {"BLOCK_SIDE": "automatic", "PROCESSES": "one for each core"}
+        section.add_setting(SETTINGS[name])
+    section.add_setting(READ_SETTINGS["SPACING"])
+    labels = ["Side of a block (m)", "Processes", "Address of a Dask scheduler", "Spacing (m)"]
+    assert list(section.labels.values()) == labels
+    assert section.unset == {"BLOCK_SIDE": "automatic", "PROCESSES": "one for each core", "SPACING": "all points"}
 
 
 def test_every_parameter_of_a_composite_is_in_one_group(provider):

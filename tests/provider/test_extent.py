@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from qgis.core import Qgis, QgsCoordinateReferenceSystem
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import count_points, read_cloud, write_cloud
@@ -145,3 +146,31 @@ def test_points_are_clipped_with_polygons_and_an_extent(provider, context, log, 
     outside, succeeded = algorithm.run({**given, "OUTSIDE": True, "OUTPUT": str(tmp_path / "b.laz")}, context, log)
     assert succeeded, log.textLog()
     assert len(read_cloud(outside["OUTPUT"])) == inside(whole).sum() - len(expected)
+
+
+def test_a_spacing_leaves_the_lowest_point_of_each_cube_in_meters(provider, context, log, tile, tmp_path):
+    # In feet, so that the sides of the cubes are other numbers in the file.
+    feet = tmp_path / "feet.laz"
+    cloud = read_cloud(tile)
+    wkt = QgsCoordinateReferenceSystem("EPSG:2263").toWkt(Qgis.CrsWktVariant.Wkt1Gdal)
+    write_cloud(create_cloud({"xyz": cloud.get("xyz") + cloud.origin}, wkt), feet)
+    assert read_cloud(feet).crs.horizontal == pytest.approx(0.3048, rel=1e-4)
+    for source in (tile, feet):
+        given = {"INPUT": str(source), "SPACING": 2.0, "OUTPUT": str(tmp_path / "thin.laz")}
+        algorithm = provider.algorithm("classifynoisestatistical")
+        results, succeeded = algorithm.run(given, context, log)
+        assert succeeded, log.textLog()
+        thin, whole = read_cloud(results["OUTPUT"]), read_cloud(source)
+        xyz = [cloud.get("xyz") + cloud.origin for cloud in (thin, whole)]
+        cubes = [np.unique(np.floor(one / 2.0 + 1e-7), axis=0) for one in xyz]
+        assert len(thin) == len(cubes[0]) == len(cubes[1]) < 0.2 * len(whole)
+        told = f"{source.name}: {len(thin):,} of {len(whole):,} points are used, one of each cube of 2 m."
+        assert log.infos.count(told) == 1
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "much", "nan"])
+def test_a_spacing_that_is_none_is_refused(provider, context, tile, value):
+    given = {"INPUT": str(tile), "SPACING": value, "OUTPUT": "TEMPORARY_OUTPUT"}
+    accepted, why = provider.algorithm("classifynoisestatistical").checkParameterValues(given, context)
+    assert not accepted
+    assert "Spacing" in why or "SPACING" in why

@@ -2,6 +2,7 @@
 
 import shutil
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from lidar_buildings.algorithms.cloud import points
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.copc_index import ENTRY, INFO
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.algorithms.cloud.header import COPC_INFO
+from lidar_buildings.algorithms.cloud.header import COPC_HIERARCHY, COPC_INFO
 from lidar_buildings.algorithms.cloud.points import chunks_near, open_header, read_points
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -87,7 +88,7 @@ def damaged(path, tmp_path):
     return write
 
 
-ROOT_AT, ROOT_SIZE, HALF = 40, 48, 24
+ROOT_AT, ROOT_SIZE, HALF, SPACING = 40, 48, 24, 32
 
 
 @pytest.mark.parametrize(
@@ -144,3 +145,54 @@ def test_without_an_index_a_box_is_read_from_all_points(path, tmp_path):
     window = box(100, 100, 130, 140)
     a, b = (np.sort(read_cloud(one, box=window).get("gps_time")) for one in (path, laz))
     np.testing.assert_array_equal(a, b)
+
+
+def spacing(side):
+    return np.full(3, side)
+
+
+@pytest.mark.parametrize("window", [None, box(300, 300, 700, 600)])
+def test_of_every_cube_of_the_spacing_one_point_stays_the_lowest(path, tmp_path, window):
+    write_cloud(read_cloud(path), tmp_path / "a.las")
+    whole, thin = (read_cloud(tmp_path / "a.las", box=window, spacing=one) for one in (None, spacing(10.0)))
+    xyz = [cloud.to_map(cloud.get("xyz")) for cloud in (whole, thin)]
+    cubes = [list(map(tuple, np.floor(one / 10.0 + 1e-9).astype(int).tolist())) for one in xyz]
+    lowest = {}
+    for cube, z in zip(cubes[0], xyz[0][:, 2].tolist()):
+        lowest[cube] = min(z, lowest.get(cube, np.inf))
+    assert dict(zip(cubes[1], xyz[1][:, 2].tolist())) == lowest
+    assert len(thin) == len(lowest) == thin.header.count
+
+
+def test_a_spacing_reads_the_coarse_levels_alone(path):
+    root = SIDE / 128
+    numbers = []
+    # A level is read as long as the one above it shows points farther apart than the spacing.
+    for side, levels in ((100.0, 1), (1.05 * root, 1), (0.95 * root, 2), (0.55 * root, 2), (0.45 * root, 3)):
+        header = replace(open_header(path), spacing=spacing(side))
+        nodes, chunks = nodes_of_levels(path)
+        read = sum(len(records) for _, records in chunks_near(path, header, points.EVERYWHERE, Monitor()))
+        assert read == nodes[:levels].sum()
+        assert points.size_within(path, header, None) == (read, chunks[:levels].sum())
+        numbers.append(len(read_cloud(path, spacing=spacing(side))))
+    assert numbers == sorted(numbers)
+    assert numbers[0] == 10 * 10
+    assert numbers[0] < numbers[-1] < 400_000
+
+
+def nodes_of_levels(path):
+    """Return the points and the bytes of each level, from the file itself."""
+    header = open_header(path)
+    (record,) = header.find_all(COPC_HIERARCHY)
+    raw = path.read_bytes()[record.start : record.start + record.size]
+    entries = np.frombuffer(raw, ENTRY)
+    sums = [np.bincount(entries["key"][:, 0], entries[name]).astype(int) for name in ("count", "size")]
+    assert sums[0].sum() == 400_000
+    return sums
+
+
+@pytest.mark.parametrize("stated", [0.0, -1.0, np.nan])
+def test_without_a_stated_spacing_of_the_root_all_levels_are_read(damaged, stated):
+    copy = damaged(root=[(SPACING, struct.pack("<d", stated))])
+    header = replace(open_header(copy), spacing=spacing(100.0))
+    assert sum(len(records) for _, records in chunks_near(copy, header, points.EVERYWHERE, Monitor())) == 400_000

@@ -100,6 +100,21 @@ def test_a_view_costs_its_nodes_and_pages(server, folder, kind):
     assert 0.5 < size / sum((folder / path).stat().st_size for path in nodes) < 2
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_spacing_reads_coarse_nodes_and_the_pages_that_lead_to_them(server, folder, kind):
+    # The root shows points at a distance of its side / 128, the nodes below at a half of it.
+    for side, nodes, pages in ((1.01, 1, 1), (0.99, 9, 5)):
+        server.requests.clear()
+        web_file._known.clear()
+        ept._hierarchy.cache_clear()
+        thin = read_cloud(server.address(f"{kind}/ept.json"), spacing=np.full(3, side * SIDE / 128))
+        asked = [path for path, *_ in server.requests]
+        assert sum("hierarchy" in path for path in asked) <= pages
+        assert 1 <= sum("ept-data" in path for path in asked) <= nodes
+        local = read_cloud(folder / kind / "ept.json", spacing=np.full(3, side * SIDE / 128))
+        np.testing.assert_array_equal(thin.points, local.points)
+
+
 def test_servers_without_ranges_have_nodes_as_whole_files(server):
     server.whole = True
     check(read_cloud(server.address("laszip/ept.json"), box=VIEW), POINTS[inside(POINTS, VIEW)])

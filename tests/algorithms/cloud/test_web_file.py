@@ -14,6 +14,7 @@ from lidar_buildings.algorithms.cloud.files import (
     dimension_names,
     read_cloud,
     read_extent,
+    sizes_within,
     write_cloud,
 )
 from lidar_buildings.algorithms.cloud.points import open_header, size_within
@@ -83,6 +84,16 @@ def test_a_view_costs_little_more_than_its_nodes(server, folder):
     count = len(server.requests)
     read_cloud(server.address("a.copc.laz"), box=VIEW)
     assert len(server.requests) == count
+
+
+def test_a_spacing_reads_fewer_bytes_and_the_points_of_the_local_file(server, folder):
+    spacing = np.full(3, 10.0)
+    (_, (points, size)), *_ = sizes_within(server.address("a.copc.laz"), None, spacing)
+    thin = read_cloud(server.address("a.copc.laz"), spacing=spacing)
+    np.testing.assert_array_equal(thin.points, read_cloud(folder / "a.copc.laz", spacing=spacing).points)
+    assert len(thin) < points < 0.4 * 400_000
+    assert size < 0.4 * (folder / "a.copc.laz").stat().st_size
+    assert server.sent < 1.3 * size
 
 
 def test_ranges_are_joined_and_come_at_once(server, folder, monkeypatch):
