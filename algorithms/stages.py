@@ -61,6 +61,7 @@ _MODULES = (
     "facades.extract_facades",
     "facades.extract_openings",
     "facades.register_street",
+    "models3d.compute_building_heights",
     "models3d.reconstruct_gables",
     "models3d.reconstruct_roofs",
     "models3d.reconstruct_block",

@@ -99,6 +99,7 @@ STAGE_IDS = {
     "extractwallfootprints",
     "reconstructroofs",
     "reconstructblock",
+    "computebuildingheights",
     "exportforroofer",
     "assessbuildings",
     "reportbuildings",
@@ -175,6 +176,8 @@ WITHOUT_REFERENCES |= {
 }
 # Stems are scanned from the ground, and finer than the scene is.
 WITHOUT_FEATURES = {"segment_tree"}
+# Their layers have the attributes of the layer that they read after their own.
+KEEPS_ATTRIBUTES = {"compute_building_heights"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
     ("compute_features", "radius"): {"neighborhood": "radius"},
@@ -812,7 +815,8 @@ def test_results_have_the_promised_shape_and_dtype(stage):
     for layer in stage.layers:
         features = made.layers[layer.name]
         assert isinstance(features, LayerFeatures)
-        assert list(features.columns) == [field.name for field in layer.fields]
+        of_map = ["id", "name"] if stage.name in KEEPS_ATTRIBUTES else []
+        assert list(features.columns) == [*(field.name for field in layer.fields), *of_map]
         assert all(len(column) == len(features) for column in features.columns.values())
         if stage.name not in WITHOUT_FEATURES:
             assert len(features) > 0, "the scene has something for every layer"

@@ -130,6 +130,7 @@ MEASURE_PARTS = {
     "algorithms/walls/extract_wall_footprints.py",
     "algorithms/walls/classify_walls.py",
     "algorithms/models3d/reconstruct_roofs.py",
+    "algorithms/models3d/compute_building_heights.py",
 }
 
 

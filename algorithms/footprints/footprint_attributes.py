@@ -123,18 +123,16 @@ def footprint_attributes(
         area = sum(map(signed_area, outlined.rings))
         along, is_outer = owners.border(face, outlined.rings)
         inner = _own_roof(roof, plan, along[~is_outer], spacing)
-        eaves = _eave_heights(along, is_outer, plan[inner], over_ground[inner], spacing)
+        surface = surface_heights(outlined.nodes, plan[inner], over_ground[inner], spacing)
         attributes.append(
             {
                 "cluster_id": outlined.building,
                 "area": area,
                 "perimeter": sum(map(perimeter, outlined.rings)),
-                "volume": area * _mean_height(outlined.nodes, plan[inner], over_ground[inner], spacing),
+                "volume": area * float(np.mean(surface)),
                 "regularized": int(outlined.is_straight),
                 "ground_elevation": _percentile(measures.xyz[points[inner], 2] - over_ground[inner], 50),
-                "eave_height": _percentile(eaves, _EAVE),
-                "ridge_height": _percentile(over_ground[inner], _RIDGE),
-                "height": _percentile(over_ground[inner], 50),
+                **roof_heights(along, is_outer, plan[inner], over_ground[inner], spacing),
                 "max_height": _percentile(over_ground[inner], 100),
                 "points": len(rows),
                 "entropy": _mean(measures.entropy, members[rows]),
@@ -143,6 +141,34 @@ def footprint_attributes(
             }
         )
     return attributes
+
+
+def roof_heights(
+    along: np.ndarray, is_outer: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float
+) -> dict[str, float]:
+    """Return the heights of a roof at the eaves and the ridge, and their median, m, by field.
+
+    Parameters
+    ----------
+    along : ndarray of shape (a, 2)
+        Positions along its outline, m.
+    is_outer : ndarray of shape (a,), bool
+        Beyond which of these no other roof is.
+    plan : ndarray of shape (n, 2)
+        Its points in plan, m.
+    height : ndarray of shape (n,)
+        Their heights, m, NaN where unknown.
+    spacing : float
+        Mean distance of neighboring points, m.
+
+    Returns
+    -------
+    dict of str to float
+        Values of the fields ``eave_height``, ``ridge_height`` and ``height``.
+    """
+    eaves = _eave_heights(along, is_outer, plan, height, spacing)
+    percentiles = {"ridge_height": _percentile(height, _RIDGE), "height": _percentile(height, 50)}
+    return {"eave_height": _percentile(eaves, _EAVE), **percentiles}
 
 
 class _Owners:
@@ -235,18 +261,32 @@ def _eave_heights(
     return np.where(is_plane, planes[:, 0, 0], at_border)
 
 
-def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float) -> float:
-    """Return the mean height of a roof's surface, which has the height of the nearest point at each position.
+def surface_heights(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the heights of a roof's surface, which has that of the nearest point at each position.
 
-    The positions are a spacing apart: the nodes (k, 2) with even numbers in the lattice, or all nodes where none has.
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 2)
+        Nodes of a lattice in it, m. Positions are a spacing apart: those with even numbers, or all where none has.
+    plan : ndarray of shape (n, 2)
+        Its points in plan, m.
+    height : ndarray of shape (n,)
+        Their heights, m, NaN where unknown.
+    spacing : float
+        Mean distance of neighboring points, m.
+
+    Returns
+    -------
+    ndarray of shape (k,)
+        Heights at these positions, m; one NaN if no height is known.
     """
     defined = np.isfinite(height)
     if not defined.any():
-        return float("nan")
+        return np.full(1, np.nan)
     is_even = (np.rint(nodes * (NODES / spacing)).astype(np.int64) % NODES == 0).all(axis=1)
     places = nodes[is_even] if is_even.any() else nodes
     tree = spatial.cKDTree(plan[defined], balanced_tree=False)
-    return float(np.mean(height[defined][tree.query(places, workers=searchers(len(places)))[1]]))
+    return height[defined][tree.query(places, workers=searchers(len(places)))[1]]
 
 
 def _percentile(values: np.ndarray, percent: float) -> float:

@@ -141,22 +141,6 @@ def _plain_solid(solid: Solid) -> dict[str, Any]:
     return {**{one.name: getattr(solid, one.name) for one in fields(solid)}, "vertices": solid.vertices.tolist()}
 
 
-def map_attributes(facts: dict[str, Any]) -> dict[str, Any]:
-    """Return the attributes of a footprint as plain values; those with a name that models use become ``map_…``."""
-    taken = {field.name for field in BUILDING_FIELDS}
-    return {f"map_{name}" if name.lower() in taken else name: _plain_value(value) for name, value in facts.items()}
-
-
-def _plain_value(value: Any) -> Any:
-    """Return a number as Python's own, None where it is undefined, and other values as text."""
-    value = value.item() if isinstance(value, np.generic) else value
-    if value is None or isinstance(value, str):
-        return value
-    if isinstance(value, (bool, int, float)):
-        return None if isinstance(value, float) and math.isnan(value) else value
-    return str(value)
-
-
 def slope_and_azimuth(solid: Solid, face: int) -> tuple[float, float]:
     """Return slope and azimuth (°) of a face; the azimuth of a level one is NaN."""
     x, y, z = solid.normals[face].tolist()
@@ -249,9 +233,27 @@ def roof_type(solids: Sequence[Solid]) -> str:
     roofs = faces_of(solids, ROOF)
     area = np.array([face_area(solid, face) for solid, face in roofs])
     slope, azimuth = np.array([slope_and_azimuth(solid, face) for solid, face in roofs]).T
-    # Annexes and lean-tos do not change the type of a sloping roof: they end below the middle of its largest face.
     heights = [solid.vertices[solid.faces[face][0], 2] for solid, face in roofs]
     low, high = np.array([(z.min(), z.max()) for z in heights]).T
+    return type_of_faces(area, slope, azimuth, low, high)
+
+
+def type_of_faces(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray, low: np.ndarray, high: np.ndarray) -> str:
+    """Return the type of a roof.
+
+    Parameters
+    ----------
+    area, slope, azimuth : ndarray of shape (n,)
+        Areas of its faces, m², their slopes and the directions that they face, °.
+    low, high : ndarray of shape (n,)
+        Heights of their lowest and highest corners, m.
+
+    Returns
+    -------
+    str
+        A value of the field ``roof_type``.
+    """
+    # Annexes and lean-tos do not change the type of a sloping roof: they end below the middle of its largest face.
     largest = int(np.argmax(area))
     if slope[largest] > _FLAT:
         is_body = high >= (low[largest] + high[largest]) / 2

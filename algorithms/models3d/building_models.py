@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.groups import components
 from .mending import LARGE, mended
-from .roof_partition import FARTHEST, Partition, divide_footprint, empty_partition, inside_rings
+from .roof_partition import FARTHEST, Partition, covered_share, divide_footprint, empty_partition
 from .roof_planes import RoofPlanes, find_roof_planes, with_level_patches
 from .roof_points import HeightsAround, are_on_roof, distances, root_mean_square, share_off
 from .solids import Solid
@@ -256,7 +256,7 @@ def _enter(
     model.off = share_off(off)
     roof = over & are_on_roof(above, top.is_low)
     model.ridge = float(np.percentile(top.xyz[roof, 2], _RIDGE)) if roof.any() else np.nan
-    model.covered = _covered(top)
+    model.covered = covered_share(top.rings, top.xyz, top.settings.spacing)
     off_of = {int(plane): _off(top, above, label == plane) for plane in np.unique(label[over])}
     model.face_rms = {plane: root_mean_square(off) for plane, off in off_of.items()}
     inside = partition.label >= 0
@@ -268,13 +268,3 @@ def _enter(
 def _explained(off: np.ndarray, top: _Top) -> float:
     """Return the share of heights (n,), m, above the model that are as good as none, NaN without any."""
     return float(np.mean(np.abs(off) <= _EXPLAINED * top.settings.tolerance)) if len(off) else np.nan
-
-
-def _covered(top: _Top) -> float:
-    """Return the share of the footprint that has points: of its cells, two point spacings wide, by their middles."""
-    size = 2 * top.settings.spacing
-    low, high = (np.floor(end / size).astype(int) for end in (top.rings[0].min(axis=0), top.rings[0].max(axis=0)))
-    cells = low + np.indices(high - low + 1).reshape(2, -1).T
-    cells = cells[inside_rings((cells + 0.5) * size, top.rings)]
-    used = set(map(tuple, np.floor(top.xyz[:, :2] / size).astype(int).tolist()))
-    return float(np.mean([tuple(cell) in used for cell in cells.tolist()])) if len(cells) else np.nan

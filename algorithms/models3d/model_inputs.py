@@ -2,13 +2,33 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..geometry.polylines import simplify_ring
+from ..geometry.rings import sampled_rings, signed_area
 from ..stage import Monitor
 
 # Rings with less area (m²) are no footprints.
 NO_AREA = 0.5
+
+# Vertices of footprints nearer than this (m) to each other, or to the line of those kept, are superfluous.
+_CLOSE = 0.01
+
+# Fewer points than this over a footprint show no roof.
+_LEAST_POINTS = 6
+
+# A smaller share of the area of a footprint with points shows no roof.
+_LEAST_COVERED = 0.1
+
+# The ground of a building is this percentile of the elevations of ground points nearest to positions along its outline.
+# It is low, so that walls reach the ground on slopes, but not the least, which may be an error.
+GROUND_PERCENTILE = 5.0
+
+# Distance between these positions (m).
+_GROUND_STEP = 2.0
 
 # A point lies on a plane within this many times the roughness of surfaces: 99.7 % do if errors are normal.
 _TOLERANCE_ROUGHNESS = 3.0
@@ -52,3 +72,22 @@ def rows_near(xyz: np.ndarray, rings: list, margin: float = 0.0) -> np.ndarray:
     (west, south), (east, north) = rings[0].min(axis=0) - margin, rings[0].max(axis=0) + margin
     rows = np.arange(np.searchsorted(xyz[:, 0], west), np.searchsorted(xyz[:, 0], east, side="right"))
     return rows[(xyz[rows, 1] >= south) & (xyz[rows, 1] <= north)]
+
+
+def sound_rings(rings: list) -> list:
+    """Return the rings of a footprint in plan that have an area, none where its exterior has hardly any."""
+    plan = [simplify_ring(np.asarray(ring, float)[:, :2], _CLOSE) for ring in rings]
+    sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
+    has_area = bool(sound) and sound[0] is plan[0] and abs(signed_area(plan[0])) >= NO_AREA
+    return sound if has_area else []
+
+
+def shows_roof(count: int, spacing: float, rings: list) -> bool:
+    """Return whether so many points, with that spacing (m), over a footprint show its roof."""
+    area = 2 * abs(signed_area(rings[0])) - sum(abs(signed_area(ring)) for ring in rings)
+    return count >= _LEAST_POINTS and count * spacing**2 >= _LEAST_COVERED * area
+
+
+def ground_beside(ground: np.ndarray, tree: Any, rings: list) -> np.ndarray:
+    """Return the elevations (m) of the ground along a footprint; ``tree`` is that of the ground in plan."""
+    return ground[tree.query(sampled_rings(rings[:1], _GROUND_STEP))[1], 2]

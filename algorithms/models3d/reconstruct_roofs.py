@@ -9,8 +9,6 @@ from typing import Annotated, Any, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..geometry.polylines import simplify_ring
-from ..geometry.rings import sampled_rings, signed_area
 from ..packages import spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
@@ -25,41 +23,26 @@ from .building_facts import (
     face_attributes,
     face_rings,
     faces_of,
-    map_attributes,
 )
 from .building_models import LEVELS, Settings, model_building
 from .model_inputs import (
-    NO_AREA,
+    GROUND_PERCENTILE,
     TOLERANCE_TEXT,
+    ground_beside,
     plane_tolerance,
     require_buildings,
     require_ground,
     rows_near,
+    shows_roof,
+    sound_rings,
     tell_without_area,
 )
 from .roof_partition import inside_rings
 from .roof_points import RADIUS, are_low
 from .solids import ROOF, WALL
 
-# Fewer points than this over a footprint show no roof.
-_LEAST_POINTS = 6
-
-# A smaller share of the area of a footprint with points shows no roof.
-_LEAST_COVERED = 0.1
-
-# The ground of a building is this percentile of the elevations of ground points nearest to positions along its outline.
-# It is low, so that walls reach the ground on slopes, but not the least, which may be an error.
-_GROUND_PERCENTILE = 5.0
-
-# Distance between these positions (m).
-_GROUND_STEP = 2.0
-
 # Number of footprints without a model that a warning names.
 _NAMED = 5
-
-# Vertices of footprints nearer than this (m) to each other, or to the line of those kept, are superfluous.
-_CLOSE = 0.01
-
 
 _Tolerance = Annotated[
     Optional[float],
@@ -193,7 +176,7 @@ def reconstruct_roofs(
     where more than two walls would meet in an edge, the smallest piece of roof there joins a neighbor. A part of a roof
     with a fault takes the plane of a neighbor or becomes level. Parts of a footprint that touch in a point only are
     solids of their own. A level that is farther from the points than a simpler one is left out. The ground is level,
-    at the ``_GROUND_PERCENTILE``th percentile of the ground points nearest to the outline. Curved roofs become strips.
+    at the ``GROUND_PERCENTILE``th percentile of the ground points nearest to the outline. Curved roofs become strips.
 
     Unlike in the publications, lines cut only the cells along which planes adjoin, so that the cost
     grows with the border of planes and not with the square of their number. A border costs its length and the
@@ -260,11 +243,10 @@ def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> lis
     """Return the footprints that have an area; say how many don't."""
     outlines = []
     for row, (rings, name) in enumerate(zip(footprints.geometries, feature_names(footprints, id_field))):
-        plan = [simplify_ring(np.asarray(ring, float)[:, :2], _CLOSE) for ring in rings]
-        sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
-        if sound and sound[0] is plan[0] and abs(signed_area(plan[0])) >= NO_AREA:
-            facts = {field: values[row] for field, values in footprints.columns.items()} if id_field else None
-            outlines.append(_Outline(name, sound, None if facts is None else map_attributes(facts)))
+        sound = sound_rings(rings)
+        if sound:
+            facts = {field: value for field, (value,) in footprints.kept([row], BUILDING_FIELDS).items()}
+            outlines.append(_Outline(name, sound, facts if id_field else None))
     tell_without_area(len(outlines), len(footprints), monitor)
     return outlines
 
@@ -286,11 +268,11 @@ def _modelled(
     for number, outline in enumerate(outlines):
         over = rows_near(building, outline.rings)
         over = over[inside_rings(building[over, :2], outline.rings)]
-        area = 2 * abs(signed_area(outline.rings[0])) - sum(abs(signed_area(ring)) for ring in outline.rings)
-        if len(over) < _LEAST_POINTS or len(over) * settings.spacing**2 < _LEAST_COVERED * area:
+        if not shows_roof(len(over), settings.spacing, outline.rings):
             empty += 1
         else:
-            base, terrain = _ground_heights(ground, tree, outline.rings)
+            beside = ground_beside(ground, tree, outline.rings)
+            base, terrain = np.percentile(beside, (GROUND_PERCENTILE, 50)).tolist()
             around = building[rows_near(building, outline.rings, RADIUS)]
             model = model_building(building[over], is_low[over], around, outline.rings, base, settings)
             model.terrain = terrain
@@ -322,12 +304,6 @@ def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monit
         named = "; ".join(f"{name}: {reason}" for name, reason in failed[:_NAMED])
         more = f"; and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
         monitor.warn(f"{len(failed)} of {count} footprints have points but no model ({named}{more}).")
-
-
-def _ground_heights(ground: np.ndarray, tree: Any, rings: list) -> tuple[float, float]:
-    """Return the heights (m) of the base and of the terrain of a footprint; ``tree`` is that of the ground in plan."""
-    z = ground[tree.query(sampled_rings(rings[:1], _GROUND_STEP))[1], 2]
-    return float(np.percentile(z, _GROUND_PERCENTILE)), float(np.median(z))
 
 
 def _building_layer(models: list[NamedModel]) -> LayerFeatures:

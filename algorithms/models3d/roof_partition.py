@@ -64,6 +64,20 @@ def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:
     return are_within(xy, sides_of_rings(rings))
 
 
+def cells_inside(rings: list, size: float) -> np.ndarray:
+    """Return columns and rows (k, 2), from zero, of the cells of a size (m) whose middles lie in a footprint."""
+    low, high = (np.floor(end / size).astype(int) for end in (rings[0].min(axis=0), rings[0].max(axis=0)))
+    cells = low + np.indices(high - low + 1).reshape(2, -1).T
+    return cells[inside_rings((cells + 0.5) * size, rings)]
+
+
+def covered_share(rings: list, xyz: np.ndarray, spacing: float) -> float:
+    """Return the share of a footprint with points (n, 2 or 3), m: of its cells, two point spacings wide."""
+    cells = cells_inside(rings, 2 * spacing)
+    used = set(map(tuple, np.floor(xyz[:, :2] / (2 * spacing)).astype(int).tolist()))
+    return float(np.mean([tuple(cell) in used for cell in cells.tolist()])) if len(cells) else np.nan
+
+
 def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarray]:
     """Return cells, with the points ``xy`` in them, and which of them lie inside a footprint."""
     every = np.concatenate(rings)

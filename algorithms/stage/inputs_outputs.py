@@ -117,6 +117,27 @@ class LayerFeatures:
         columns = {name: [facts[name] for _, facts in features] for name in others}
         return cls([geometry for geometry, _ in features], {number: list(range(1, len(features) + 1)), **columns})
 
+    def kept(self, rows: Iterable[int], used: Sequence[Field]) -> dict[str, list]:
+        """Return the attributes of some features as plain values; those with a name that is used become ``map_…``.
+
+        So does fid, by which a GeoPackage numbers its own rows: parts of one geometry have the same.
+        """
+        taken, chosen = {"fid", *(field.name for field in used)}, list(rows)
+        return {
+            f"map_{name}" if name.lower() in taken else name: [_plain_value(values[row]) for row in chosen]
+            for name, values in self.columns.items()
+        }
+
+
+def _plain_value(value: Any) -> Any:
+    """Return a number as Python's own, None where it is undefined, and other values as text."""
+    value = value.item() if isinstance(value, np.generic) else value
+    if value is None or isinstance(value, str):
+        return value
+    if isinstance(value, (bool, int, float)):
+        return None if isinstance(value, float) and math.isnan(value) else value
+    return str(value)
+
 
 def feature_names(features: LayerFeatures, id_field: str = "") -> list[str]:
     """Return the attribute ``id_field`` of features as text, their number from 1 where it is missing.

@@ -83,6 +83,7 @@ IDS = {
     "segmentroofs",
     "reconstructroofs",
     "reconstructblock",
+    "computebuildingheights",
     "exportforroofer",
     "simulatetown",
     "simulateflight",

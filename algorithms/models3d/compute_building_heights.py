@@ -1,0 +1,370 @@
+"""Heights of the buildings of a map, from points and without models: ground, eaves, ridge, percentiles of the roof."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from ..cloud.asprs import VEGETATION, PointClass
+from ..footprints.footprint_attributes import roof_heights, surface_heights
+from ..geometry.points_in_polygons import are_in_polygons
+from ..geometry.polygon_overlap import as_polygons
+from ..geometry.rings import along_sides, sides_of_rings, signed_area
+from ..packages import spatial
+from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.density import point_spacing
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage
+from .building_facts import CHECKS, type_of_faces
+from .model_inputs import (
+    GROUND_PERCENTILE,
+    ground_beside,
+    plane_tolerance,
+    require_buildings,
+    require_ground,
+    rows_near,
+    shows_roof,
+    sound_rings,
+    tell_without_area,
+)
+from .roof_partition import cells_inside, covered_share, inside_rings
+from .roof_planes import RoofPlanes, find_roof_planes
+from .roof_points import RULES
+
+SEEN, PARTLY, TREES, ABSENT, EMPTY = "seen", "partly seen", "under trees", "no building", "no points"
+
+# Share of what was not seen of a footprint that vegetation covers where this is the reason.
+_HIDDEN = 0.5
+
+# Unclassified points farther than this (spacings) in plan from those on planes are of plants beside a roof.
+_APART = 2.0
+
+# Points nearest to a position in plan that show whether it lies under something, itself among them.
+_BESIDE = 4
+
+# Points that no class calls building are of roofs and crowns from this height (m) above the ground on: cars are lower.
+_LEAST_HEIGHT = 2.0
+
+# Area (m²) of the smallest plane of a roof, and slope (°) of the steepest, as in 'Reconstruct roofs'.
+_MIN_AREA, _STEEPEST = 1.5, 75.0
+
+# Least share of the points of a building that lie on planes where only these are its roof: less is a dome or a wreck.
+_ON_PLANES = 0.5
+
+# Adjusted standard GPS time is counted from this day, less 10⁹ s. Times of a week have no date.
+_GPS_BEGIN, _ADJUSTED, _WEEK = np.datetime64("1980-01-06T00:00:00"), 1_000_000_000, 604_800.0
+
+# Percentiles of the elevations of a roof's surface, by attribute. The first and the last leave out a branch on it.
+_PERCENTILES = {"h_roof_min": 1, "h_roof_50p": 50, "h_roof_70p": 70, "h_roof_max": 99}
+
+_FIELDS = (
+    Field(
+        "state",
+        str,
+        f"{SEEN}; {PARTLY}: points of the building on less than {CHECKS.covered:.0%} of the footprint; {TREES}: so, "
+        f"with vegetation over most of the rest; {ABSENT}: only other points; {EMPTY}: none at all",
+    ),
+    Field("h_ground", float, "elevation of the ground, near that of the lowest beside the building", "m"),
+    Field("h_roof_min", float, "least elevation of its roof, the 1st percentile", "m"),
+    Field("h_roof_50p", float, "median elevation of its roof", "m"),
+    Field("h_roof_70p", float, "70th percentile of the elevations of its roof, the top at level of detail 1.2", "m"),
+    Field("h_roof_max", float, "greatest elevation of its roof, the 99th percentile", "m"),
+    Field("eave_height", float, "lower quartile of the heights above the terrain at which its roof ends outside", "m"),
+    Field("ridge_height", float, "98th percentile of the heights of its roof points above the terrain", "m"),
+    Field("height", float, "median of these heights", "m"),
+    Field("volume", float, "space between roof and terrain: mean height of the roof's surface times area", "m³"),
+    Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other"),
+    Field("covered", float, "share of its area that has points of the building, 0 to 1"),
+    Field("trees", float, "share of its area that has points of vegetation and none of the building, 0 to 1"),
+    Field("points", int, "points of the building over its footprint"),
+    Field("date", str, "day on which half of the points of its roof were recorded, where these have a date"),
+)
+
+
+@stage(
+    "Heights of buildings",
+    group="3D",
+    tags="height,heights,LoD1,LoD1.2,3DBAG,OpenStreetMap,Overture,cadastre,base map,eaves,ridge,volume,roof type,"
+    "percentile,zonal statistics,attributes,extrusion",
+    input_layers=(
+        InputLayer(
+            "footprints",
+            "Footprints",
+            "Polygon",
+            "Outlines of buildings from any map: a cadastre, OpenStreetMap, Overture, 'Extract footprints'.",
+        ),
+    ),
+    layers=(Layer("buildings", "Buildings", "Polygon", _FIELDS, style="building_heights"),),
+    cost=10.0,
+)
+def compute_building_heights(
+    xyz,
+    classification,
+    gps_time=None,
+    footprints=None,
+    *,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Measure the heights, volume and roof type of the buildings of a map, without models.
+
+    Every polygon that touches the extent of the points keeps its outline and attributes, and gets those of its roof. An
+    attribute says where the roof was not seen, or where trees hide it.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,)
+        Classes; points of class 6 are of buildings, those of class 2 are the ground.
+    gps_time : ndarray of shape (n,), float64, optional
+        Adjusted standard GPS time (s), for the date; times of a week (0 to 604,800 s) have none.
+    footprints : LayerFeatures
+        Outlines of the buildings.
+
+    Returns
+    -------
+    buildings : LayerFeatures
+        The outlines in their order, with what was measured, then with the attributes of the map. Of these, names that
+        are used become ``map_…``.
+
+    Raises
+    ------
+    ValueError
+        If no point is called ground, none may be of a roof, there is no footprint with an area, or none touches the
+        extent of the points.
+
+    Notes
+    -----
+    Elevations are named and defined as in the 3DBAG, where they are called h_maaiveld and h_dak_50p: percentiles of the
+    surface of the roof, not of its points, so that strips that were scanned twice count once. Here the surface has the
+    height of the nearest roof point at positions a spacing apart, and not of a model. Chimneys, walls and floors seen
+    through glass are left out: roof points lie on planes of ``_MIN_AREA`` m² or more, most of whose points have none
+    above them. If less than half of a building lies on planes, as in domes, all of its points on top are its roof.
+
+    The ground is the ``GROUND_PERCENTILE``th percentile of the ground points nearest to the outline; heights are above
+    the median of these. Eaves are looked for where no other footprint adjoins.
+
+    Where no point has class 6, roofs are the planes among the unclassified points ``_LEAST_HEIGHT`` m or more above the
+    ground, and those clearly above them or beside them are vegetation.
+
+    References
+    ----------
+    Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
+    models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3).
+    [peters2022]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> found = compute_building_heights(xyz, classes, footprints=LayerFeatures([[ring]], {"key": [7]}))
+    >>> [found.columns[name] for name in ("key", "height", "roof_type")]
+    [[7], [5.0], ['flat']]
+    """
+    require_ground(classification)
+    rows, outlines = _outlines(footprints, xyz, monitor)
+    points = _Points.of(xyz, classification, gps_time, monitor)
+    tolerance = plane_tolerance((sampling or CloudSampling.of(xyz, classification)).roughness)
+    borders = _borders(outlines, points.spacing, monitor.part(0.0, 0.2))
+    facts = []
+    for number, (rings, border) in enumerate(zip(outlines, borders)):
+        facts.append(_facts(points, rings, border, tolerance))
+        monitor.progress(0.2 + 0.8 * (number + 1) / len(outlines))
+    states = Counter(one["state"] for one in facts)
+    shown = ", ".join(f"{states[state]} {state}" for state in (SEEN, PARTLY, TREES, ABSENT, EMPTY) if states[state])
+    monitor.inform(f"Of {len(facts)} footprints: {shown}.")
+    columns = {field.name: [one[field.name] for one in facts] for field in _FIELDS}
+    return LayerFeatures(outlines, {**columns, **footprints.kept(rows, _FIELDS)})
+
+
+def _outlines(footprints: LayerFeatures, xyz: np.ndarray, monitor: Monitor) -> tuple[list[int], list]:
+    """Return the footprints that have an area and touch the extent of the points: their rows and their rings."""
+    if not len(footprints):
+        raise ValueError("The layer of footprints has no features; choose another.")
+    rings_of = {row: sound_rings(rings) for row, rings in enumerate(footprints.geometries)}
+    sound = {row: rings for row, rings in rings_of.items() if rings}
+    tell_without_area(len(sound), len(footprints), monitor)
+    low, high = xyz[:, :2].min(axis=0), xyz[:, :2].max(axis=0)
+    near = [
+        row
+        for row, rings in sound.items()
+        if (rings[0].max(axis=0) >= low).all() and (rings[0].min(axis=0) <= high).all()
+    ]
+    if not near:
+        raise ValueError(
+            f"None of the {len(footprints)} footprints touches the extent of the point cloud; choose a layer of the "
+            "same area, or check the coordinate reference systems of both."
+        )
+    if len(near) < len(sound):
+        monitor.inform(f"{len(sound) - len(near)} footprints beyond the extent of the point cloud are left out.")
+    return near, [sound[row] for row in near]
+
+
+@dataclass(frozen=True)
+class _Points:
+    """The points of a cloud in the order of their eastings, and those of them that are ground."""
+
+    xyz: np.ndarray
+    classification: np.ndarray
+    time: Optional[np.ndarray]  #: (n,): adjusted standard GPS time, s; None without a date
+    ground: np.ndarray  #: (g, 3), m
+    tree: Any  #: Search tree of the ground in plan
+    roofs: tuple[int, ...]  #: Classes of points that may be of roofs
+    spacing: float  #: Mean distance of neighboring points of these, m
+
+    @classmethod
+    def of(cls, xyz: np.ndarray, classification: np.ndarray, time: Optional[np.ndarray], monitor: Monitor) -> _Points:
+        """Return the points of a cloud; say so where no class calls any a building."""
+        roofs: tuple[int, ...] = (PointClass.BUILDING,)
+        if not np.isin(classification, roofs).any():
+            roofs = PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED
+            if not np.isin(classification, roofs).any():
+                require_buildings(classification)
+            monitor.inform(
+                "No point is called building (class 6): roofs are the planes among the unclassified points over "
+                "footprints. Run 'Detect buildings' first to know trees from roofs better."
+            )
+        order = np.argsort(xyz[:, 0], kind="stable")
+        is_week = time is None or (time.min() >= 0 and time.max() <= _WEEK)
+        ground = xyz[classification == PointClass.GROUND]
+        return cls(
+            xyz[order],
+            classification[order],
+            None if is_week or time is None else time[order],
+            ground,
+            spatial.cKDTree(ground[:, :2]),
+            roofs,
+            point_spacing(xyz[np.isin(classification, roofs)]),
+        )
+
+    @property
+    def are_classified(self) -> bool:
+        """Whether a class says which points are of buildings."""
+        return PointClass.BUILDING in self.roofs
+
+    def within(self, rings: list) -> np.ndarray:
+        """Return the rows (k,) of the points in a footprint."""
+        rows = rows_near(self.xyz, rings)
+        return rows[inside_rings(self.xyz[rows, :2], rings)]
+
+    def date(self, rows: np.ndarray) -> Optional[str]:
+        """Return the median day of some points, None where it is unknown."""
+        if self.time is None:
+            return None
+        seconds = _ADJUSTED + int(np.median(self.time[rows]))
+        return str((_GPS_BEGIN + np.timedelta64(seconds, "s")).astype("datetime64[D]"))
+
+
+def _borders(outlines: list, spacing: float, monitor: Monitor) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return for each footprint positions (b, 2) along it, and which (b,) have no footprint beyond; all if none has."""
+    along = [along_sides(sides_of_rings(rings), spacing) for rings in outlines]
+    beyond = np.concatenate([positions + spacing * outward for positions, _, outward in along])
+    is_outer = ~are_in_polygons(beyond, as_polygons(outlines), monitor)
+    parts = np.split(is_outer, np.cumsum([len(positions) for positions, *_ in along])[:-1])
+    return [(one[0], outer if outer.any() else np.ones(len(outer), bool)) for one, outer in zip(along, parts)]
+
+
+def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], tolerance: float) -> dict[str, Any]:
+    """Return what the points say of the building on a footprint, by the fields."""
+    within = points.within(rings)
+    kind = points.classification[within]
+    base, terrain = np.percentile(ground_beside(points.ground, points.tree, rings), (GROUND_PERCENTILE, 50)).tolist()
+    building, plants = within[np.isin(kind, points.roofs)], within[np.isin(kind, VEGETATION)]
+    if not points.are_classified:
+        building = building[points.xyz[building, 2] >= base + _LEAST_HEIGHT]
+    planes = _planes(points.xyz[building], tolerance, points.spacing)
+    if not points.are_classified:
+        is_plant = _are_plants(points.xyz[building], planes.label >= 0, points.spacing)
+        plants = np.concatenate([plants, building[is_plant]])
+        building, planes = building[~is_plant], RoofPlanes(planes.coefficients, planes.label[~is_plant])
+    covered = covered_share(rings, points.xyz[building], points.spacing)
+    trees = covered_share(rings, points.xyz[np.append(building, plants)], points.spacing) - covered
+    facts: dict[str, Any] = dict.fromkeys((field.name for field in _FIELDS if field.type is float), np.nan)
+    facts.update(h_ground=base, roof_type=None, date=None, points=len(building), covered=covered, trees=trees)
+    has_roof = shows_roof(len(building), points.spacing, rings)
+    facts["state"] = _state(len(within), has_roof, covered, trees)
+    if has_roof:
+        facts.update(_roof_facts(points, building, planes, rings, border, terrain))
+    return facts
+
+
+def _state(n_points: int, has_roof: bool, covered: float, trees: float) -> str:
+    """Return how well a building was seen, from the points over it and the shares of its area that have some."""
+    if not n_points:
+        return EMPTY
+    if has_roof and covered >= CHECKS.covered:
+        return SEEN
+    return TREES if trees >= _HIDDEN * (1 - covered) else PARTLY if has_roof else ABSENT
+
+
+def _are_plants(xyz: np.ndarray, is_on: np.ndarray, spacing: float) -> np.ndarray:
+    """Return which points (n, 3), m, lie clearly above those on planes (n,), bool, or beside these; all without any.
+
+    The others off planes are walls, chimneys and edges.
+    """
+    if not is_on.any():
+        return np.ones(len(xyz), bool)
+    distance, nearest = spatial.cKDTree(xyz[is_on, :2]).query(xyz[:, :2])
+    return ~is_on & ((distance > _APART * spacing) | (xyz[:, 2] > xyz[is_on, 2][nearest] + RULES.below))
+
+
+def _planes(xyz: np.ndarray, tolerance: float, spacing: float) -> RoofPlanes:
+    """Return the planes of the points (n, 3) of a building, in coordinates from the first one, m."""
+    least = max(5, round(_MIN_AREA / spacing**2))
+    return find_roof_planes(xyz - xyz[:1], tolerance, _STEEPEST, least)
+
+
+def _roof_facts(
+    points: _Points,
+    building: np.ndarray,
+    planes: RoofPlanes,
+    rings: list,
+    border: tuple[np.ndarray, np.ndarray],
+    terrain: float,
+) -> dict[str, Any]:
+    """Return what the points of a building, rows of all, say of its roof; ``terrain`` is the height of this, m."""
+    xyz, spacing = points.xyz[building], points.spacing
+    is_roof = _are_roof(xyz, planes, spacing)
+    plan, z = xyz[is_roof, :2], xyz[is_roof, 2]
+    middles = (cells_inside(rings, spacing) + 0.5) * spacing
+    surface = surface_heights(middles if len(middles) else plan, plan, z, spacing)
+    area = 2 * abs(signed_area(rings[0])) - sum(abs(signed_area(ring)) for ring in rings)
+    return {
+        **{name: float(np.percentile(surface, percent)) for name, percent in _PERCENTILES.items()},
+        **roof_heights(*border, plan, z - terrain, spacing),
+        "volume": area * (float(surface.mean()) - terrain),
+        "roof_type": _roof_type(xyz[is_roof], planes, planes.label[is_roof]),
+        "date": points.date(building[is_roof]),
+    }
+
+
+def _are_roof(xyz: np.ndarray, planes: RoofPlanes, spacing: float) -> np.ndarray:
+    """Return which points (n, 3), m, of a building are its roof: those on planes most of whose points are on top."""
+    near = spatial.cKDTree(xyz[:, :2]).query(xyz[:, :2], min(_BESIDE, len(xyz)))[1]
+    is_under, is_on = xyz[near, 2].max(axis=1) > xyz[:, 2] + RULES.below, planes.label >= 0
+    if is_on.mean() < _ON_PLANES:
+        return ~is_under
+    count, under = (np.bincount(planes.label[one], minlength=len(planes)) for one in (is_on, is_on & is_under))
+    # A steep plane rises as much from point to point as a floor lies below a roof.
+    rise = 2 * spacing * np.hypot(*planes.coefficients[:, :2].T)
+    return is_on & ((rise > RULES.below) | (under <= count / 2))[planes.label]
+
+
+def _roof_type(xyz: np.ndarray, planes: RoofPlanes, label: np.ndarray) -> str:
+    """Return the type of a roof by its planes and the points (n, 3) on them; their numbers are their areas."""
+    used = [xyz[label == plane, 2] for plane in range(len(planes))]
+    seen = np.flatnonzero([len(z) > 0 for z in used])
+    if not len(seen):
+        return "other"
+    a, b, _ = planes.coefficients[seen].T
+    low, high = np.array([(used[plane].min(), used[plane].max()) for plane in seen]).T
+    area = np.array([len(used[plane]) for plane in seen]) / planes.cosine[seen]
+    slope, azimuth = np.degrees(np.arctan(np.hypot(a, b))), np.degrees(np.arctan2(-a, -b)) % 360
+    return type_of_faces(area, slope, azimuth, low, high)
