@@ -33,7 +33,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install resources pictures demo test test-core test-pythons lint bench fuzz docs package clean
+.PHONY: help install pictures demo test test-core test-pythons lint bench fuzz docs package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -69,9 +69,6 @@ bench: install $(VENV)/made ## time and memory of every stage (a table, and benc
 fuzz: $(VENV)/made ## read damaged files for MINUTES, with the damage of SEED (findings in benchmarks/fuzz)
 	@$(VENV)/bin/python tests/attacks/fuzz.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) \
 		$(if $(KINDS),--kinds $(KINDS)) $(if $(GUIDED),--guided)
-
-resources: install ## write the help pages and models anew, after a change of a stage or pipeline
-	@scripts/offscreen.sh $(PYTHON) scripts/generate_resources.py
 
 pictures: $(VENV)/made ## draw the pictures of the help pages anew, or those of IDS
 	@scripts/offscreen.sh $(VENV)/bin/python scripts/help_pictures.py $(IDS)

@@ -144,21 +144,18 @@ def with_picture(text: str, algorithm: str, folder: str) -> str:
     return f"{summary}\n{picture}\n{rest}"
 
 
-# Folder of the pictures beside the pages.
-PICTURES = "pictures"
-
 # Pixels that the help pane of a dialog has room for, at the width that it opens with; pages set their own.
 _PICTURE_WIDTH = 220
 
 
-def page(title: str, text: str, algorithm: str) -> str:
-    """Return a complete page around the help text of an algorithm (id), with its picture."""
+def page(title: str, text: str) -> str:
+    """Return a complete page around the help text of an algorithm."""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"<title>{html.escape(title)}</title>\n"
         "<style>body{font-family:sans-serif;max-width:48em;margin:2em auto;line-height:1.5;padding:0 1em}"
         "img{width:100%;max-width:40em}</style>\n"
-        f"</head>\n<body>\n<h1>{html.escape(title)}</h1>\n{with_picture(text, algorithm, PICTURES)}\n</body>\n</html>\n"
+        f"</head>\n<body>\n<h1>{html.escape(title)}</h1>\n{text}\n</body>\n</html>\n"
     )
 
 

@@ -1,7 +1,7 @@
 """The composites, as data: which stage feeds which.
 
-The .model3 files under ``resources/models`` are generated from this module, so
-the graph that a user opens in the modeller and the chain that runs in memory can't differ.
+The graph that a user opens in the model designer is drawn from this module too, so it and the chain that runs in memory
+can't differ.
 """
 
 from __future__ import annotations

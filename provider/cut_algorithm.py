@@ -41,9 +41,9 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Return a new algorithm of the same kind."""
         return CutAlgorithm()
 
-    def shortHelpString(self) -> str:  # noqa: N802
-        """Return the help that the dialog shows beside the parameters."""
-        return self.shown(survey_tool_help(CUT_INTO_TILES))
+    def help(self) -> str:
+        """Return the help as HTML."""
+        return survey_tool_help(CUT_INTO_TILES)
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the size of tiles, and the folder."""

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Optional, Union
 
-from qgis.core import QgsApplication, QgsProcessingOutputHtml
+from qgis.core import QgsApplication, QgsProcessingOutputHtml, QgsProcessingUtils
 from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QWidget
 
-from ..algorithms.help import as_text, with_picture
+from ..algorithms.help import as_text, page, with_picture
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Stage
-from .paths import GROUP_ICONS, HELP, ICON, PICTURES
+from .paths import GROUP_ICONS, ICON, PICTURES
 
 # The groups that the toolbox shows first.
 _FIRST_GROUPS = ("Models", "Models in tiles", "Models as published")
@@ -66,9 +67,24 @@ class DeclaredAlgorithm:
         """Return what it is for, in a sentence."""
         return self.declared.summary
 
+    def help(self) -> str:
+        """Return the help as HTML."""
+        raise NotImplementedError
+
+    def shortHelpString(self) -> str:  # noqa: N802
+        """Return the help for the dialog, with the picture, or as plain text for the command line."""
+        return as_text(self.help()) if on_command_line() else self._illustrated()
+
     def helpUrl(self) -> str:  # noqa: N802
-        """Return the help page, which comes with the plugin."""
-        return QUrl.fromLocalFile(str(HELP / f"{self.declared.id}.html")).toString()
+        """Return a page with the help, written among the temporary files of this QGIS; the command line needs none."""
+        if on_command_line():
+            return ""
+        path = Path(QgsProcessingUtils.tempFolder()) / f"{self.declared.id}.html"
+        path.write_text(page(self.declared.title, self._illustrated()), encoding="utf-8")
+        return QUrl.fromLocalFile(str(path)).toString()
+
+    def _illustrated(self) -> str:
+        return with_picture(self.help(), self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString())
 
     def createCustomParametersWidget(self, parent: Optional[QWidget] = None) -> Optional[QWidget]:  # noqa: N802
         """Return the dialog with parameters in groups; None, for QGIS's own one, where this QGIS lacks parts of it."""
@@ -83,12 +99,6 @@ class DeclaredAlgorithm:
         for output in self.outputDefinitions():  # type: ignore[attr-defined]
             if isinstance(output, QgsProcessingOutputHtml):
                 output.setDescription(f"{output.description()} ({self.displayName()})")
-
-    def shown(self, text: str) -> str:
-        """Return a help text for the dialog, with the picture, or as plain text for the command line."""
-        if on_command_line():
-            return as_text(text)
-        return with_picture(text, self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString())
 
 
 def on_command_line() -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from processing.gui.ContextAction import ContextAction
 from qgis.PyQt.QtWidgets import QMessageBox
 
-from .models import model_file
+from .models import build_model
 from .pipeline_algorithm import PipelineAlgorithm
 
 
@@ -25,9 +25,9 @@ class OpenInDesigner(ContextAction):
         try:
             from processing.modeler.ModelerDialog import ModelerDialog
         except ImportError as error:
-            text = f"This version of QGIS opens its Model Designer in another way ({error})."
-            QMessageBox.information(None, self.name, f"{text} Its model is {model_file(self.itemData.pipeline)}.")
+            text = f"This version of QGIS opens its Model Designer in another way ({error}); the help lists all steps."
+            QMessageBox.information(None, self.name, text)
             return
-        dialog = ModelerDialog.create(self.itemData.as_model())
+        dialog = ModelerDialog.create(build_model(self.itemData.pipeline))
         dialog.show()
         dialog.activate()

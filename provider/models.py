@@ -1,9 +1,6 @@
-"""Pipelines as Processing models, drawn and written from ``pipelines.py``."""
+"""Pipelines as Processing models, drawn from ``pipelines.py`` when the designer asks for them."""
 
 from __future__ import annotations
-
-import uuid
-from pathlib import Path
 
 from qgis.core import (
     Qgis,
@@ -23,7 +20,7 @@ from qgis.PyQt.QtGui import QColor
 from ..algorithms.help import lower_first, pipeline_help, step_label, step_title
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.stage import CLOUD, REPORT
-from . import PROVIDER_ID, paths
+from . import PROVIDER_ID
 from .clouds import FILTER
 from .input_layers import input_layer_name, input_layer_parameter
 from .inputs import INPUT, INPUTS, OUTPUT, REFERENCE, cloud_title
@@ -251,17 +248,8 @@ def _model_outputs(
 def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGroupBox:
     """Return the box around the band of a step."""
     box = QgsProcessingModelGroupBox(step.stage.title)
-    # QGIS gives boxes random ids: the same pipeline would be another file each time.
-    facts = box.toVariant()
-    facts["uuid"] = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"{PROVIDER_ID}:{step.name}")) + "}"
-    box.loadVariant(facts)
     position, size = layout.frame(height)
     box.setPosition(position)
     box.setSize(size)
     box.setColor(QColor(235, 240, 245))
     return box
-
-
-def model_file(pipeline: Pipeline) -> Path:
-    """Return where the model of a pipeline is shipped."""
-    return paths.MODELS / f"{pipeline.id}.model3"

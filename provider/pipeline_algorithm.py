@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessingModelAlgorithm
+from qgis.core import QgsProcessingContext, QgsProcessingFeedback
 
 from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
@@ -14,7 +14,7 @@ from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, TextFile
 from .cloud_algorithm import CloudAlgorithm, Inputs, Read
 from .destinations import Made
 from .feedback import ChainMonitor
-from .models import model_file, output_label, output_title, pipeline_parameters
+from .models import output_label, output_title, pipeline_parameters
 from .parameters import automatic_numbers, number_outputs, tunable_values, used_name
 from .run_log import RunLog
 from .styles import switch_off
@@ -60,20 +60,13 @@ class PipelineAlgorithm(CloudAlgorithm):
         )
         self.made = [_made(pipeline, output) for output in sorted(pipeline.outputs, key=_rank)]
 
-    def as_model(self) -> QgsProcessingModelAlgorithm:
-        """Return its graph, as the designer edits it."""
-        model = QgsProcessingModelAlgorithm()
-        model.fromFile(str(model_file(self.pipeline)))
-        model.setSourceFilePath("")
-        return model
-
     def createInstance(self) -> PipelineAlgorithm:  # noqa: N802 - QGIS asks for these names
         """Return a new algorithm of the same pipeline."""
         return PipelineAlgorithm(self.pipeline)
 
-    def shortHelpString(self) -> str:  # noqa: N802
-        """Return the help that the dialog shows next to the parameters."""
-        return self.shown(pipeline_help(self.pipeline))
+    def help(self) -> str:
+        """Return the help as HTML."""
+        return pipeline_help(self.pipeline)
 
     def add_tunables(self) -> None:
         """Declare the parameters of all steps."""

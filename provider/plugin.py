@@ -31,10 +31,8 @@ class Plugin:
     def initProcessing(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add the provider to Processing."""
         self._add_dependencies_folder()
-        provider = self.provider = Provider()
-        self._registry().addProvider(provider)
-        # Models look their children up in the registry, where they are only now.
-        provider.refreshAlgorithms()
+        self.provider = Provider()
+        self._registry().addProvider(self.provider)
 
     def initGui(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add the provider, and then the optional parts."""

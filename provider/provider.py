@@ -21,21 +21,13 @@ CLOUD_EXTENSIONS = ("las", "laz", "copc.laz")
 
 
 class Provider(QgsProcessingProvider):
-    """LiDAR Buildings in the Processing toolbox.
-
-    ``with_pipelines`` is False only where their models are about to be written.
-    """
-
-    def __init__(self, with_pipelines: bool = True) -> None:
-        super().__init__()
-        self._with_pipelines = with_pipelines
+    """LiDAR Buildings in the Processing toolbox."""
 
     def loadAlgorithms(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add an algorithm per stage, per pipeline and per pipeline that runs in tiles, and that which cuts tiles."""
         for stage in STAGES.values():
             self.addAlgorithm(StageAlgorithm(stage))
-        # A model gets its outputs from its children, which must be registered before it.
-        for pipeline in PIPELINES.values() if self._with_pipelines else ():
+        for pipeline in PIPELINES.values():
             self.addAlgorithm(PipelineAlgorithm(pipeline))
         self.addAlgorithm(CutAlgorithm())
         for tiled in TILED_PIPELINES.values():

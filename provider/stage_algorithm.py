@@ -36,9 +36,9 @@ class StageAlgorithm(CloudAlgorithm):
         """Return a new algorithm of the same stage."""
         return StageAlgorithm(self.stage)
 
-    def shortHelpString(self) -> str:  # noqa: N802
-        """Return the help that the dialog shows next to the parameters."""
-        return self.shown(stage_help(self.stage))
+    def help(self) -> str:
+        """Return the help as HTML."""
+        return stage_help(self.stage)
 
     def add_tunables(self) -> None:
         """Declare the parameters that are tunables."""

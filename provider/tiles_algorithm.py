@@ -99,9 +99,9 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Return a new algorithm of the same composite."""
         return TilesAlgorithm(self.tiled)
 
-    def shortHelpString(self) -> str:  # noqa: N802
-        """Return the help that the dialog shows beside the parameters."""
-        return self.shown(tiled_pipeline_help(self.tiled))
+    def help(self) -> str:
+        """Return the help as HTML."""
+        return tiled_pipeline_help(self.tiled)
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the composite's parameters, how it is worked on, and the outputs."""

@@ -38,7 +38,7 @@ application = QgsApplication([], False)
 QgsApplication.initQgis()
 from lidar_buildings.provider.provider import Provider
 
-provider = Provider(with_pipelines=False)
+provider = Provider()
 QgsApplication.processingRegistry().addProvider(provider)
 algorithm = provider.algorithm("segmentstoreys")
 print(algorithm.displayName(), "|", algorithm.group(), "|", algorithm.parameterDefinition("HEIGHT").description())
@@ -69,7 +69,6 @@ def copy(tmp_path_factory) -> Path:
     inserted(copy / "tests" / "test_contract.py", '    "segmentsurfaces",\n', '    "segmentstoreys",\n')
     (copy / TEST).write_text(TEST_TEXT, encoding="utf-8")
     inserted(copy / "CHANGELOG.md", "- ", "- *Segment storeys* numbers the storeys of a cloud.\n")
-    run(copy, "scripts/generate_resources.py")
     run(copy, "scripts/help_pictures.py", "segmentstoreys")
     return copy
 
@@ -94,7 +93,7 @@ def test_five_files_are_written_by_hand(copy):
         "tests/test_contract.py",
         "CHANGELOG.md",
     }
-    assert {file.name for file in generated} == {"segmentstoreys.html", "segmentstoreys.png"}
+    assert {file.name for file in generated} == {"segmentstoreys.png"}
 
 
 def same(one: Path, other: Path) -> bool:

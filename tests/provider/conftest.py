@@ -37,28 +37,20 @@ def qgis_application():
 
 
 @pytest.fixture(scope="session")
-def provider(qgis_application, tmp_path_factory):
+def provider(qgis_application):
     """The provider in Processing's registry, with the toy stages and the toy chain beside the real ones."""
     from qgis.core import QgsApplication
 
-    from lidar_buildings.provider import models, paths
     from lidar_buildings.provider.provider import Provider
 
     registry = QgsApplication.processingRegistry()
     patch = pytest.MonkeyPatch()
     for name, stage in TOYS.items():
         patch.setitem(STAGES, name, stage)
-    provider = Provider()
-    registry.addProvider(provider)
-    folder = tmp_path_factory.mktemp("models")
-    for pipeline in (*PIPELINES.values(), TOY_CHAIN, TOY_MAPPING):
-        models.build_model(pipeline).toFile(str(folder / f"{pipeline.id}.model3"))
-    shipped = paths.MODELS
-    patch.setattr(paths, "MODELS", folder)
     for pipeline in (TOY_CHAIN, TOY_MAPPING):
         patch.setitem(PIPELINES, pipeline.name, pipeline)
-    provider.shipped_models = shipped
-    provider.refreshAlgorithms()
+    provider = Provider()
+    registry.addProvider(provider)
     yield provider
     registry.removeProvider(provider)
     patch.undo()

@@ -23,6 +23,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, TILED_PIPELINES
 from lidar_buildings.provider.clouds import CloudParameter, CloudsParameter
+from lidar_buildings.provider.models import build_model
 from lidar_buildings.provider.paths import PICTURES
 from lidar_buildings.provider.vectors import SOURCE_TYPES
 from lidar_buildings.tests.toys import TOYS
@@ -150,7 +151,7 @@ SAVED_OUTPUTS = {
 @pytest.mark.parametrize("name", SAVED_OUTPUTS)
 def test_names_of_outputs_of_saved_models_are_frozen(provider, name):
     """QGIS names the outputs of a model that a user saves by their titles: with other ones, scripts would break."""
-    model = provider.algorithm(name).create().as_model()
+    model = build_model(provider.algorithm(name).pipeline)
     assert SAVED_OUTPUTS[name] <= {one.name() for one in model.destinationParameterDefinitions()}
 
 
@@ -349,6 +350,13 @@ def test_composites_show_their_steps(name, provider):
     assert all(step.stage.title in text for step in pipeline.steps)
     shown = provider.algorithm(pipeline.id).create().shortHelpString()
     assert shown == with_picture(text, pipeline.id, QUrl.fromLocalFile(str(PICTURES)).toString())
+
+
+def test_every_algorithm_has_a_help_page_with_its_pictures(provider):
+    for algorithm in provider.algorithms():
+        shown = Path(QUrl(algorithm.helpUrl()).toLocalFile()).read_text(encoding="utf-8")
+        assert f"<h1>{html.escape(algorithm.displayName())}</h1>\n{algorithm.shortHelpString()}\n</body>" in shown
+        assert all(Path(QUrl(picture).toLocalFile()).is_file() for picture in re.findall('<img src="(.*?)"', shown))
 
 
 def test_pictures_of_the_help_are_there(provider):

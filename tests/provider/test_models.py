@@ -10,7 +10,6 @@ from qgis.core import (
     Qgis,
     QgsProcessing,
     QgsProcessingException,
-    QgsProcessingModelAlgorithm,
     QgsVectorLayer,
 )
 
@@ -123,7 +122,7 @@ def test_the_graph_gives_what_the_composite_gives_in_memory(name, provider, cont
 
     pipeline = PIPELINES[name]
     algorithm = provider.algorithm(pipeline.id).create()
-    graph = algorithm.as_model()
+    graph = models.build_model(pipeline)
     graph.initAlgorithm()
     outputs = {made.title: made for made in algorithm.made}
     given = {"INPUT": str(village)}
@@ -346,18 +345,6 @@ def test_a_second_run_in_the_same_context_runs_again(provider, context, log, tow
 @pytest.fixture(params=[*PIPELINES, "toy_chain", "toy_mapping"])
 def pipeline(request, provider):
     return PIPELINES[request.param]
-
-
-def test_shipped_models_are_generated_from_the_pipelines(pipeline, provider, tmp_path):
-    if pipeline.group == "Toys":
-        pytest.skip("it is not shipped")
-    shipped = QgsProcessingModelAlgorithm()
-    assert shipped.fromFile(str(provider.shipped_models / f"{pipeline.id}.model3")), "run make resources"
-    # By way of a file as well, which makes None of an empty text.
-    assert models.build_model(pipeline).toFile(str(tmp_path / "built.model3"))
-    built = QgsProcessingModelAlgorithm()
-    assert built.fromFile(str(tmp_path / "built.model3"))
-    assert shipped.toVariant() == built.toVariant(), "run make resources"
 
 
 def test_the_graph_is_the_chain(pipeline):

@@ -26,7 +26,6 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.provider import dependencies, installation, menu, questions
 from lidar_buildings.provider.menu import open_dialog, view_parameters
-from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
 from lidar_buildings.provider.plugin import LOG, Plugin
 from lidar_buildings.tests.provider.helpers import Interface, run
 
@@ -98,13 +97,23 @@ def test_the_menu_has_six_entries_until_it_is_taken_away():
     assert not Windows.entries
 
 
-def test_the_graph_for_the_designer_is_a_model_of_the_users_own(provider):
-    algorithm = provider.algorithm("toychain").create()
-    assert isinstance(algorithm, PipelineAlgorithm)
-    model = algorithm.as_model()
-    assert not isinstance(model, PipelineAlgorithm)
+def test_the_graph_for_the_designer_is_a_model_of_the_users_own(provider, monkeypatch):
+    from processing.modeler.ModelerDialog import ModelerDialog
+
+    from lidar_buildings.provider.designer import OpenInDesigner
+
+    shown = []
+
+    class Dialog:
+        show = activate = lambda self: None
+
+    monkeypatch.setattr(ModelerDialog, "create", lambda model: shown.append(model) or Dialog())
+    action = OpenInDesigner()
+    action.setData(provider.algorithm("toychain").create(), None)
+    action.execute()
+    (model,) = shown
     assert len(model.childAlgorithms()) == 3
-    assert model.sourceFilePath() == "", "saving it must not overwrite the shipped file"
+    assert (model.displayName(), model.sourceFilePath()) == ("Toy chain", "")
 
 
 def test_what_is_added_is_taken_away(provider, qgis_application, monkeypatch):
@@ -153,6 +162,7 @@ def test_all_algorithms_are_there_where_modules_of_qgis_have_moved(provider, mon
     plugin = lidar_buildings.classFactory(None)
     plugin.initGui()
     (added,) = kept
+    added.refreshAlgorithms()
     assert {one.id() for one in added.algorithms()} == {one.id() for one in provider.algorithms()}
     ((_, level, text),) = [one for one in messages if one[0] == LOG]
     assert level == Qgis.MessageLevel.Warning
