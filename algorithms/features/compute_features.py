@@ -23,25 +23,68 @@ from ..neighborhoods.optimal_size import Optimal
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 
-_FEATURES = (
-    "linearity",
-    "planarity",
-    "scattering",
-    "entropy",
-    "omnivariance",
-    "anisotropy",
-    "eigenentropy",
-    "eigenvalue_sum",
-    "surface_variation",
-    "verticality",
-    "normal",
-    "height_range",
-    "height_deviation",
-    "plan_radius",
-    "plan_density",
-    "plan_eigenvalue_ratio",
-    "optimal_neighbors",
-)
+
+class _Described:
+    """What the features (m,) of the neighborhoods of m points are computed from. What is undefined is NaN.
+
+    l1 >= l2 >= l3 are the eigenvalues (m, 3) of a covariance, m². Lengths are in m.
+    """
+
+    def __init__(self, shapes: Shapes) -> None:
+        self.shapes = shapes
+        self.eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
+        self.defined = ~np.isnan(self.eigenvalues[:, 0])
+
+    @cached_property
+    def dimensionality(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Linearity, planarity and scattering."""
+        return dimensionality(self.eigenvalues)
+
+    @cached_property
+    def eigenvalue_sum(self) -> np.ndarray:
+        """Sum l1 + l2 + l3."""
+        return self.eigenvalues.sum(axis=1)
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """Upward unit eigenvector (m, 3) of l3."""
+        return smallest_eigenvectors(self.shapes.covariances, self.eigenvalues)
+
+    @cached_property
+    def plan_radius(self) -> np.ndarray:
+        """Largest horizontal distance from the point; undefined without neighbors."""
+        radius = self.shapes.plan_radius
+        return np.where(self.defined & (radius > 0), radius, np.nan)
+
+    @property
+    def plan_eigenvalue_ratio(self) -> np.ndarray:
+        """Smaller by larger eigenvalue of the covariance in plan."""
+        xx, yy, _, xy, _, _ = self.shapes.covariances.T
+        mean, spread = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+        mean = np.where(self.defined & (mean > 0), mean, np.nan)
+        return np.maximum(mean - spread, 0) / (mean + spread)
+
+
+# Each feature by its name; the docstring of the stage has the formulas.
+_FEATURES: dict[str, Callable[[_Described], np.ndarray]] = {
+    "linearity": lambda of: of.dimensionality[0],
+    "planarity": lambda of: of.dimensionality[1],
+    "scattering": lambda of: of.dimensionality[2],
+    "entropy": lambda of: shannon_entropy(*of.dimensionality),
+    "omnivariance": lambda of: np.cbrt(of.eigenvalues.prod(axis=1)),
+    "anisotropy": lambda of: of.dimensionality[0] + of.dimensionality[1],
+    "eigenentropy": lambda of: shannon_entropy(*(of.eigenvalues.T / of.eigenvalue_sum)),
+    "eigenvalue_sum": lambda of: of.eigenvalue_sum,
+    "surface_variation": lambda of: of.eigenvalues[:, 2] / of.eigenvalue_sum,
+    "verticality": lambda of: 1 - of.normal[:, 2],
+    "normal": lambda of: of.normal,
+    "height_range": lambda of: np.where(of.defined, of.shapes.height_range, np.nan),
+    "height_deviation": lambda of: np.sqrt(np.where(of.defined, of.shapes.covariances[:, 2], np.nan).clip(0)),
+    "plan_radius": lambda of: of.plan_radius,
+    "plan_density": lambda of: of.shapes.counts / (np.pi * of.plan_radius**2),
+    "plan_eigenvalue_ratio": lambda of: of.plan_eigenvalue_ratio,
+    "optimal_neighbors": lambda of: of.shapes.counts,
+}
 
 # Features that need more than the covariance.
 _OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
@@ -49,6 +92,11 @@ _OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
 # How far a neighborhood reaches (m) where its radius is not set: the 50 points of one by default lie that close on
 # surfaces with 0.64 points per square meter and more, the 100 of 'optimal' with 1.3.
 _REACH = 5.0
+
+_Features = Annotated[
+    tuple[str, ...],
+    Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=tuple(_FEATURES)),
+]
 
 _Radius = Annotated[
     Optional[float],
@@ -90,7 +138,7 @@ _NeighborsStep = Annotated[
     group="Features",
     tags="PCA,covariance,eigenvalues,linearity,planarity,scattering,entropy,normals,verticality,geometric,optimal,"
     "scale",
-    writes=_FEATURES,
+    writes=tuple(_FEATURES),
     reach=lambda tunables: (tunables["radius"] or _REACH) if tunables["neighborhood"] == "radius" else _REACH,
     cost=7.0,
 )
@@ -127,9 +175,7 @@ def compute_features(
         ),
     ] = 100,
     neighbors_step: _NeighborsStep = 1,
-    features: Annotated[
-        tuple[str, ...], Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=_FEATURES)
-    ] = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
+    features: _Features = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -215,10 +261,10 @@ def compute_features(
     undefined = np.empty(len(xyz), bool)
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
-        described = NeighborhoodFeatures(shapes)
+        described = _Described(shapes)
         undefined[rows] = ~described.defined
         for name, values in made.items():
-            values[rows] = getattr(described, name)
+            values[rows] = _FEATURES[name](described)
 
     reduce_neighborhoods(xyz, around[neighborhood](), keep, monitor=monitor, extents=bool(_OF_EXTENT & set(features)))
     wanted = {"nearest": n_neighbors, "optimal": min_neighbors}.get(neighborhood, 0)
@@ -243,108 +289,3 @@ def _automatic_radius(sampling: CloudSampling, n_neighbors: int, monitor: Monito
     radius = float(np.sqrt(n_neighbors / (np.pi * sampling.density)))
     monitor.resolved(radius=radius)
     return radius
-
-
-class NeighborhoodFeatures:
-    """The features (m,) of the neighborhoods of m points: an attribute each, computed when asked for.
-
-    l1 >= l2 >= l3 are the eigenvalues of a covariance, m². Lengths are in m. What is undefined is NaN.
-    """
-
-    def __init__(self, shapes: Shapes) -> None:
-        self.shapes = shapes
-        self.eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
-        self.defined = ~np.isnan(self.eigenvalues[:, 0])
-
-    @cached_property
-    def _dimensionality(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        return dimensionality(self.eigenvalues)
-
-    @property
-    def linearity(self) -> np.ndarray:
-        """(l1 - l2) / l1."""
-        return self._dimensionality[0]
-
-    @property
-    def planarity(self) -> np.ndarray:
-        """(l2 - l3) / l1."""
-        return self._dimensionality[1]
-
-    @property
-    def scattering(self) -> np.ndarray:
-        """Ratio l3 / l1."""
-        return self._dimensionality[2]
-
-    @property
-    def entropy(self) -> np.ndarray:
-        """Shannon entropy of the three."""
-        return shannon_entropy(*self._dimensionality)
-
-    @property
-    def omnivariance(self) -> np.ndarray:
-        """(l1 l2 l3)^(1/3)."""
-        return np.cbrt(self.eigenvalues.prod(axis=1))
-
-    @property
-    def anisotropy(self) -> np.ndarray:
-        """(l1 - l3) / l1."""
-        return self.linearity + self.planarity
-
-    @property
-    def eigenentropy(self) -> np.ndarray:
-        """-sum e ln e of the eigenvalues' shares e."""
-        return shannon_entropy(*(self.eigenvalues.T / self.eigenvalue_sum))
-
-    @property
-    def eigenvalue_sum(self) -> np.ndarray:
-        """Sum l1 + l2 + l3."""
-        return self.eigenvalues.sum(axis=1)
-
-    @property
-    def surface_variation(self) -> np.ndarray:
-        """Ratio l3 / (l1 + l2 + l3)."""
-        return self.eigenvalues[:, 2] / self.eigenvalue_sum
-
-    @cached_property
-    def normal(self) -> np.ndarray:
-        """Upward unit eigenvector (m, 3) of l3."""
-        return smallest_eigenvectors(self.shapes.covariances, self.eigenvalues)
-
-    @property
-    def verticality(self) -> np.ndarray:
-        """1 - n_z of the normal."""
-        return 1 - self.normal[:, 2]
-
-    @property
-    def height_range(self) -> np.ndarray:
-        """Highest less lowest elevation."""
-        return np.where(self.defined, self.shapes.height_range, np.nan)
-
-    @property
-    def height_deviation(self) -> np.ndarray:
-        """Standard deviation of elevations."""
-        return np.sqrt(np.where(self.defined, self.shapes.covariances[:, 2], np.nan).clip(0))
-
-    @cached_property
-    def plan_radius(self) -> np.ndarray:
-        """Largest horizontal distance from the point; undefined without neighbors."""
-        radius = self.shapes.plan_radius
-        return np.where(self.defined & (radius > 0), radius, np.nan)
-
-    @property
-    def plan_density(self) -> np.ndarray:
-        """Points of the neighborhood per area of the circle around them."""
-        return self.shapes.counts / (np.pi * self.plan_radius**2)
-
-    @property
-    def plan_eigenvalue_ratio(self) -> np.ndarray:
-        """Smaller by larger eigenvalue of the covariance in plan."""
-        xx, yy, _, xy, _, _ = self.shapes.covariances.T
-        mean, spread = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
-        mean = np.where(self.defined & (mean > 0), mean, np.nan)
-        return np.maximum(mean - spread, 0) / (mean + spread)
-
-    @property
-    def optimal_neighbors(self) -> np.ndarray:
-        """Points of the neighborhood."""
-        return self.shapes.counts

@@ -33,24 +33,6 @@ def is_valid(rings: list) -> bool:
     return all(is_inside(hole[0], rings[0]) for hole in rings[1:])
 
 
-def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
-    """Return whether any of the segments ab (n, 2) has a point in common with one of the segments cd (m, 2).
-
-    Parameters
-    ----------
-    a : ndarray of shape (n, 2)
-        Starts of the first segments.
-    b : ndarray of shape (n, 2)
-        Their ends.
-    c : ndarray of shape (m, 2)
-        Starts of the second segments.
-    d : ndarray of shape (m, 2)
-        Their ends.
-    """
-    step = max(1, _PAIRS_AT_ONCE // len(c))
-    return any(_meet(a[low : low + step], b[low : low + step], c, d).any() for low in range(0, len(a), step))
-
-
 def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
     """Return whether a point (2,) lies inside a ring."""
     return bool(are_inside(point[None], ring)[0])

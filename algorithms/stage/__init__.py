@@ -48,35 +48,3 @@ from .inputs_outputs import (
 )
 from .monitor import Cancelled, Monitor, ProgressOnly
 from .tunables import Param, Tunable
-
-__all__ = [
-    "CLOUD",
-    "Cancelled",
-    "DIMENSION",
-    "Declared",
-    "REPORT",
-    "LayerFeatures",
-    "Field",
-    "FileContent",
-    "FileItem",
-    "MapFrame",
-    "TextFile",
-    "Layer",
-    "StageResults",
-    "Measure",
-    "Monitor",
-    "Param",
-    "ProgressOnly",
-    "REFERENCE_PREFIX",
-    "Raster",
-    "Report",
-    "InputLayer",
-    "SAMPLING",
-    "Stage",
-    "RasterSurface",
-    "Tunable",
-    "VALUES",
-    "feature_names",
-    "given_layers",
-    "stage",
-]

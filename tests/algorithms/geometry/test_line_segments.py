@@ -1,4 +1,4 @@
-"""Segments that meet and rings that are valid, by hand."""
+"""Rings that are valid, and distances of segments, by hand."""
 
 from fractions import Fraction
 
@@ -12,7 +12,6 @@ from lidar_buildings.algorithms.geometry.line_segments import (
     farthest,
     is_inside,
     is_valid,
-    segments_meet,
 )
 from lidar_buildings.tests.builders import L_SHAPE
 
@@ -40,15 +39,6 @@ def meet_exactly(a, b, c, d):
     axis = int(abs(uy) > abs(ux))
     one, other = sorted([a[axis], b[axis]]), sorted([c[axis], d[axis]])
     return wx * uy == wy * ux and one[0] <= other[1] and other[0] <= one[1]
-
-
-def test_segments_meet_as_in_exact_integer_arithmetic(rng):
-    """On a grid of five by five they touch, lie on one line and overlap as often as they cross."""
-    grid = rng.integers(0, 5, (600, 4, 2))
-    grid = grid[(grid[:, 0] != grid[:, 1]).any(axis=1) & (grid[:, 2] != grid[:, 3]).any(axis=1)]
-    expected = [meet_exactly(*four) for four in grid]
-    assert 0.2 < np.mean(expected) < 0.8
-    assert [segments_meet(*four[:, None].astype(float)) for four in grid] == expected
 
 
 @pytest.mark.parametrize("at_once", [1, 7, 1000])
@@ -89,9 +79,3 @@ def test_the_nearest_position_on_a_line_is_on_its_nearest_segment(at_once, rng, 
 def test_inside():
     assert is_inside(np.array([5.0, 5]), L_SHAPE)
     assert not is_inside(np.array([15.0, 12]), L_SHAPE)
-
-
-def test_segments_that_meet():
-    a, b = np.array([[0, 0], [10, 0]], float), np.array([[4, 0], [10, 4]], float)
-    assert segments_meet(a, b, np.array([[2.0, -1]]), np.array([[2.0, 1]]))
-    assert not segments_meet(a, b, np.array([[5.0, -1]]), np.array([[5.0, 1]]))
