@@ -38,8 +38,7 @@ Seed = Annotated[
     Param(
         "Seed",
         "Start of the random numbers: the same seed gives the same result.",
-        low=0,
-        high=2**31 - 1,
+        within=f"[0, {2**31 - 1}]",
         advanced=True,
     ),
 ]
@@ -49,8 +48,7 @@ PointDensity = Annotated[
     Param(
         "Point density",
         "Average number of points per square meter of occupied area.",
-        unit="points/m²",
-        low=0.001,
+        within="[0.001, inf) points/m²",
         automatic="measured on the cloud; 'Segment roofs', 'Classify buildings' and 'Complete buildings' take the "
         "effective density, less where points lie on lines, in pairs or in dense strips, so that distances reach over "
         "the gaps.",
@@ -59,7 +57,7 @@ PointDensity = Annotated[
 ]
 
 MinBuildingArea = Annotated[
-    float, Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000)
+    float, Param("Minimum building area", "Area of the smallest building to be found.", within="[0.1, 10_000] m²")
 ]
 
 PointSource = Annotated[
@@ -80,8 +78,7 @@ MinFrequency = Annotated[
         "Minimum frequency",
         "Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, "
         "and thin objects such as wires with it.",
-        low=1,
-        high=10_000,
+        within="[1, 10_000]",
     ),
 ]
 
@@ -91,10 +88,7 @@ SurfaceNoise = Annotated[
         "Surface noise",
         "Standard deviation of the points across a smooth surface. Roofs and walls may be rougher, by tiles, gravel "
         "and the spacing of the points.",
-        unit="m",
-        low=0,
-        high=10,
-        open_low=True,
+        within="(0, 10] m",
         automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m.",
         advanced=True,
     ),
@@ -105,29 +99,22 @@ BridgeHeight = Annotated[
     Param(
         "Minimum height",
         "Least height of a bridge above its surroundings; in 'Classify ground segments' that of an object, too.",
-        unit="m",
-        low=0.1,
-        high=100,
+        within="[0.1, 100] m",
     ),
 ]
 
 BridgeWidth = Annotated[
-    float,
-    Param("Maximum bridge width", "Width of the widest bridge; 0 looks for no bridges.", unit="m", low=0, high=1000),
+    float, Param("Maximum bridge width", "Width of the widest bridge; 0 looks for no bridges.", within="[0, 1000] m")
 ]
 
-BridgeArea = Annotated[
-    float, Param("Minimum bridge area", "Area of the smallest bridge.", unit="m²", low=1, high=100_000)
-]
+BridgeArea = Annotated[float, Param("Minimum bridge area", "Area of the smallest bridge.", within="[1, 100_000] m²")]
 
 MinClusterHeight = Annotated[
     float,
     Param(
         "Minimum height",
         "Only points at least this high above the ground are used, where heights are known.",
-        unit="m",
-        low=0,
-        high=100,
+        within="[0, 100] m",
     ),
 ]
 
@@ -140,18 +127,14 @@ IgnoredClasses = Annotated[
     ),
 ]
 
-FacadeTilt = Annotated[
-    float, Param("Maximum tilt", "Largest angle of a facade to the vertical.", unit="°", low=0, high=45)
-]
+FacadeTilt = Annotated[float, Param("Maximum tilt", "Largest angle of a facade to the vertical.", within="[0, 45]°")]
 
 FacadeGap = Annotated[
     float,
     Param(
         "Widest gap",
         "Points of one plane at most this far apart belong to one facade; trees and poles leave such gaps.",
-        unit="m",
-        low=0.1,
-        high=100,
+        within="[0.1, 100] m",
     ),
 ]
 
@@ -161,9 +144,7 @@ CornerDistance = Annotated[
         "Corner distance",
         "Edges of neighboring facades move onto the intersection line of their planes from this far at most; "
         "0 leaves them where they are.",
-        unit="m",
-        low=0,
-        high=10,
+        within="[0, 10] m",
     ),
 ]
 
@@ -192,7 +173,6 @@ def nearest_points(automatic: str) -> Param:
     return Param(
         "Nearest points",
         "Points of the neighborhood in which the entropy of a point is measured, itself included (N).",
-        low=3,
-        high=10_000,
+        within="[3, 10_000]",
         automatic=automatic,
     )

@@ -27,11 +27,11 @@ def toy_lift(
     xyz,
     classification,
     *,
-    step: Annotated[float, Param("Step", "Added to all heights.", unit="m", low=0, high=10, open_low=True)] = 1.5,
+    step: Annotated[float, Param("Step", "Added to all heights.", within="(0, 10] m")] = 1.5,
     base: Annotated[
-        Optional[float], Param("Base", "Taken off all heights.", unit="m", low=0, automatic="the lowest point.")
+        Optional[float], Param("Base", "Taken off all heights.", within="[0, inf) m", automatic="the lowest point.")
     ] = None,
-    times: Annotated[int, Param("Times", "How often the step is added.", low=1, high=5, advanced=True)] = 2,
+    times: Annotated[int, Param("Times", "How often the step is added.", within="[1, 5]", advanced=True)] = 2,
     sign: Annotated[str, Param("Sign", "Up or down.", choices=("up", "down"))] = "up",
     only: Annotated[tuple, Param("Only", "Classes that are lifted.", choices=("ground", "building"))] = (
         "ground",
@@ -82,7 +82,7 @@ def toy_outline(
     xyz,
     height_above_ground=None,
     *,
-    margin: Annotated[float, Param("Margin", "Around the points.", unit="m", low=0, high=9)] = 0.0,
+    margin: Annotated[float, Param("Margin", "Around the points.", within="[0, 9] m")] = 0.0,
     monitor=None,
 ):
     """Draw a box with a hole around all points."""
@@ -108,7 +108,7 @@ def toy_compare(xyz, reference_xyz, *, monitor=None):
     creates=("xyz", "classification"),
     layers=(Layer("truth", "Truth", "Point", (Field("id", int, "Id."),)),),
 )
-def toy_make(*, n_points: Annotated[int, Param("Points", "How many.", low=1, high=1000)] = 10, monitor=None):
+def toy_make(*, n_points: Annotated[int, Param("Points", "How many.", within="[1, 1000]")] = 10, monitor=None):
     """Make a row of points."""
     xyz = np.column_stack([np.arange(n_points), np.zeros(n_points), np.full(n_points, 3.0)])
     return xyz, np.full(n_points, 2, np.uint8), LayerFeatures([np.array([1.0, 2.0, 3.0])], {"id": [1]})
@@ -137,8 +137,8 @@ def toy_keep(
     values=None,
     *,
     dimension: Annotated[str, Param("Dimension", "What is looked at; heights, if empty.")] = "",
-    low: Annotated[float, Param("Low", "Points with less go.", low=-1e9)] = 12.0,
-    sink: Annotated[float, Param("Sink", "How far the others go down.", unit="m", low=0)] = 0.0,
+    low: Annotated[float, Param("Low", "Points with less go.", within="[-1e9, inf)")] = 12.0,
+    sink: Annotated[float, Param("Sink", "How far the others go down.", within="[0, inf) m")] = 0.0,
     monitor=None,
 ):
     """Keep what is high, and number it."""
@@ -148,7 +148,10 @@ def toy_keep(
 
 @stage("Toy merge", group="Toys", writes=("xyz", "point_source_id"), merges=True)
 def toy_merge(
-    xyz, *, apart: Annotated[float, Param("Apart", "Each cloud higher than the last.", low=0)] = 0.0, monitor=None
+    xyz,
+    *,
+    apart: Annotated[float, Param("Apart", "Each cloud higher than the last.", within="[0, inf)")] = 0.0,
+    monitor=None,
 ):
     """Put clouds together and number them."""
     sizes = [len(one) for one in xyz]
@@ -194,7 +197,10 @@ def toy_arrows(old, new, extra=None, *, monitor=None):
 
 @stage("Toy heights", group="Toys", rasters=(Raster("top", "Top", unit="m"), Raster("floor", "Floor", "top", "m")))
 def toy_heights(
-    xyz, *, cell_size: Annotated[float, Param("Cell size", "Side of a cell.", unit="m", low=0.1)] = 2.0, monitor=None
+    xyz,
+    *,
+    cell_size: Annotated[float, Param("Cell size", "Side of a cell.", within="[0.1, inf) m")] = 2.0,
+    monitor=None,
 ):
     """Draw the highest and the lowest point of each cell."""
     west, north = float(xyz[:, 0].min()), float(xyz[:, 1].max()) + cell_size / 2

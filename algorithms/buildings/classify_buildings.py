@@ -44,9 +44,7 @@ _MaxPenetration = Annotated[
         "Maximum penetration",
         "Share of the beam that may pass through a building: cells with points below, and returns that are not "
         "the last.",
-        low=0,
-        high=1,
-        open_low=True,
+        within="(0, 1]",
     ),
 ]
 
@@ -56,8 +54,7 @@ _MinShareAround = Annotated[
         "Minimum share of buildings around",
         "Share of the points within a few meters around a building that must belong to buildings, its own "
         "included. Around smooth spots of crowns it is less.",
-        low=0,
-        high=1,
+        within="[0, 1]",
     ),
 ]
 

@@ -60,18 +60,14 @@ def complete_buildings(
         Param(
             "Gap to close",
             "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
-            unit="m",
-            low=0,
-            high=2 * SCENE.ground_within,
+            within=f"[0, {2 * SCENE.ground_within}] m",
             automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to "
             f"{2 * SCENE.ground_within:g} m.",
         ),
     ] = None,
     roof_clearance: Annotated[
         float,
-        Param(
-            "Clearance above the roof", "Points up to this far above the roof belong to it.", unit="m", low=0, high=20
-        ),
+        Param("Clearance above the roof", "Points up to this far above the roof belong to it.", within="[0, 20] m"),
     ] = 1.0,
     structure_height: Annotated[
         float,
@@ -79,9 +75,7 @@ def complete_buildings(
             "Structures on the roof",
             "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
             "dormers, masts). Trees cover more.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
         ),
     ] = 4.0,
     min_area: MinBuildingArea = 4.0,
@@ -92,8 +86,7 @@ def complete_buildings(
             "Share of the points at about the height of a building's roof, within the clearance above and below, that "
             "must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched "
             "images it is not examined.",
-            low=0,
-            high=1,
+            within="[0, 1]",
         ),
     ] = 0.6,
     density: PointDensity = None,

@@ -97,10 +97,7 @@ def extract_facades(
             "Tolerance",
             "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
             "strips and separates shallower recesses.",
-            unit="m",
-            low=0,
-            high=1,
-            open_low=True,
+            within="(0, 1] m",
             automatic=f"{_ON_PLANE:g} times the root of the sum of the squares of the surface noise and of "
             f"{_RELIEF:g} m, the relief of walls.",
         ),
@@ -108,18 +105,14 @@ def extract_facades(
     max_tilt: FacadeTilt = 10.0,
     min_area: Annotated[
         float,
-        Param(
-            "Minimum facade area", "Area of the smallest facade, where it has points.", unit="m²", low=0.1, high=10_000
-        ),
+        Param("Minimum facade area", "Area of the smallest facade, where it has points.", within="[0.1, 10_000] m²"),
     ] = 2.0,
     min_height: Annotated[
         float,
         Param(
             "Minimum facade height",
             "Height of the lowest facade; cars and hedges are lower than walls.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
         ),
     ] = 2.5,
     max_gap: FacadeGap = 1.0,

@@ -66,13 +66,11 @@ def extract_openings(
         Param(
             "Maximum depth",
             "How far behind the wall points may belong to its openings; deeper recesses are parts of the building.",
-            unit="m",
-            low=0.05,
-            high=10,
+            within="[0.05, 10] m",
         ),
     ] = 0.8,
     min_size: Annotated[
-        float, Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10)
+        float, Param("Minimum size", "Least width and height of a window or door.", within="[0.05, 10] m")
     ] = 0.4,
     max_tilt: FacadeTilt = 10.0,
     max_gap: FacadeGap = 1.0,

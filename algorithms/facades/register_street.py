@@ -64,13 +64,11 @@ def register_street(
         Param(
             "Maximum shift",
             "How far the street scan may be off the airborne cloud, along either axis.",
-            unit="m",
-            low=0,
-            high=20,
+            within="[0, 20] m",
         ),
     ] = 3.0,
     min_size: Annotated[
-        float, Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10)
+        float, Param("Minimum size", "Least width and height of a window or door.", within="[0.05, 10] m")
     ] = 0.4,
     monitor=None,
 ):

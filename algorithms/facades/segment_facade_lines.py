@@ -72,10 +72,7 @@ def segment_facade_lines(
         Param(
             "Line duration",
             "Time of one turn of the scanner's mirror.",
-            unit="s",
-            low=0,
-            high=60,
-            open_low=True,
+            within="(0, 60] s",
             automatic="the median time between two views of the sky, which give no points.",
         ),
     ] = None,
@@ -85,10 +82,7 @@ def segment_facade_lines(
             "Tolerance",
             "Distance within which points lie on a line segment: a few standard deviations of the noise and of the "
             "relief of walls.",
-            unit="m",
-            low=0,
-            high=1,
-            open_low=True,
+            within="(0, 1] m",
         ),
     ] = 0.05,
     max_ground_height: Annotated[
@@ -96,9 +90,7 @@ def segment_facade_lines(
         Param(
             "Maximum ground height",
             "Level segments at most this high over the lowest one of their line are ground (d0).",
-            unit="m",
-            low=0,
-            high=10,
+            within="[0, 10] m",
         ),
     ] = 0.5,
     facade_distance: Annotated[
@@ -107,13 +99,12 @@ def segment_facade_lines(
             "Facade distance",
             "Steep segments at most this much nearer to the scanner than the farthest one on their side of the line "
             "are of the facade (h0).",
-            unit="m",
-            low=0,
-            high=50,
+            within="[0, 50] m",
         ),
     ] = 1.5,
     min_points: Annotated[
-        int, Param("Minimum points", "Points of the shortest segment; shorter ones are stray points.", low=3, high=1000)
+        int,
+        Param("Minimum points", "Points of the shortest segment; shorter ones are stray points.", within="[3, 1000]"),
     ] = 5,
     monitor=None,
 ):

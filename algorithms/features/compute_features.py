@@ -103,9 +103,7 @@ _Radius = Annotated[
     Param(
         "Radius",
         "Radius of the sphere around a point; used by the neighborhood 'radius'.",
-        unit="m",
-        low=0,
-        open_low=True,
+        within="(0, inf) m",
         automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
     ),
 ]
@@ -116,8 +114,7 @@ _NNeighbors = Annotated[
         "Nearest points",
         "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
         "More of them smooth noise away and blur small objects.",
-        low=3,
-        high=1000,
+        within="[3, 1000]",
     ),
 ]
 
@@ -126,8 +123,7 @@ _NeighborsStep = Annotated[
     Param(
         "Step of nearest points",
         "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
-        low=1,
-        high=100,
+        within="[1, 100]",
         advanced=True,
     ),
 ]
@@ -161,8 +157,7 @@ def compute_features(
         Param(
             "Minimum nearest points",
             "Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.",
-            low=3,
-            high=1000,
+            within="[3, 1000]",
         ),
     ] = 10,
     max_neighbors: Annotated[
@@ -170,8 +165,7 @@ def compute_features(
         Param(
             "Maximum nearest points",
             "Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.",
-            low=3,
-            high=1000,
+            within="[3, 1000]",
         ),
     ] = 100,
     neighbors_step: _NeighborsStep = 1,

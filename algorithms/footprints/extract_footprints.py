@@ -73,9 +73,7 @@ def extract_footprints(
     min_area: MinBuildingArea = 4.0,
     min_hole_area: Annotated[
         float,
-        Param(
-            "Minimum hole area", "Smaller holes are filled, larger ones are courtyards.", unit="m²", low=0, high=10_000
-        ),
+        Param("Minimum hole area", "Smaller holes are filled, larger ones are courtyards.", within="[0, 10_000] m²"),
     ] = 5.0,
     regularize: Annotated[
         bool,
@@ -88,9 +86,7 @@ def extract_footprints(
         Param(
             "Tolerance",
             "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
-            unit="m",
-            low=0.01,
-            high=100,
+            within="[0.01, 100] m",
             automatic=_AUTOMATIC_TOLERANCE,
             advanced=True,
         ),

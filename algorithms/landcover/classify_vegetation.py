@@ -61,9 +61,7 @@ def classify_vegetation(
         Param(
             "Minimum height",
             "Points at least this high above the ground are vegetation; all others are unclassified.",
-            unit="m",
-            low=0,
-            high=10,
+            within="[0, 10] m",
         ),
     ] = 0.1,
     medium_height: Annotated[
@@ -71,9 +69,7 @@ def classify_vegetation(
         Param(
             "Medium vegetation from",
             "Height above the ground from which vegetation is medium (4).",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
             automatic="the lower one of the heights chosen above.",
             advanced=True,
         ),
@@ -83,9 +79,7 @@ def classify_vegetation(
         Param(
             "High vegetation from",
             "Height above the ground from which vegetation is high (5).",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
             automatic="the higher one of the heights chosen above.",
             advanced=True,
         ),

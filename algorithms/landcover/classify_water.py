@@ -36,8 +36,7 @@ def classify_water(
         bool, Param("Look for water", "If not, no class changes. For models that contain this step.")
     ] = True,
     min_area: Annotated[
-        float,
-        Param("Minimum water area", "Area of the smallest water body to be found.", unit="m²", low=10, high=1_000_000),
+        float, Param("Minimum water area", "Area of the smallest water body to be found.", within="[10, 1_000_000] m²")
     ] = 50.0,
     noise: SurfaceNoise = None,
     sampling: Optional[CloudSampling] = None,

@@ -50,7 +50,7 @@ def classify_wires(
         bool, Param("Look for wires", "If not, no class changes. For models that contain this step.")
     ] = True,
     min_height: Annotated[
-        float, Param("Minimum height", "Height above the ground of the lowest wires.", unit="m", low=1, high=100)
+        float, Param("Minimum height", "Height above the ground of the lowest wires.", within="[1, 100] m")
     ] = 4.0,
     noise: SurfaceNoise = None,
     seed: Seed = 0,

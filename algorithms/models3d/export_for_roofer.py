@@ -44,9 +44,7 @@ def export_for_roofer(
         Param(
             "Margin",
             "Points up to this distance from the box of a footprint are kept, so that its ground is among them.",
-            unit="m",
-            low=0,
-            high=1000,
+            within="[0, 1000] m",
         ),
     ] = 10.0,
     monitor=None,

@@ -73,18 +73,12 @@ def reconstruct_gables(
     segment_id,
     *,
     min_area: Annotated[
-        float,
-        Param("Minimum plane area", "Area of the smallest roof plane of a gable.", unit="m²", low=0.5, high=10_000),
+        float, Param("Minimum plane area", "Area of the smallest roof plane of a gable.", within="[0.5, 10_000] m²")
     ] = 4.0,
     max_gap: Annotated[
         float,
         Param(
-            "Largest gap at the ridge",
-            "Points of both roof planes come this near to each other.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
+            "Largest gap at the ridge", "Points of both roof planes come this near to each other.", within="(0, 10] m"
         ),
     ] = 1.5,
     monitor=None,

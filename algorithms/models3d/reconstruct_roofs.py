@@ -49,9 +49,7 @@ _Tolerance = Annotated[
     Param(
         "Tolerance",
         "Distance at which a point lies on a plane. A larger one gives fewer planes.",
-        unit="m",
-        low=0.01,
-        high=5,
+        within="[0.01, 5] m",
         automatic=TOLERANCE_TEXT,
         advanced=True,
     ),
@@ -62,9 +60,7 @@ _TopPercentile = Annotated[
     Param(
         "Percentile of level tops",
         "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
-        unit="%",
-        low=0,
-        high=100,
+        within="[0, 100] %",
         advanced=True,
     ),
 ]
@@ -113,20 +109,16 @@ def reconstruct_roofs(
         Param(
             "Minimum plane area",
             "Area of the smallest roof plane, seen from above; dormers have 2 m² and more.",
-            unit="m²",
-            low=0.1,
-            high=1000,
+            within="[0.1, 1000] m²",
         ),
     ] = 1.5,
     min_step: Annotated[
         float,
-        Param(
-            "Minimum step", "At level 1.3, parts of a roof that step by less are one part.", unit="m", low=0, high=100
-        ),
+        Param("Minimum step", "At level 1.3, parts of a roof that step by less are one part.", within="[0, 100] m"),
     ] = 3.0,
     top_percentile: _TopPercentile = 70.0,
     max_slope: Annotated[
-        float, Param("Maximum slope", "Slope of the steepest roof plane.", unit="°", low=1, high=85, advanced=True)
+        float, Param("Maximum slope", "Slope of the steepest roof plane.", within="[1, 85]°", advanced=True)
     ] = 75.0,
     tolerance: _Tolerance = None,
     id_field: Annotated[

@@ -50,9 +50,7 @@ def classify_noise_histogram(
         Param(
             "Cell size",
             "Side of the cells whose heights are counted, each together with the eight cells around it.",
-            unit="m",
-            low=0.1,
-            high=10_000,
+            within="[0.1, 10_000] m",
             automatic=f"cells of {HISTOGRAM.points_per_cell:g} points on average.",
             advanced=True,
         ),
@@ -62,9 +60,7 @@ def classify_noise_histogram(
         Param(
             "Bin height",
             "Height of the bins; noise is parted from the scene by at least two empty ones.",
-            unit="m",
-            low=0.01,
-            high=1000,
+            within="[0.01, 1000] m",
             automatic=AUTOMATIC_BIN,
             advanced=True,
         ),
@@ -75,9 +71,7 @@ def classify_noise_histogram(
             "Maximum clearance",
             "Height over the scene, or depth under it, beyond which everything is noise, however many points it has: "
             "clouds, aircraft, flocks. Cables over a deep valley may need more.",
-            unit="m",
-            low=1,
-            high=100_000,
+            within="[1, 100_000] m",
             advanced=True,
         ),
     ] = 200.0,

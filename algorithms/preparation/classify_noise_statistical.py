@@ -41,7 +41,7 @@ def classify_noise_statistical(
     n_neighbors: Annotated[
         int,
         Param(
-            "Neighbors", "Nearest points whose mean distance is taken, the point itself not counted.", low=1, high=200
+            "Neighbors", "Nearest points whose mean distance is taken, the point itself not counted.", within="[1, 200]"
         ),
     ] = 8,
     deviations: Annotated[
@@ -50,8 +50,7 @@ def classify_noise_statistical(
             "Standard deviations",
             "How far a point's mean distance may lie over that of the whole cloud. Smaller values remove more, "
             "and sparse parts of the scene with it.",
-            low=0,
-            high=100,
+            within="[0, 100]",
         ),
     ] = 6.0,
     isolated: Annotated[

@@ -65,9 +65,7 @@ def downsample_voxels(
             "Voxel size",
             "Side of the cubes that are left with one point each. Take more than the noise of the scanner and less "
             "than the smallest object of interest.",
-            unit="m",
-            low=0.001,
-            high=1000,
+            within="[0.001, 1000] m",
         ),
     ] = 0.1,
     monitor=None,

@@ -40,9 +40,7 @@ def filter_points(
         Param(
             "Minimum height",
             "Keep points at least this high above the ground: 0.3 m removes ground and grass.",
-            unit="m",
-            low=-10_000,
-            high=10_000,
+            within="[-10_000, 10_000] m",
             empty=_NO_LIMIT,
         ),
     ] = None,
@@ -51,9 +49,7 @@ def filter_points(
         Param(
             "Maximum height",
             "Greatest height above the ground of the points kept: 2.5 m leaves everything lower than roofs.",
-            unit="m",
-            low=-10_000,
-            high=10_000,
+            within="[-10_000, 10_000] m",
             empty=_NO_LIMIT,
         ),
     ] = None,
@@ -68,8 +64,7 @@ def filter_points(
         Param(
             "Minimum value",
             "Keep points that have at least this in the dimension.",
-            low=-_LARGEST,
-            high=_LARGEST,
+            within=f"[{-_LARGEST}, {_LARGEST}]",
             empty=_NO_LIMIT,
         ),
     ] = None,
@@ -78,8 +73,7 @@ def filter_points(
         Param(
             "Maximum value",
             "Keep points that have at most this in the dimension.",
-            low=-_LARGEST,
-            high=_LARGEST,
+            within=f"[{-_LARGEST}, {_LARGEST}]",
             empty=_NO_LIMIT,
         ),
     ] = None,

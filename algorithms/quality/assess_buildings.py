@@ -99,9 +99,7 @@ def assess_buildings(
         Param(
             "Cell size",
             "Side of the cells that are compared from above.",
-            unit="m",
-            low=0.05,
-            high=100,
+            within="[0.05, 100] m",
             automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
         ),
     ] = None,

@@ -134,9 +134,7 @@ def assess_footprints(
         Param(
             "Minimum overlap",
             "Share of a building that the other layer must cover for the building to be in it.",
-            low=0,
-            high=1,
-            open_low=True,
+            within="(0, 1]",
         ),
     ] = 0.5,
     tolerance: Annotated[
@@ -144,10 +142,7 @@ def assess_footprints(
         Param(
             "Tolerance",
             "Corners farther apart are not the same corner.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
+            within="(0, 100] m",
             automatic="three times the median distance of a corner from the nearest one of the other layer, pairs by "
             "chance left out, 1 to 3 m.",
             advanced=True,

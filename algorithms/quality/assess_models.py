@@ -112,9 +112,7 @@ def assess_models(
         Param(
             "Minimum plane area",
             "Smaller planes of the points, seen from above, are not reported as missing.",
-            unit="m²",
-            low=0.1,
-            high=1000,
+            within="[0.1, 1000] m²",
         ),
     ] = 2.0,
     tolerance: Annotated[
@@ -122,9 +120,7 @@ def assess_models(
         Param(
             "Tolerance",
             "Distance at which a point lies on a face or plane.",
-            unit="m",
-            low=0.01,
-            high=5,
+            within="[0.01, 5] m",
             automatic=TOLERANCE_TEXT,
             advanced=True,
         ),

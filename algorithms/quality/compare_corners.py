@@ -99,9 +99,7 @@ def compare_corners(
         Param(
             "Minimum overlap",
             "Share of a building's area that the other map must cover for the building to be the same.",
-            low=0,
-            high=1,
-            open_low=True,
+            within="(0, 1]",
         ),
     ] = 0.5,
     tolerance: Annotated[
@@ -109,10 +107,7 @@ def compare_corners(
         Param(
             "Tolerance",
             "Corners farther apart, after the shift between the maps is removed, are not the same corner.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
+            within="(0, 100] m",
             automatic="three times the median distance of a corner from the nearest one of the other map, pairs by "
             "chance left out, 1 to 3 m.",
         ),

@@ -112,9 +112,7 @@ def compare_surveys(
         Param(
             "Minimum overlap",
             "Share of the smaller building that both surveys must have for two buildings to be the same.",
-            low=0,
-            high=1,
-            open_low=True,
+            within="(0, 1]",
         ),
     ] = 0.5,
     outline_tolerance: Annotated[
@@ -122,9 +120,7 @@ def compare_surveys(
         Param(
             "Outline tolerance",
             "An outline has changed if it is farther than this from the earlier one somewhere.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
             automatic=f"{RULES.deviations:g} times the median distance between the outlines of both surveys, "
             f"{RULES.least_outline:g} to {RULES.most_outline:g} m.",
         ),
@@ -134,9 +130,7 @@ def compare_surveys(
         Param(
             "Height tolerance",
             "A height has changed if it differs by more.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
             automatic=f"{RULES.deviations:g} times the median difference between the heights of both surveys, "
             f"{RULES.least_height:g} to {RULES.most_height:g} m.",
         ),

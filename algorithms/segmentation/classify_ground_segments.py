@@ -42,8 +42,7 @@ def classify_ground_segments(
     max_width: BridgeWidth = 40.0,
     min_bridge_area: BridgeArea = 20.0,
     min_area: Annotated[
-        float,
-        Param("Minimum ground area", "Area of the smallest segment of the bare earth.", unit="m²", low=1, high=100_000),
+        float, Param("Minimum ground area", "Area of the smallest segment of the bare earth.", within="[1, 100_000] m²")
     ] = 10.0,
     max_object_area: Annotated[
         float,
@@ -51,9 +50,7 @@ def classify_ground_segments(
             "Maximum object area",
             "Area of the largest object: larger segments are bare earth, also where they are raised along their "
             "border, as islands and quarters between canals are.",
-            unit="m²",
-            low=1,
-            high=10_000_000,
+            within="[1, 10_000_000] m²",
         ),
     ] = 50_000.0,
     noise: SurfaceNoise = None,

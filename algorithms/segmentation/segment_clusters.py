@@ -35,10 +35,7 @@ def segment_clusters(
         Param(
             "Radius",
             "Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
+            within="(0, 100] m",
             automatic=f"{_RADIUS_SPACINGS:g} times the point spacing.",
         ),
     ] = None,
@@ -48,8 +45,7 @@ def segment_clusters(
             "Minimum points",
             "Points within the radius, the point itself among them, that make a point the core of a cluster; "
             "larger leaves out thin objects.",
-            low=1,
-            high=1_000_000,
+            within="[1, 1_000_000]",
             automatic="a quarter of the points of a level surface within the radius, as at the corner of a roof.",
         ),
     ] = None,

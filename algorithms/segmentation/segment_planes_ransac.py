@@ -47,9 +47,7 @@ def segment_planes_ransac(
         Param(
             "Voxel size",
             "Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.",
-            unit="m",
-            low=0.1,
-            high=20,
+            within="[0.1, 20] m",
             automatic=f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
             f"tolerances, {_SMALLEST_VOXEL:g} to {_LARGEST_VOXEL:g} m.",
         ),
@@ -59,32 +57,27 @@ def segment_planes_ransac(
         Param(
             "Tolerance",
             "Distance within which a point lies on a plane.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
+            within="(0, 10] m",
             automatic=f"{ON_PLANE:.2g} times the roughness: {ROUGHNESS}.",
         ),
     ] = None,
     min_slope: Annotated[
-        float,
-        Param("Minimum slope", "Slope of the flattest plane that is kept; 70° keeps walls.", unit="°", low=0, high=90),
+        float, Param("Minimum slope", "Slope of the flattest plane that is kept; 70° keeps walls.", within="[0, 90]°")
     ] = 0.0,
     max_slope: Annotated[
-        float,
-        Param("Maximum slope", "Slope of the steepest plane that is kept; 90° keeps walls.", unit="°", low=0, high=90),
+        float, Param("Maximum slope", "Slope of the steepest plane that is kept; 90° keeps walls.", within="[0, 90]°")
     ] = 60.0,
     min_area: Annotated[
-        float, Param("Minimum plane area", "Area of the smallest plane, measured on it.", unit="m²", low=0, high=10_000)
+        float, Param("Minimum plane area", "Area of the smallest plane, measured on it.", within="[0, 10_000] m²")
     ] = 2.0,
     min_height: MinClusterHeight = 0.0,
     max_planes: Annotated[
-        int, Param("Planes per voxel", "Planes that are looked for in one voxel.", low=1, high=20, advanced=True)
+        int, Param("Planes per voxel", "Planes that are looked for in one voxel.", within="[1, 20]", advanced=True)
     ] = 4,
     trials: Annotated[
         int,
         Param(
-            "Trials", "Planes through three points that are tried for each plane.", low=1, high=10_000, advanced=True
+            "Trials", "Planes through three points that are tried for each plane.", within="[1, 10_000]", advanced=True
         ),
     ] = 100,
     normals: Annotated[

@@ -46,10 +46,7 @@ _Tolerance = Annotated[
     Param(
         "Tolerance",
         "Distance from the straight line through a piece, and of its ends from the plane of a region.",
-        unit="m",
-        low=0,
-        high=100,
-        open_low=True,
+        within="(0, 100] m",
         automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
         "spacings.",
     ),
@@ -88,10 +85,7 @@ def segment_recorded_lines(
         Param(
             "Line distance",
             "Distance of neighboring points on adjacent scan lines at most.",
-            unit="m",
-            low=0,
-            high=1000,
-            open_low=True,
+            within="(0, 1000] m",
             automatic=f"{_LINES:g} times the mean distance of scan lines.",
         ),
     ] = None,
@@ -100,10 +94,7 @@ def segment_recorded_lines(
         Param(
             "Widest gap",
             "Scan lines end where two points in a row are farther apart.",
-            unit="m",
-            low=0,
-            high=1000,
-            open_low=True,
+            within="(0, 1000] m",
             automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINE_GAPS:g} distances of scan "
             "lines.",
         ),
@@ -111,14 +102,16 @@ def segment_recorded_lines(
     min_overlap: Annotated[
         float,
         Param(
-            "Minimum overlap", "Share of the shorter of two pieces of a seed that lies beside the other.", low=0, high=1
+            "Minimum overlap",
+            "Share of the shorter of two pieces of a seed that lies beside the other.",
+            within="[0, 1]",
         ),
     ] = 0.5,
     min_piece: Annotated[
-        int, Param("Minimum points of a piece", "Straight pieces with fewer points join nothing.", low=3, high=10_000)
+        int, Param("Minimum points of a piece", "Straight pieces with fewer points join nothing.", within="[3, 10_000]")
     ] = 5,
     min_points: Annotated[
-        int, Param("Minimum points", "Segments with fewer points get no id.", low=1, high=10_000_000)
+        int, Param("Minimum points", "Segments with fewer points get no id.", within="[1, 10_000_000]")
     ] = 30,
     noise: SurfaceNoise = None,
     density: PointDensity = None,

@@ -67,18 +67,14 @@ def segment_roofs(
         Param(
             "Minimum height",
             "Mean height above ground of the lowest roof and of other clusters.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
             automatic=f"{LASER.lowest_roof:g} m; {IMAGES.lowest_roof:g} m in clouds of matched images, where edges "
             "are rounded.",
         ),
     ] = None,
     min_area: Annotated[
         float,
-        Param(
-            "Minimum roof area", "Area of the smallest roof surface, seen from above.", unit="m²", low=0.1, high=10_000
-        ),
+        Param("Minimum roof area", "Area of the smallest roof surface, seen from above.", within="[0.1, 10_000] m²"),
     ] = 2.0,
     max_slope: Annotated[
         float,
@@ -86,9 +82,7 @@ def segment_roofs(
             "Maximum slope",
             "Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the "
             "trees that they touch; outlines then get less even.",
-            unit="°",
-            low=0,
-            high=90,
+            within="[0, 90]°",
         ),
     ] = 75.0,
     noise: SurfaceNoise = None,

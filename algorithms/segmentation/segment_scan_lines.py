@@ -41,17 +41,14 @@ def segment_scan_lines(
     classification,
     *,
     directions: Annotated[
-        int, Param("Directions", "Directions of artificial scan lines, evenly spread.", low=2, high=16)
+        int, Param("Directions", "Directions of artificial scan lines, evenly spread.", within="[2, 16]")
     ] = 4,
     line_width: Annotated[
         Optional[float],
         Param(
             "Line width",
             "Width of an artificial scan line.",
-            unit="m",
-            low=0,
-            high=1000,
-            open_low=True,
+            within="(0, 1000] m",
             automatic=f"{_WIDTH_SPACINGS:g} times the point spacing.",
         ),
     ] = None,
@@ -60,10 +57,7 @@ def segment_scan_lines(
         Param(
             "Distance",
             "Points of a line that are closer in space may belong together; larger passes over wider obstacles.",
-            unit="m",
-            low=0,
-            high=1000,
-            open_low=True,
+            within="(0, 1000] m",
             automatic=f"{_DISTANCE_SPACINGS:g} times the point spacing.",
         ),
     ] = None,
@@ -72,9 +66,7 @@ def segment_scan_lines(
         Param(
             "Maximum slope",
             "Points of a line belong together if the line between them is no steeper; 90 leaves the criterion out.",
-            unit="°",
-            low=0,
-            high=90,
+            within="[0, 90]°",
         ),
     ] = 30.0,
     max_step: Annotated[
@@ -82,9 +74,7 @@ def segment_scan_lines(
         Param(
             "Height step",
             "Points of a line also belong together if their heights differ by no more than this.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
             automatic=f"{_NOISE_STEP:g} standard deviations of the surface noise.",
         ),
     ] = None,
@@ -95,16 +85,15 @@ def segment_scan_lines(
             "A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without "
             "points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every "
             "obstacle.",
-            unit="m",
-            low=0,
-            high=1000,
+            within="[0, 1000] m",
         ),
     ] = 0.0,
     min_piece: Annotated[
-        int, Param("Minimum points of a piece", "Pieces of a line with fewer points join nothing.", low=2, high=10_000)
+        int,
+        Param("Minimum points of a piece", "Pieces of a line with fewer points join nothing.", within="[2, 10_000]"),
     ] = 5,
     min_points: Annotated[
-        int, Param("Minimum points", "Segments with fewer points get no id.", low=1, high=10_000_000)
+        int, Param("Minimum points", "Segments with fewer points get no id.", within="[1, 10_000_000]")
     ] = 20,
     noise: SurfaceNoise = None,
     density: PointDensity = None,

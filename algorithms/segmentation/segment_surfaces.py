@@ -46,10 +46,7 @@ _Noise = Annotated[
     Param(
         "Surface noise",
         "Standard deviation of the points across a smooth surface.",
-        unit="m",
-        low=0,
-        high=10,
-        open_low=True,
+        within="(0, 10] m",
         automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
         "where that is less.",
         advanced=True,
@@ -62,10 +59,7 @@ _Tolerance = Annotated[
         "Tolerance",
         "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
         "surfaces.",
-        unit="m",
-        low=0,
-        high=100,
-        open_low=True,
+        within="(0, 100] m",
         automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
         "spacings.",
     ),
@@ -76,10 +70,7 @@ _Radius = Annotated[
     Param(
         "Radius",
         "Reach of the neighborhood in which planes are fitted, and of growth.",
-        unit="m",
-        low=0,
-        high=1000,
-        open_low=True,
+        within="(0, 1000] m",
         automatic=f"{_RADIUS_SPACINGS:g} times the point spacing on surfaces.",
     ),
 ]
@@ -132,7 +123,8 @@ def segment_surfaces(
     ] = "radius",
     radius: _Radius = None,
     neighbors: Annotated[
-        int, Param("Neighbors", "Nearest points within the radius that are used, the point included.", low=6, high=200)
+        int,
+        Param("Neighbors", "Nearest points within the radius that are used, the point included.", within="[6, 200]"),
     ] = _NEIGHBORS,
     tolerance: _Tolerance = None,
     max_angle: Annotated[
@@ -140,14 +132,11 @@ def segment_surfaces(
         Param(
             "Maximum angle",
             "Largest angle between the normals of a point and of the surface, with smooth normals only.",
-            unit="°",
-            low=0,
-            high=90,
-            open_low=True,
+            within="(0, 90]°",
         ),
     ] = 15.0,
     min_points: Annotated[
-        int, Param("Minimum points", "Surfaces with fewer points get no id.", low=1, high=10_000_000)
+        int, Param("Minimum points", "Surfaces with fewer points get no id.", within="[1, 10_000_000]")
     ] = 20,
     noise: _Noise = None,
     density: PointDensity = None,

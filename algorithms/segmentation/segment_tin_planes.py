@@ -43,10 +43,7 @@ def segment_tin_planes(
         Param(
             "Tolerance",
             "Two surfaces merge if neither lies farther than this from their common plane (root mean square).",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
+            within="(0, 100] m",
             automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} "
             "point spacings.",
         ),
@@ -56,16 +53,12 @@ def segment_tin_planes(
         Param(
             "Maximum edge",
             "Triangles with a longer edge belong to no surface: they lie across walls and gaps.",
-            unit="m",
-            low=0,
-            high=10_000,
-            open_low=True,
+            within="(0, 10_000] m",
             automatic=f"{_EDGE_SPACINGS:g} point spacings.",
         ),
     ] = None,
     min_area: Annotated[
-        float,
-        Param("Minimum area", "Area of the smallest surface, along the surface.", unit="m²", low=0, high=1_000_000),
+        float, Param("Minimum area", "Area of the smallest surface, along the surface.", within="[0, 1_000_000] m²")
     ] = 2.0,
     noise: SurfaceNoise = None,
     density: PointDensity = None,

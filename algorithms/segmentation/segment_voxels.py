@@ -34,9 +34,7 @@ _VoxelSize = Annotated[
     Param(
         "Voxel size",
         "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
-        unit="m",
-        low=0.001,
-        high=1000,
+        within="[0.001, 1000] m",
         automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces.",
     ),
 ]
@@ -107,19 +105,18 @@ def segment_voxels(
         ),
     ] = "26",
     steps: Annotated[
-        int, Param("Steps", "How many times the operation erodes or dilates.", low=1, high=100, advanced=True)
+        int, Param("Steps", "How many times the operation erodes or dilates.", within="[1, 100]", advanced=True)
     ] = 1,
     min_count: Annotated[
         int,
         Param(
             "Minimum points of a voxel",
             "Voxels with fewer points, after the filter, count as empty: more suppress scattered points.",
-            low=1,
-            high=1_000_000,
+            within="[1, 1_000_000]",
         ),
     ] = 1,
     min_points: Annotated[
-        int, Param("Minimum points", "Segments with fewer points get no id.", low=1, high=1_000_000)
+        int, Param("Minimum points", "Segments with fewer points get no id.", within="[1, 1_000_000]")
     ] = 1,
     thin: Annotated[
         bool,

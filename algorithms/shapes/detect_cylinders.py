@@ -49,12 +49,11 @@ def detect_cylinders(
             "Minimum share seen",
             "Least share of the circumference that must have points, 0 to 1. A cylinder of which less is seen has an "
             "uncertain radius.",
-            low=0.05,
-            high=1,
+            within="[0.05, 1]",
         ),
     ] = 0.2,
     min_points: Annotated[
-        int, Param("Minimum points", "Points of the smallest cylinder.", low=LEAST_POINTS, high=1_000_000)
+        int, Param("Minimum points", "Points of the smallest cylinder.", within=f"[{LEAST_POINTS}, 1_000_000]")
     ] = 40,
     max_gap: Annotated[
         float,
@@ -62,9 +61,7 @@ def detect_cylinders(
             "Maximum gap",
             "Longest part of an axis without points, behind a flange or in the shadow of another object, across which "
             "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always parts them.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
         ),
     ] = 1.0,
     search_in: SearchIn = WHOLE_CLOUD,

@@ -54,12 +54,11 @@ def detect_spheres(
             "Minimum share seen",
             "Least share of the sphere that must have points, 0 to 1. A sphere of which less is seen has an uncertain "
             "radius.",
-            low=0.05,
-            high=1,
+            within="[0.05, 1]",
         ),
     ] = 0.15,
     min_points: Annotated[
-        int, Param("Minimum points", "Points of the smallest sphere.", low=LEAST_POINTS, high=1_000_000)
+        int, Param("Minimum points", "Points of the smallest sphere.", within=f"[{LEAST_POINTS}, 1_000_000]")
     ] = 40,
     search_in: SearchIn = WHOLE_CLOUD,
     n_neighbors: NormalPoints = None,

@@ -47,9 +47,7 @@ def reconstruct_pipes(
         Param(
             "Radius without attribute",
             "Radius of lines and points that have no attribute 'radius', such as wires.",
-            unit="m",
-            low=0.001,
-            high=100,
+            within="[0.001, 100] m",
         ),
     ] = 0.05,
     monitor=None,

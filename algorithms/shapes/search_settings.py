@@ -33,9 +33,7 @@ MinRadius = Annotated[
     Param(
         "Minimum radius",
         "Least radius that is looked for.",
-        unit="m",
-        low=0.001,
-        high=1000,
+        within="[0.001, 1000] m",
         automatic=f"the larger of {_RADIUS_SPACINGS:g} times the point spacing and {_RADIUS_DEVIATIONS:g} times the "
         "roughness of surfaces.",
     ),
@@ -46,9 +44,7 @@ MaxRadius = Annotated[
     Param(
         "Maximum radius",
         "Largest radius that is looked for.",
-        unit="m",
-        low=0.001,
-        high=1000,
+        within="[0.001, 1000] m",
         automatic=f"{_LARGEST_RADIUS:g} m, but no more than half of the longest side of the cloud, and at least twice "
         "the minimum.",
     ),
@@ -59,10 +55,7 @@ ShapeTolerance = Annotated[
     Param(
         "Tolerance",
         "Distance within which a point lies on the surface.",
-        unit="m",
-        low=0,
-        high=10,
-        open_low=True,
+        within="(0, 10] m",
         automatic="3 times the roughness of surfaces, which is the root of the sum of the squares of the noise of "
         f"the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
     ),

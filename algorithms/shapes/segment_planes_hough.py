@@ -49,10 +49,7 @@ _Tolerance = Annotated[
     Param(
         "Tolerance",
         "Distance within which a point lies on a plane.",
-        unit="m",
-        low=0,
-        high=10,
-        open_low=True,
+        within="(0, 10] m",
         automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
         f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
     ),
@@ -64,10 +61,7 @@ _DistanceBin = Annotated[
         "Distance bin",
         "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
         "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
-        unit="m",
-        low=0,
-        high=10,
-        open_low=True,
+        within="(0, 10] m",
         automatic="the tolerance: two bins side by side then hold a plane with its noise.",
     ),
 ]
@@ -78,10 +72,7 @@ _SlopeBin = Annotated[
         "Slope bin",
         "Width of a bin in the slopes of a plane. Smaller bins separate directions, need more memory and time, "
         "and scatter a plane over several.",
-        unit="°",
-        low=0,
-        high=30,
-        open_low=True,
+        within="(0, 30]°",
         automatic="a plane off by half a bin is off by one distance bin at the side of the window; at most 11°.",
     ),
 ]
@@ -92,10 +83,7 @@ _MaxGap = Annotated[
         "Maximum gap",
         "Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part "
         "coplanar surfaces.",
-        unit="m",
-        low=0,
-        high=1000,
-        open_low=True,
+        within="(0, 1000] m",
         automatic="3 times the point spacing on surfaces.",
     ),
 ]
@@ -133,10 +121,7 @@ def segment_planes_hough(
         Param(
             "Window size",
             "Side of the cubes in which planes are looked for; planes that continue in the next cube are joined.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
+            within="(0, 100] m",
             automatic="wide enough for 40 points of a surface and for 20 tolerances.",
         ),
     ] = None,
@@ -146,9 +131,7 @@ def segment_planes_hough(
         Param(
             "Minimum plane area",
             "Area of the smallest surface, measured on it.",
-            unit="m²",
-            low=0,
-            high=10_000,
+            within="[0, 10_000] m²",
             automatic="half the side of a window, squared.",
         ),
     ] = None,

@@ -67,9 +67,7 @@ def segment_tree(
             "Voxel size",
             "Side of a voxel: about the thickness of the thinnest branches. Smaller voxels show thinner branches and "
             "need denser points.",
-            unit="m",
-            low=0.005,
-            high=10,
+            within="[0.005, 10] m",
             automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces, at least {_LEAST_VOXEL:g} m.",
         ),
     ] = None,
@@ -78,8 +76,7 @@ def segment_tree(
         Param(
             "Minimum points of a voxel",
             "Voxels with fewer points are left out: wood has several points to a voxel, leaves have single ones.",
-            low=1,
-            high=1000,
+            within="[1, 1000]",
         ),
     ] = 2,
     max_gap: Annotated[
@@ -87,20 +84,14 @@ def segment_tree(
         Param(
             "Maximum gap",
             "Widest gap in a stem or branch that is crossed.",
-            unit="m",
-            low=0,
-            high=10,
+            within="[0, 10] m",
             automatic=f"{_GAP_VOXELS:g} voxels.",
         ),
     ] = None,
     min_length: Annotated[
         float,
         Param(
-            "Minimum length",
-            "Length of the shortest branch; points of shorter ones are leaves.",
-            unit="m",
-            low=0,
-            high=100,
+            "Minimum length", "Length of the shortest branch; points of shorter ones are leaves.", within="[0, 100] m"
         ),
     ] = 0.3,
     sampling: Optional[CloudSampling] = None,

@@ -34,8 +34,7 @@ NormalPoints = Annotated[
         "Points for normals",
         "Points of the neighborhood that gives a point its normal, itself among them. More are less noisy and round "
         "off edges and thin pipes.",
-        low=4,
-        high=1000,
+        within="[4, 1000]",
         automatic=f"as many as hold the error of normals from the noise to 3°, {_LEAST_POINTS} to {_MOST_POINTS}.",
         advanced=True,
     ),

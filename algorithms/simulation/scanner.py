@@ -36,15 +36,12 @@ PulseDensity = Annotated[
     Param(
         "Pulse density",
         "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
-        unit="pulses/m²",
-        low=0.5,
-        high=100,
+        within="[0.5, 100] pulses/m²",
     ),
 ]
 
 RangeNoise = Annotated[
-    float,
-    Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),
+    float, Param("Range noise", "Standard deviation of the measured distances.", within="[0, 0.2] m", advanced=True)
 ]
 
 # Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.

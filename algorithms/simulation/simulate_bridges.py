@@ -43,9 +43,7 @@ def simulate_bridges(
             choices=(_ALL, *KINDS),
         ),
     ] = _ALL,
-    angle: Annotated[
-        float, Param("Angle", "Angle of the decks to the shortest way across.", unit="°", low=0, high=50)
-    ] = 0.0,
+    angle: Annotated[float, Param("Angle", "Angle of the decks to the shortest way across.", within="[0, 50]°")] = 0.0,
     density: PulseDensity = 8.0,
     cars: Annotated[bool, Param("Cars", "Cars on the decks.")] = True,
     trees: Annotated[bool, Param("Trees", "Trees on the land.")] = True,

@@ -46,44 +46,41 @@ _FIELDS = (
 )
 def simulate_drone_site(
     *,
-    size: Annotated[
-        float, Param("Size", "Side of the site, a square from (0, 0).", unit="m", low=40, high=400)
-    ] = 150.0,
+    size: Annotated[float, Param("Size", "Side of the site, a square from (0, 0).", within="[40, 400] m")] = 150.0,
     density: Annotated[
-        float, Param("Point density", "Points on open ground, seen from above.", unit="points/m²", low=5, high=400)
+        float, Param("Point density", "Points on open ground, seen from above.", within="[5, 400] points/m²")
     ] = 40.0,
-    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", unit="°", low=0, high=20)] = 4.0,
+    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", within="[0, 20]°")] = 4.0,
     terrace_height: Annotated[
-        float, Param("Height of terraces", "Rise of steps in the slope.", unit="m", low=0, high=3)
+        float, Param("Height of terraces", "Rise of steps in the slope.", within="[0, 3] m")
     ] = 1.5,
     buildings: Annotated[
-        float, Param("Buildings", "Houses on a hectare of streets and plots.", unit="per ha", low=0, high=MAX_BUILDINGS)
+        float, Param("Buildings", "Houses on a hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha")
     ] = 16.0,
-    trees: Annotated[float, Param("Trees", "Trees in gardens.", unit="per ha", low=0, high=200)] = 30.0,
+    trees: Annotated[float, Param("Trees", "Trees in gardens.", within="[0, 200] per ha")] = 30.0,
     halls: Annotated[
-        int, Param("Flat halls", "Flat roofs with parapets, 10 to 100 m long, where there is room.", low=0, high=20)
+        int, Param("Flat halls", "Flat roofs with parapets, 10 to 100 m long, where there is room.", within="[0, 20]")
     ] = 2,
     unevenness: Annotated[
         float,
         Param(
             "Unevenness of the ground",
             "Standard deviation of the ground from the slope: gardens, kerbs, ruts.",
-            unit="m",
-            low=0,
-            high=0.5,
+            within="[0, 0.5] m",
         ),
     ] = 0.12,
     rounding: Annotated[
-        float, Param("Rounding of edges", "Distance over which eaves and ridges are rounded.", unit="m", low=0, high=2)
+        float, Param("Rounding of edges", "Distance over which eaves and ridges are rounded.", within="[0, 2] m")
     ] = 0.5,
     waves: Annotated[
-        float, Param("Waves", "Standard deviation of errors that neighboring points share.", unit="m", low=0, high=0.3)
+        float, Param("Waves", "Standard deviation of errors that neighboring points share.", within="[0, 0.3] m")
     ] = 0.03,
     walls: Annotated[
-        float, Param("Share of walls", "Density of points on walls, as a share of that on open ground.", low=0, high=1)
+        float,
+        Param("Share of walls", "Density of points on walls, as a share of that on open ground.", within="[0, 1]"),
     ] = 0.6,
     noise: Annotated[
-        float, Param("Noise", "Standard deviation of each point in every direction.", unit="m", low=0, high=0.2)
+        float, Param("Noise", "Standard deviation of each point in every direction.", within="[0, 0.2] m")
     ] = 0.01,
     seed: Seed = 1,
     monitor=None,

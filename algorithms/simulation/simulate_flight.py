@@ -20,7 +20,7 @@ from .street_site import build_site
 def simulate_flight(
     *,
     height: Annotated[
-        float, Param("Flight height", "How high over the street the drone climbs.", unit="m", low=2, high=25)
+        float, Param("Flight height", "How high over the street the drone climbs.", within="[2, 25] m")
     ] = 8.0,
     duration: Annotated[
         float,
@@ -28,9 +28,7 @@ def simulate_flight(
             "Duration",
             "From take-off to landing: a fifth of it each for the climb and the landing, the rest for one turn. "
             "Longer flights have more points.",
-            unit="s",
-            low=5,
-            high=600,
+            within="[5, 600] s",
         ),
     ] = 190.0,
     scanners: Annotated[
@@ -41,12 +39,12 @@ def simulate_flight(
             choices=("both", *SCANNERS),
         ),
     ] = "both",
-    trees: Annotated[int, Param("Trees", "Trees along the street.", low=0, high=22)] = 4,
-    slope: Annotated[float, Param("Slope", "Slope of the ground, which is a plane.", unit="°", low=0, high=10)] = 1.5,
+    trees: Annotated[int, Param("Trees", "Trees along the street.", within="[0, 22]")] = 4,
+    slope: Annotated[float, Param("Slope", "Slope of the ground, which is a plane.", within="[0, 10]°")] = 1.5,
     line_rate: LineRate = 40.0,
     angular_step: AngularStep = 0.25,
     max_range: Annotated[
-        float, Param("Maximum range", "How far the scanners see.", unit="m", low=1, high=40, advanced=True)
+        float, Param("Maximum range", "How far the scanners see.", within="[1, 40] m", advanced=True)
     ] = 30.0,
     range_noise: RangeNoise = 0.03,
     seed: Seed = 1,

@@ -63,18 +63,17 @@ _CENTER_FIELDS = tuple(field for field in _AXIS_FIELDS if field.name not in {"ki
 def simulate_plant(
     *,
     pipes: Annotated[
-        int, Param("Pipes", "Straight pipes with diameters of 5 to 60 cm, on racks.", low=1, high=2000)
+        int, Param("Pipes", "Straight pipes with diameters of 5 to 60 cm, on racks.", within="[1, 2000]")
     ] = 200,
     tanks: Annotated[
         int,
         Param(
             "Tanks",
             "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.",
-            low=0,
-            high=20,
+            within="[0, 20]",
         ),
     ] = 3,
-    spheres: Annotated[int, Param("Spheres", "Spherical vessels with diameters of 1 to 3 m.", low=0, high=50)] = 4,
+    spheres: Annotated[int, Param("Spheres", "Spherical vessels with diameters of 1 to 3 m.", within="[0, 50]")] = 4,
     clutter: Annotated[
         bool, Param("Beams, gratings and clutter", "What carries the pipes or lies near them and is no pipe.")
     ] = True,
@@ -83,13 +82,11 @@ def simulate_plant(
         Param(
             "Point density",
             "Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth.",
-            unit="points/m²",
-            low=100,
-            high=100_000,
+            within="[100, 100_000] points/m²",
         ),
     ] = 4000.0,
     noise: Annotated[
-        float, Param("Noise", "Standard deviation of the distance of a point.", unit="m", low=0, high=0.1)
+        float, Param("Noise", "Standard deviation of the distance of a point.", within="[0, 0.1] m")
     ] = 0.002,
     seed: Seed = 1,
     monitor=None,

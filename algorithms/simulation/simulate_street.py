@@ -54,17 +54,13 @@ _Unevenness = Annotated[
         "Unevenness",
         "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
         "plane.",
-        unit="m",
-        low=0,
-        high=1,
+        within="[0, 1] m",
     ),
 ]
 
 _Density = Annotated[
     float,
-    Param(
-        "Pulse density", "Laser pulses of the scan from the air.", unit="pulses/m²", low=0.5, high=100, advanced=True
-    ),
+    Param("Pulse density", "Laser pulses of the scan from the air.", within="[0.5, 100] pulses/m²", advanced=True),
 ]
 
 _Stoops = Annotated[
@@ -72,9 +68,7 @@ _Stoops = Annotated[
     Param(
         "Height of stoops",
         "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
-        unit="m",
-        low=0,
-        high=4,
+        within="[0, 4] m",
     ),
 ]
 
@@ -93,11 +87,9 @@ _Stoops = Annotated[
 )
 def simulate_street(
     *,
-    length: Annotated[float, Param("Length", "Length of the street.", unit="m", low=10, high=2000)] = 60.0,
-    width: Annotated[
-        float, Param("Width", "Distance between the fronts of both sides.", unit="m", low=12, high=60)
-    ] = 16.0,
-    slope: Annotated[float, Param("Slope", "Slope along the street.", unit="°", low=0, high=10)] = 1.0,
+    length: Annotated[float, Param("Length", "Length of the street.", within="[10, 2000] m")] = 60.0,
+    width: Annotated[float, Param("Width", "Distance between the fronts of both sides.", within="[12, 60] m")] = 16.0,
+    slope: Annotated[float, Param("Slope", "Slope along the street.", within="[0, 10]°")] = 1.0,
     clutter: Annotated[
         bool, Param("Clutter", "Put parked cars, trees, poles and people before the fronts, which hide parts of them.")
     ] = True,
@@ -116,14 +108,13 @@ def simulate_street(
     ] = "vehicle",
     density: _Density = 12.0,
     glass: Annotated[
-        float,
-        Param("Glass", "Share of the pulses on window panes that pass them and are lost.", unit="%", low=0, high=100),
+        float, Param("Glass", "Share of the pulses on window panes that pass them and are lost.", within="[0, 100] %")
     ] = 70.0,
-    speed: Annotated[float, Param("Speed", "Speed of the vehicle.", unit="m/s", low=0.5, high=30, advanced=True)] = 5.0,
+    speed: Annotated[float, Param("Speed", "Speed of the vehicle.", within="[0.5, 30] m/s", advanced=True)] = 5.0,
     line_rate: LineRate = 100.0,
     angular_step: AngularStep = 0.25,
     max_range: Annotated[
-        float, Param("Maximum range", "How far the scanners see.", unit="m", low=5, high=200, advanced=True)
+        float, Param("Maximum range", "How far the scanners see.", within="[5, 200] m", advanced=True)
     ] = 40.0,
     range_noise: RangeNoise = 0.01,
     seed: Seed = 1,

@@ -15,9 +15,7 @@ _MaxScanAngle = Annotated[
         "Maximum scan angle",
         "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
         "behind them.",
-        unit="°",
-        low=5,
-        high=30,
+        within="[5, 30]°",
         advanced=True,
     ),
 ]
@@ -28,9 +26,7 @@ _Buildings = Annotated[
         "Buildings",
         "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
         "The river's valley and the forest have none.",
-        unit="per ha",
-        low=0,
-        high=MAX_BUILDINGS,
+        within=f"[0, {MAX_BUILDINGS}] per ha",
     ),
 ]
 
@@ -39,9 +35,7 @@ _NoisePoints = Annotated[
     Param(
         "Noise points",
         "Points far above (birds) and below the ground (multipath), half of each.",
-        unit="per ha",
-        low=0,
-        high=1000,
+        within="[0, 1000] per ha",
         advanced=True,
     ),
 ]
@@ -55,9 +49,7 @@ _NoisePoints = Annotated[
 )
 def simulate_town(
     *,
-    size: Annotated[
-        float, Param("Size", "Side of the town, a square from (0, 0).", unit="m", low=50, high=2000)
-    ] = 200.0,
+    size: Annotated[float, Param("Size", "Side of the town, a square from (0, 0).", within="[50, 2000] m")] = 200.0,
     density: PulseDensity = 8.0,
     buildings: _Buildings = 20.0,
     trees: Annotated[
@@ -65,16 +57,14 @@ def simulate_town(
         Param(
             "Trees",
             "Trees outside the forest, single and in clumps, where there is room for them.",
-            unit="per ha",
-            low=0,
-            high=200,
+            within="[0, 200] per ha",
         ),
     ] = 20.0,
-    forest: Annotated[float, Param("Share of forest", "Share of the town that is forest.", low=0, high=1)] = 0.1,
-    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", unit="°", low=0, high=40)] = 3.0,
-    relief: Annotated[float, Param("Relief", "Height from hollows to hills, about.", unit="m", low=0, high=10)] = 2.0,
+    forest: Annotated[float, Param("Share of forest", "Share of the town that is forest.", within="[0, 1]")] = 0.1,
+    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", within="[0, 40]°")] = 3.0,
+    relief: Annotated[float, Param("Relief", "Height from hollows to hills, about.", within="[0, 10] m")] = 2.0,
     terrace_height: Annotated[
-        float, Param("Terrace height", "Height of the banks across the slope, one every 45 m.", unit="m", low=0, high=5)
+        float, Param("Terrace height", "Height of the banks across the slope, one every 45 m.", within="[0, 5] m")
     ] = 1.5,
     river: Annotated[bool, Param("River", "A river in a channel, with a bridge for every street.")] = True,
     clutter: Annotated[
@@ -95,8 +85,7 @@ def simulate_town(
         Param(
             "Strip overlap",
             "Share of a strip that the next one scans too. Without any, roofs and crowns at the seam are cut.",
-            low=0,
-            high=0.8,
+            within="[0, 0.8]",
             advanced=True,
         ),
     ] = 0.3,

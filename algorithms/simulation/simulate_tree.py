@@ -79,19 +79,17 @@ class _Limb:
 )
 def simulate_tree(
     *,
-    height: Annotated[float, Param("Height", "Height of the tree.", unit="m", low=3, high=60)] = 14.0,
+    height: Annotated[float, Param("Height", "Height of the tree.", within="[3, 60] m")] = 14.0,
     dbh: Annotated[
-        float, Param("Stem diameter", "Diameter of the stem at breast height, 1.3 m.", unit="m", low=0.05, high=2)
+        float, Param("Stem diameter", "Diameter of the stem at breast height, 1.3 m.", within="[0.05, 2] m")
     ] = 0.3,
-    n_branches: Annotated[int, Param("Branches", "Branches of the stem.", low=0, high=100)] = 14,
+    n_branches: Annotated[int, Param("Branches", "Branches of the stem.", within="[0, 100]")] = 14,
     leaves: Annotated[
-        float, Param("Leaves", "Points of leaves around the ends of branches, per point of wood.", low=0, high=5)
+        float, Param("Leaves", "Points of leaves around the ends of branches, per point of wood.", within="[0, 5]")
     ] = 0.2,
-    density: Annotated[
-        float, Param("Point density", "Points on wood.", unit="points/m²", low=100, high=100_000)
-    ] = 5000.0,
+    density: Annotated[float, Param("Point density", "Points on wood.", within="[100, 100_000] points/m²")] = 5000.0,
     noise: Annotated[
-        float, Param("Noise", "Standard deviation of a point across the bark.", unit="m", low=0, high=0.05)
+        float, Param("Noise", "Standard deviation of a point across the bark.", within="[0, 0.05] m")
     ] = 0.003,
     seed: Seed = 1,
     monitor=None,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Optional
 
 import numpy as np
@@ -15,18 +17,46 @@ class Param:
 
     label: str  #: What the dialog calls it, sentence case, without the unit
     help: str  #: One or two sentences: what it does and when to change it
-    unit: str = ""  #: Unit of the number ("m", "°", "points/m²", ""), appended to labels
-    #: low, high: Bounds, inclusive unless ``open_low`` / ``open_high``
-    low: Optional[float] = None
-    high: Optional[float] = None
-    open_low: bool = False
-    open_high: bool = False
+    #: Interval and unit of a number: "(0, 100] m" is above 0 and at most 100 m, "[3, inf)" at least 3
+    within: str = ""
     choices: tuple[str, ...] = ()  #: Allowed words of a ``str``, or the elements of a ``tuple``
     #: For tunables whose value the stage finds itself when it is None: which, as the end of the sentence "Automatic: …"
     automatic: str = ""
     #: For tunables that have no effect when they are None: what happens then, as the end of the sentence "Empty: …"
     empty: str = ""
     advanced: bool = False  #: Folded away in the dialog
+
+    @cached_property
+    def _interval(self) -> re.Match:
+        found = _INTERVAL.fullmatch(self.within)
+        if found is None:
+            raise ValueError(f"{self.label} must lie within an interval such as '(0, 100] m', got {self.within!r}.")
+        return found
+
+    @property
+    def unit(self) -> str:
+        """Unit of the number ("m", "°", "points/m²", ""), appended to labels."""
+        return self._interval["unit"] or ""
+
+    @property
+    def low(self) -> Optional[float]:
+        """Lower bound, None without one."""
+        return _bound(self._interval["low"])
+
+    @property
+    def high(self) -> Optional[float]:
+        """Upper bound, None without one."""
+        return _bound(self._interval["high"])
+
+    @property
+    def open_low(self) -> bool:
+        """Whether the lower bound itself is refused."""
+        return self._interval["opens"] == "("
+
+    @property
+    def open_high(self) -> bool:
+        """Whether the upper bound itself is refused."""
+        return self._interval["closes"] == ")"
 
     @property
     def title(self) -> str:
@@ -59,6 +89,16 @@ class Param:
         """Return a number with the unit, as text: 4 m², 20°, 10,000 m."""
         digits = f"{number:,d}" if isinstance(number, int) else f"{number:,g}"
         return digits + self.unit if self.unit == "°" else f"{digits} {self.unit}".rstrip()
+
+
+# What ``Param.within`` may be.
+_INTERVAL = re.compile(r"(?:(?P<opens>[\[(])(?P<low>\S+), (?P<high>[^\s\])]+)(?P<closes>[\])]) ?(?P<unit>.*))?")
+
+
+def _bound(text: Optional[str]) -> Optional[float]:
+    """Return the number of a bound, None for an infinite one and where there is none."""
+    value = float(text or "inf")
+    return None if math.isinf(value) else int(value) if value.is_integer() else value
 
 
 @dataclass(frozen=True)

@@ -43,28 +43,19 @@ def classify_ground_cloth(
     classification,
     *,
     cell_size: Annotated[
-        float,
-        Param("Grid cell size", "Distance of the cloth's particles (grid resolution).", unit="m", low=0.05, high=100),
+        float, Param("Grid cell size", "Distance of the cloth's particles (grid resolution).", within="[0.05, 100] m")
     ] = 0.5,
     rigidness: Annotated[
         int,
         Param(
             "Rigidness",
             "Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.",
-            low=1,
-            high=3,
+            within="[1, 3]",
         ),
     ] = 3,
     threshold: Annotated[
         float,
-        Param(
-            "Class threshold",
-            "Points at most this far above or below the cloth are ground.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
-        ),
+        Param("Class threshold", "Points at most this far above or below the cloth are ground.", within="(0, 100] m"),
     ] = 0.5,
     slope_processing: Annotated[
         bool,
@@ -78,14 +69,12 @@ def classify_ground_cloth(
         Param(
             "Time step",
             "How far the cloth falls in one step; smaller is slower and steadier.",
-            low=0,
-            high=2,
-            open_low=True,
+            within="(0, 2]",
             advanced=True,
         ),
     ] = 0.65,
     iterations: Annotated[
-        int, Param("Iterations", "Most steps of the simulation.", low=1, high=10_000, advanced=True)
+        int, Param("Iterations", "Most steps of the simulation.", within="[1, 10_000]", advanced=True)
     ] = 500,
     monitor=None,
 ):

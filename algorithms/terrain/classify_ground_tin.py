@@ -61,10 +61,7 @@ _IterationDistance = Annotated[
     Param(
         "Iteration distance",
         "Largest distance from its facet at which a point joins the surface.",
-        unit="m",
-        low=0,
-        high=100,
-        open_low=True,
+        within="(0, 100] m",
         automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
         f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
         advanced=True,
@@ -76,9 +73,7 @@ _SweepDistance = Annotated[
     Param(
         "Sweep distance",
         "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
-        unit="m",
-        low=0,
-        high=100,
+        within="[0, 100] m",
         automatic=f"{GROUND.sweep_noise:g} times the roughness of the finished surface, or the surface noise where "
         f"that is more; increased by a half, but by {GROUND.sweep_bend:g} cells at most.",
         advanced=True,
@@ -91,10 +86,7 @@ _IterationAngle = Annotated[
         "Iteration angle",
         "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
         "larger follows steeper breaks and lets more low objects in.",
-        unit="°",
-        low=0,
-        high=90,
-        open_low=True,
+        within="(0, 90]°",
         automatic=f"{GROUND.angle:g}°, in nature {GROUND.angle_in_nature:g}°.",
     ),
 ]
@@ -104,9 +96,7 @@ _MaxBuildingSize = Annotated[
     Param(
         "Maximum building size",
         "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
-        unit="m",
-        low=1,
-        high=1000,
+        within="[1, 1000] m",
         automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
         "that of the kind of terrain.",
     ),
@@ -117,9 +107,7 @@ _CellSize = Annotated[
     Param(
         "Grid cell size",
         "Cell in which the lowest point is looked for.",
-        unit="m",
-        low=0.1,
-        high=100,
+        within="[0.1, 100] m",
         automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
         advanced=True,
     ),
@@ -171,9 +159,7 @@ def classify_ground_tin(
         Param(
             "Edge length",
             "Facets whose edges are all shorter are not refined.",
-            unit="m",
-            low=0,
-            high=1000,
+            within="[0, 1000] m",
             automatic="twice the grid cell size.",
             advanced=True,
         ),

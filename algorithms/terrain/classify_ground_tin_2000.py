@@ -31,10 +31,7 @@ _IterationDistance = Annotated[
     Param(
         "Iteration distance",
         "Largest distance from its facet at which a point joins the surface.",
-        unit="m",
-        low=0,
-        high=100,
-        open_low=True,
+        within="(0, 100] m",
         automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
         "point spacing, if that is more.",
         advanced=True,
@@ -48,9 +45,7 @@ _MaxBuildingSize = Annotated[
         "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
         "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
         "towns, 25 m in cities and 50 m in the largest cities.",
-        unit="m",
-        low=1,
-        high=1000,
+        within="[1, 1000] m",
     ),
 ]
 
@@ -75,10 +70,7 @@ def classify_ground_tin_2000(
         Param(
             "Terrain angle",
             "Steepest line from a point to the nodes of its facet under which it joins the surface.",
-            unit="°",
-            low=0,
-            high=90,
-            open_low=True,
+            within="(0, 90]°",
             advanced=True,
         ),
     ] = 88.0,
@@ -88,10 +80,7 @@ def classify_ground_tin_2000(
             "Iteration angle",
             "Upper bound of the angle between a facet and the lines to its nodes under which a point joins the "
             "surface, which is estimated in each round. Larger follows steeper breaks and lets more low objects in.",
-            unit="°",
-            low=0,
-            high=90,
-            open_low=True,
+            within="(0, 90]°",
         ),
     ] = 20.0,
     iteration_distance: _IterationDistance = None,
@@ -100,9 +89,7 @@ def classify_ground_tin_2000(
         Param(
             "Edge length",
             "Facets whose edges are all shorter are not refined.",
-            unit="m",
-            low=0,
-            high=1000,
+            within="[0, 1000] m",
             automatic=f"the point spacing, at least {_MIN_EDGE:g} m.",
             advanced=True,
         ),
@@ -112,9 +99,7 @@ def classify_ground_tin_2000(
         Param(
             "Sweep distance",
             "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
-            unit="m",
-            low=0,
-            high=100,
+            within="[0, 100] m",
             automatic=f"{_SWEEP_DEVIATIONS:g} times the roughness of the finished surface.",
             advanced=True,
         ),

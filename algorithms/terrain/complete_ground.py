@@ -31,9 +31,7 @@ def complete_ground(
         Param(
             "Maximum distance",
             "Unclassified points no farther above or below the surface of the ground become ground; 0 adds none.",
-            unit="m",
-            low=0,
-            high=1,
+            within="[0, 1] m",
         ),
     ] = 0.1,
     monitor=None,

@@ -50,9 +50,7 @@ def rasterize_terrain(
         Param(
             "Cell size",
             "Side of a cell of the rasters.",
-            unit="m",
-            low=0.01,
-            high=_MOST_CELL,
+            within=f"[0.01, {_MOST_CELL}] m",
             automatic=f"{_CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
             f"least {_LEAST_CELL:g} m.",
         ),
@@ -62,9 +60,7 @@ def rasterize_terrain(
         Param(
             "Gap distance",
             "Cells of the surface model without points are interpolated up to this far from cells with points.",
-            unit="m",
-            low=0,
-            high=10_000,
+            within="[0, 10_000] m",
             automatic=f"{_GAP_CELLS:g} cells.",
         ),
     ] = None,

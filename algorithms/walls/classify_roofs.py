@@ -40,8 +40,7 @@ def classify_roofs(
     segment_id,
     *,
     min_height: Annotated[
-        float,
-        Param("Minimum height", "Height above the ground over which half of a roof lies.", unit="m", low=0.5, high=100),
+        float, Param("Minimum height", "Height above the ground over which half of a roof lies.", within="[0.5, 100] m")
     ] = 2.0,
     min_area: MinBuildingArea = 6.0,
     gap: Annotated[
@@ -49,10 +48,7 @@ def classify_roofs(
         Param(
             "Gap between roofs",
             "Points of planes at most this far apart belong to one building.",
-            unit="m",
-            low=0,
-            high=20,
-            open_low=True,
+            within="(0, 20] m",
             automatic="3 times the point spacing, from 0.6 to 5 m.",
         ),
     ] = None,

@@ -57,16 +57,14 @@ def classify_walls(
     cluster_id,
     *,
     min_height: Annotated[
-        float, Param("Minimum height", "Lower points may be ground, kerbs and plants.", unit="m", low=0, high=10)
+        float, Param("Minimum height", "Lower points may be ground, kerbs and plants.", within="[0, 10] m")
     ] = 0.3,
     max_height: Annotated[
         float,
-        Param(
-            "Maximum height", "Walls are looked for up to this height above the ground.", unit="m", low=0.5, high=100
-        ),
+        Param("Maximum height", "Walls are looked for up to this height above the ground.", within="[0.5, 100] m"),
     ] = 2.5,
     max_tilt: Annotated[
-        float, Param("Maximum tilt", "Largest angle of a wall to the vertical.", unit="°", low=0, high=90)
+        float, Param("Maximum tilt", "Largest angle of a wall to the vertical.", within="[0, 90]°")
     ] = 30.0,
     neighborhood: Annotated[
         str,
@@ -81,22 +79,14 @@ def classify_walls(
         Param(
             "Nearest points",
             "Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.",
-            low=3,
-            high=1000,
+            within="[3, 1000]",
             automatic=f"as many as reach {_REACH_DEVIATIONS:g} times the roughness at the density of low points near "
             "roofs, 8 to 30.",
         ),
     ] = None,
     radius: Annotated[
         float,
-        Param(
-            "Radius",
-            "Radius of the sphere around a point; used by the neighborhood 'radius'.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
-        ),
+        Param("Radius", "Radius of the sphere around a point; used by the neighborhood 'radius'.", within="(0, 10] m"),
     ] = 0.5,
     noise: SurfaceNoise = None,
     margin: Annotated[
@@ -104,9 +94,7 @@ def classify_walls(
         Param(
             "Margin around roofs",
             "How far the convex hull of a roof is grown; walls outside it belong to no roof.",
-            unit="m",
-            low=0,
-            high=20,
+            within="[0, 20] m",
         ),
     ] = 0.3,
     sampling: Optional[CloudSampling] = None,

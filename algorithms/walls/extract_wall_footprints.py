@@ -77,9 +77,7 @@ _Tolerance = Annotated[
     Param(
         "Tolerance",
         "Distance within which points lie on a wall.",
-        unit="m",
-        low=0.01,
-        high=2,
+        within="[0.01, 2] m",
         automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
     ),
 ]
@@ -89,9 +87,7 @@ _MaxOverhang = Annotated[
     Param(
         "Maximum overhang",
         "How far roofs may jut out over their walls; parts deeper under a roof are inside.",
-        unit="m",
-        low=0,
-        high=10,
+        within="[0, 10] m",
     ),
 ]
 
@@ -118,8 +114,7 @@ def extract_wall_footprints(
     *,
     min_area: MinBuildingArea = 6.0,
     min_length: Annotated[
-        float,
-        Param("Minimum wall length", "Length of the shortest wall that is looked for.", unit="m", low=0.2, high=100),
+        float, Param("Minimum wall length", "Length of the shortest wall that is looked for.", within="[0.2, 100] m")
     ] = 1.2,
     max_overhang: _MaxOverhang = 1.2,
     min_seen: Annotated[
@@ -127,8 +122,7 @@ def extract_wall_footprints(
         Param(
             "Minimum share of walls seen",
             "Where less of the perimeter has wall points, the outline of the roof is given instead.",
-            low=0,
-            high=1,
+            within="[0, 1]",
         ),
     ] = 0.25,
     tolerance: _Tolerance = None,

@@ -9,8 +9,8 @@ from lidar_buildings.algorithms.stage import Param, stage
 def toy_words(
     xyz,
     *,
-    width: Annotated[float, Param("Width", "How wide.", unit="m", low=0)] = 2.0,
-    count: Annotated[Optional[int], Param("Count", "How many.", low=1, automatic="all.")] = None,
+    width: Annotated[float, Param("Width", "How wide.", within="[0, inf) m")] = 2.0,
+    count: Annotated[Optional[int], Param("Count", "How many.", within="[1, inf)", automatic="all.")] = None,
     color: Annotated[Optional[str], Param("Color", "Which.", empty="it stays as it is.")] = None,
     monitor=None,
 ):

@@ -7,7 +7,7 @@ import pytest
 
 from lidar_buildings.algorithms.stage import Param, Tunable
 
-WIDTH = Param("Width", "How wide.", unit="m", low=0, high=4, open_low=True)
+WIDTH = Param("Width", "How wide.", within="(0, 4] m")
 
 
 def tunable(kind, default, param=WIDTH, name="width"):
@@ -56,7 +56,7 @@ def test_what_does_not_fit_is_refused_in_one_sentence(kind, value, wanted):
 
 
 def test_an_open_bound_is_none_of_the_values():
-    below = Param("Share", "Which.", low=0, high=1, open_high=True)
+    below = Param("Share", "Which.", within="[0, 1)")
     assert tunable(float, 0.5, below).check(0.0) == 0.0
     with pytest.raises(ValueError, match=r"must be at least 0 and less than 1, got 1\.0\."):
         tunable(float, 0.5, below).check(1.0)
@@ -80,15 +80,29 @@ def test_nothing_is_a_value_of_automatic_tunables_alone():
     ("param", "words"),
     [
         (WIDTH, "greater than 0 m and at most 4 m"),
-        (Param("a", "b", unit="°", low=-1.5), "at least -1.5°"),
-        (Param("a", "b", high=7, open_high=True), "less than 7"),
-        (Param("a", "b", high=10_000_000), "at most 10,000,000"),
-        (Param("a", "b", high=2.5), "at most 2.5"),
+        (Param("a", "b", within="[-1.5, inf)°"), "at least -1.5°"),
+        (Param("a", "b", within="(-inf, 7)"), "less than 7"),
+        (Param("a", "b", within="(-inf, 10_000_000]"), "at most 10,000,000"),
+        (Param("a", "b", within="(-inf, 2.5]"), "at most 2.5"),
         (Param("a", "b"), ""),
     ],
 )
 def test_bounds_in_words(param, words):
     assert param.bounds == Tunable("a", float, 1.0, param).range == words
+
+
+def test_an_interval_has_bounds_and_a_unit():
+    interval = Param("a", "b", within="(-0.5, 10_000] points/m²")
+    assert (interval.low, interval.high, interval.unit) == (-0.5, 10_000, "points/m²")
+    assert (interval.open_low, interval.open_high) == (True, False)
+    at_least = Param("a", "b", within="[3, inf)")
+    assert (at_least.low, at_least.high, at_least.unit) == (3, None, "")
+
+
+@pytest.mark.parametrize("wrong", ["0 to 4 m", "[0 4] m", "[0, 4", "4 m"])
+def test_what_is_no_interval_is_refused(wrong):
+    with pytest.raises(ValueError, match=r"a must lie within an interval such as '\(0, 100\] m'"):
+        _ = Param("a", "b", within=wrong).unit
 
 
 def test_choices_in_words():
