@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Callable, Optional, cast
+from typing import Callable, NamedTuple, Optional, cast
 
 import numpy as np
 from qgis.core import QgsApplication, QgsDataSourceUri, QgsNetworkAccessManager
@@ -118,6 +118,56 @@ def web_file(source: str) -> Optional[Path]:
     return cast(Path, WebFile(uri.param("url"), uri.authConfigId())) if is_address(uri.param("url")) else None
 
 
+class Size(NamedTuple):
+    """How much is read from the web."""
+
+    name: str  #: Of the file, or of the first one of several
+    host: str
+    points: int
+    bytes: int
+
+    def __str__(self) -> str:
+        return f"{self.bytes / 1e6:,.1f} MB with {self.points:,} points"
+
+
+def size_on_web(
+    paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray] = None
+) -> Optional[Size]:
+    """Return how much of some clouds is read from the web for a box and a spacing; None where nothing of them is there.
+
+    It costs a few requests, also of a large cloud with an octree.
+    """
+    found = [one for path in paths for one in sizes_within(path, box, spacing)]
+    if not found:
+        return None
+    first = cast(WebFile, found[0][0])
+    others = f" and {len(found) - 1} more files" if len(found) > 1 else ""
+    return Size(first.name + others, first.host, *(sum(size[i] for _, size in found) for i in (0, 1)))
+
+
+# Bytes that the user has agreed to in this session, beyond the limit.
+_agreed = [0]
+
+
+def agree_to(size: Size) -> None:
+    """Let runs of this session read as much as this at once, for which the user was asked."""
+    _agreed[0] = max(size.bytes, _agreed[0])
+
+
+def is_over_limit(size: Size) -> bool:
+    """Whether it is more than the user has set as limit, or agreed to.
+
+    Raises
+    ------
+    ValueError
+        If the limit is no number.
+    """
+    text = WEB_LIMIT.value
+    if not (text.isdigit() and int(text)):
+        raise ValueError(f"'{WEB_LIMIT.title}' in the options of Processing must be a whole number, got {text!r}.")
+    return size.bytes > max(int(text) * 1e6, _agreed[0])
+
+
 def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray] = None) -> None:
     """Refuse to read more from the web than the user has set as limit.
 
@@ -126,32 +176,20 @@ def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optio
     ValueError
         If it is more; it says how much, and asks for an extent.
     """
-    text = WEB_LIMIT.value
-    if not (text.isdigit() and int(text)):
-        raise ValueError(f"'{WEB_LIMIT.title}' in the options of Processing must be a whole number, got {text!r}.")
-    for path, (points, size) in _sizes(paths, box, spacing):
-        if size > int(text) * 1e6:
-            which = "the whole cloud" if box is None else "what lies within the extent"
-            raise ValueError(
-                f"{path.name} is on the web, and {which} is {size / 1e6:,.0f} MB with {points:,} points, more than the "
-                f"{int(text):,} MB that are read at once; choose {'an' if box is None else 'a smaller'} extent or a "
-                f"wider spacing, or set '{WEB_LIMIT.title}' in the options of Processing."
-            )
+    size = size_on_web(paths, box, spacing)
+    if size is not None and is_over_limit(size):
+        which = "the whole cloud" if box is None else "what lies within the extent"
+        raise ValueError(
+            f"{size.name} is on the web, and {which} is {size}, more than the {WEB_LIMIT.value} MB that are read at "
+            f"once; choose {'an' if box is None else 'a smaller'} extent or a wider spacing, or set "
+            f"'{WEB_LIMIT.title}' in the options of Processing."
+        )
 
 
 def tell_sizes(
     paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray], monitor: Monitor
 ) -> None:
     """Tell how many bytes and points are read from the web, before they are."""
-    for path, (points, size) in _sizes(paths, box, spacing):
-        host = cast(WebFile, path).host
-        monitor.inform(f"{path.name}: {size / 1e6:,.1f} MB with {points:,} points are read from {host}.")
-
-
-def _sizes(
-    paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray]
-) -> Iterable[tuple[Path, tuple[int, int]]]:
-    for path in paths:
-        for file, found in sizes_within(path, box, spacing):
-            if isinstance(file, WebFile):
-                yield cast(Path, file), found
+    size = size_on_web(paths, box, spacing)
+    if size is not None:
+        monitor.inform(f"{size.name}: {size} are read from {size.host}.")

@@ -19,11 +19,12 @@ from qgis.core import (
 
 from lidar_buildings.algorithms.cloud import web_file
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, sizes_within, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.algorithms.cloud.web_requests import transport
+from lidar_buildings.provider import menu, web
 from lidar_buildings.provider.clouds import file_of_layer
-from lidar_buildings.provider.menu import view_parameters
+from lidar_buildings.provider.menu import open_dialog, view_parameters
 from lidar_buildings.provider.settings import WEB_HOSTS, WEB_LIMIT
 from lidar_buildings.provider.web import QgisTransport
 from lidar_buildings.tests.ept_files import made_points, write_ept
@@ -42,6 +43,9 @@ def folder(tmp_path_factory):
     xyz = rng.uniform(0, [1000, 1000, 30], (200_000, 3)) + [85_000, 446_000, 0]
     folder = tmp_path_factory.mktemp("web")
     write_cloud(create_cloud({"xyz": xyz}, "EPSG:28992"), folder / "a.copc.laz")
+    # Denser, with more than 1 MB in the view.
+    dense = rng.uniform(0, [1000, 1000, 30], (800_000, 3)) + [85_000, 446_000, 0]
+    write_cloud(create_cloud({"xyz": dense}, "EPSG:28992"), folder / "b.copc.laz")
     return folder
 
 
@@ -178,6 +182,107 @@ def test_the_view_of_a_layer_on_the_web_is_run(provider, context, log, server, f
     finally:
         QgsProject.instance().removeMapLayer(layer)
     assert len(read_cloud(out / "a.las")) == len(read_cloud(folder / "a.copc.laz", box=BOX))
+
+
+class Window(Interface):
+    """The windows of QGIS, with what is shown and asked in them."""
+
+    def __init__(self, layer, view):
+        super().__init__(layer, [], view, "EPSG:28992")
+        self.shown, self.warned = [], []
+
+    def mainWindow(self):
+        return None
+
+    def messageBar(self):
+        shown, warned = self.shown, self.warned
+        bar = {"pushMessage": lambda self, *words: shown.append(words[-1])}
+        return type("Bar", (), {**bar, "pushWarning": lambda self, *words: warned.append(words[-1])})()
+
+
+@pytest.fixture
+def button(provider, server, monkeypatch):
+    """Return a function that presses the red button over the layer of a file; and what was opened and asked."""
+    import processing
+
+    opened, asked = [], []
+    monkeypatch.setattr(processing, "execAlgorithmDialog", lambda *arguments: opened.append(arguments))
+    monkeypatch.setattr(web, "_agreed", [0])
+
+    def press(layer, answer=True):
+        monkeypatch.setattr(menu, "is_answered_yes", lambda *words: asked.append(words[-1]) or answer)
+        QgsProject.instance().addMapLayer(layer, False)
+        window = Window(layer, QgsRectangle(BOX[0, 0] - 50, BOX[0, 1] - 50, *BOX[1]))
+        try:
+            open_dialog(window)
+        finally:
+            QgsProject.instance().takeMapLayer(layer)
+        return window
+
+    yield press, opened, asked
+    WEB_LIMIT.set(WEB_LIMIT.default)
+
+
+def test_the_button_says_how_much_the_view_has_before_anything_is_read(server, folder, button):
+    press, opened, asked = button
+    options = QgsPointCloudLayer.LayerOptions()
+    # QGIS would read points for them meanwhile.
+    options.skipStatisticsCalculation = True
+    layer = QgsPointCloudLayer(server.address("a.copc.laz"), "a", "copc", options)
+    server.sent, before = 0, len(server.requests)
+    window = press(layer)
+    (_, (points, size)), *_ = sizes_within(web_file.WebFile(server.address("a.copc.laz")), BOX)
+    expected = f"a.copc.laz: {size / 1e6:.1f} MB with {points:,} points are in this view."
+    assert window.shown == [f"{expected} Finding buildings in them takes about 1 min."]
+    assert (len(opened), asked) == (1, [])
+    assert len(server.requests) - before <= 4
+    assert server.sent < 0.1 * (folder / "a.copc.laz").stat().st_size
+
+
+@pytest.mark.parametrize("answer", [True, False])
+def test_the_button_asks_where_the_view_is_over_the_limit(provider, context, server, button, out, answer):
+    press, opened, asked = button
+    WEB_LIMIT.set("1")
+    layer = QgsPointCloudLayer(server.address("b.copc.laz"), "b", "copc")
+    given = {"INPUT": server.address("b.copc.laz"), "EXTENT": VIEW, "OUTPUT": str(out / "a.las")}
+    assert not provider.algorithm("toylift").checkParameterValues(given, context)[0]
+    press(layer, answer)
+    assert "more than the 1 MB that are read at once. Read it all the same?" in asked[0]
+    assert len(opened) == answer
+    # What was agreed to is read, and more is not.
+    assert provider.algorithm("toylift").checkParameterValues(given, context)[0] is answer
+    assert not provider.algorithm("toylift").checkParameterValues({**given, "EXTENT": ""}, context)[0]
+
+
+def test_the_button_says_what_is_wrong_with_a_server_and_opens_the_dialog(server, button):
+    press, opened, _ = button
+    layer = QgsPointCloudLayer(server.address("a.copc.laz"), "a", "copc")
+    server.missing_from = 0
+    window = press(layer)
+    assert "There is no file at" in window.warned[0]
+    assert len(opened) == 1
+
+
+def test_the_button_asks_nothing_of_files_on_this_computer(folder, button):
+    press, opened, asked = button
+    layer = QgsPointCloudLayer(str(folder / "a.copc.laz"), "a", "copc")
+    assert press(layer).shown == asked == []
+    assert len(opened) == 1
+
+
+def test_the_limit_is_for_all_tiles_together(provider, context, server, folder, out):
+    write_vpc([folder / "a.copc.laz", folder / "b.copc.laz"], folder / "both.vpc")
+    small, large = ((folder / name).stat().st_size / 1e6 for name in ("a.copc.laz", "b.copc.laz"))
+    limit = int(large + small)
+    assert large < limit
+    WEB_LIMIT.set(str(limit))
+    try:
+        given = {"INPUT": server.address("both.vpc"), "OUTPUT": str(out / "a.las")}
+        accepted, why = provider.algorithm("toylift").checkParameterValues(given, context)
+        assert not accepted
+        assert "a.copc.laz and 1 more files is on the web" in why
+    finally:
+        WEB_LIMIT.set(WEB_LIMIT.default)
 
 
 def test_cancel_ends_within_two_seconds(provider, context, log, server, out):
