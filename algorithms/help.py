@@ -169,7 +169,7 @@ def tunable_help(tunable: Tunable, default: object = _NOT_GIVEN) -> str:
     facts.append(f"default {_default_text(tunable, tunable.default if default is _NOT_GIVEN else default)}")
     automatic = f" {inline(param.unset_text)}" if tunable.is_optional else ""
     return (
-        f"<b>{html.escape(param.title)}</b>: {inline(param.help)}{automatic} <i>({html.escape('; '.join(facts))})</i>"
+        f"<b>{html.escape(tunable.title)}</b>: {inline(param.help)}{automatic} <i>({html.escape('; '.join(facts))})</i>"
     )
 
 
@@ -203,7 +203,7 @@ def _cloud_text(stage: Stage) -> str:
     chosen = _chosen(stage)
     if chosen is not None:
         meanings = [_meaning(name) for name in stage.writes]
-        return f"the cloud as it was, and what '{chosen.param.label}' names of these dimensions:{_sublist(meanings)}"
+        return f"the cloud as it was, and what '{chosen.label}' names of these dimensions:{_sublist(meanings)}"
     if stage.creates:
         return f"a new cloud with {_disk_names(stage.creates)}."
     if stage.merges:

@@ -24,7 +24,6 @@ PAPER_THRESHOLDS = {
 Thresholds = Annotated[
     str,
     Param(
-        "Thresholds",
         "'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for "
         "its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height "
         "difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that "
@@ -36,18 +35,15 @@ Thresholds = Annotated[
 Seed = Annotated[
     int,
     Param(
-        "Seed",
-        "Start of the random numbers: the same seed gives the same result.",
-        within=f"[0, {2**31 - 1}]",
-        advanced=True,
+        "Start of the random numbers: the same seed gives the same result.", within=f"[0, {2**31 - 1}]", advanced=True
     ),
 ]
 
 PointDensity = Annotated[
     Optional[float],
     Param(
-        "Point density",
         "Average number of points per square meter of occupied area.",
+        label="Point density",
         within="[0.001, inf) points/m²",
         automatic="measured on the cloud; 'Segment roofs', 'Classify buildings' and 'Complete buildings' take the "
         "effective density, less where points lie on lines, in pairs or in dense strips, so that distances reach over "
@@ -57,17 +53,17 @@ PointDensity = Annotated[
 ]
 
 MinBuildingArea = Annotated[
-    float, Param("Minimum building area", "Area of the smallest building to be found.", within="[0.1, 10_000] m²")
+    float, Param("Area of the smallest building to be found.", label="Minimum building area", within="[0.1, 10_000] m²")
 ]
 
 PointSource = Annotated[
     str,
     Param(
-        "Source of the points",
         "Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by "
         "planarity within half a meter of each point and by color, and low buildings are looked for. 'automatic' "
         "takes a cloud for matched images that has no second returns, at least 8 points per m² and no points beneath "
         "crowns.",
+        label="Source of the points",
         choices=("automatic", "laser scanner", "matched images"),
     ),
 ]
@@ -75,7 +71,6 @@ PointSource = Annotated[
 MinFrequency = Annotated[
     int,
     Param(
-        "Minimum frequency",
         "Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, "
         "and thin objects such as wires with it.",
         within="[1, 10_000]",
@@ -85,9 +80,9 @@ MinFrequency = Annotated[
 SurfaceNoise = Annotated[
     Optional[float],
     Param(
-        "Surface noise",
         "Standard deviation of the points across a smooth surface. Roofs and walls may be rougher, by tiles, gravel "
         "and the spacing of the points.",
+        label="Surface noise",
         within="(0, 10] m",
         automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m.",
         advanced=True,
@@ -97,43 +92,38 @@ SurfaceNoise = Annotated[
 BridgeHeight = Annotated[
     float,
     Param(
-        "Minimum height",
         "Least height of a bridge above its surroundings; in 'Classify ground segments' that of an object, too.",
         within="[0.1, 100] m",
     ),
 ]
 
 BridgeWidth = Annotated[
-    float, Param("Maximum bridge width", "Width of the widest bridge; 0 looks for no bridges.", within="[0, 1000] m")
+    float,
+    Param("Width of the widest bridge; 0 looks for no bridges.", label="Maximum bridge width", within="[0, 1000] m"),
 ]
 
-BridgeArea = Annotated[float, Param("Minimum bridge area", "Area of the smallest bridge.", within="[1, 100_000] m²")]
+BridgeArea = Annotated[float, Param("Area of the smallest bridge.", within="[1, 100_000] m²")]
 
 MinClusterHeight = Annotated[
     float,
-    Param(
-        "Minimum height",
-        "Only points at least this high above the ground are used, where heights are known.",
-        within="[0, 100] m",
-    ),
+    Param("Only points at least this high above the ground are used, where heights are known.", within="[0, 100] m"),
 ]
 
 IgnoredClasses = Annotated[
     str,
     Param(
-        "Ignored classes",
         "Points that have one of these classes in the reference are not counted: numbers and ranges, "
-        "separated by commas (7, 64-67); empty counts every point.",
+        "separated by commas (7, 64-67); empty counts every point."
     ),
 ]
 
-FacadeTilt = Annotated[float, Param("Maximum tilt", "Largest angle of a facade to the vertical.", within="[0, 45]°")]
+FacadeTilt = Annotated[float, Param("Largest angle of a facade to the vertical.", within="[0, 45]°")]
 
 FacadeGap = Annotated[
     float,
     Param(
-        "Widest gap",
         "Points of one plane at most this far apart belong to one facade; trees and poles leave such gaps.",
+        label="Widest gap",
         within="[0.1, 100] m",
     ),
 ]
@@ -141,7 +131,6 @@ FacadeGap = Annotated[
 CornerDistance = Annotated[
     float,
     Param(
-        "Corner distance",
         "Edges of neighboring facades move onto the intersection line of their planes from this far at most; "
         "0 leaves them where they are.",
         within="[0, 10] m",
@@ -151,7 +140,6 @@ CornerDistance = Annotated[
 Boundary = Annotated[
     str,
     Param(
-        "Boundary",
         "Straight edges are fitted by least squares, along the main directions of the facade; key points are those "
         "of the traced boundary where it turns by more than 40°, as published.",
         choices=("straight edges", "key points"),
@@ -161,9 +149,9 @@ Boundary = Annotated[
 CompleteFacades = Annotated[
     bool,
     Param(
-        "Complete hidden parts",
         "Fill what cars, trees and people hide of the foot and the sides of a facade; without it a facade ends where "
         "its points do.",
+        label="Complete hidden parts",
     ),
 ]
 
@@ -171,8 +159,8 @@ CompleteFacades = Annotated[
 def nearest_points(automatic: str) -> Param:
     """Return the declaration of N, the points of a neighborhood, which each method derives in its own way."""
     return Param(
-        "Nearest points",
         "Points of the neighborhood in which the entropy of a point is measured, itself included (N).",
+        label="Nearest points",
         within="[3, 10_000]",
         automatic=automatic,
     )

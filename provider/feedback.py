@@ -102,7 +102,7 @@ class FeedbackMonitor(Monitor):
 def value_sentence(stage: Optional[Stage], name: str, value: Any) -> str:
     """Return a value that a stage found or took, as the log says it, with label and unit."""
     tunable = stage.tunables.get(name) if stage else None
-    param = tunable.param if tunable else Param("", "")
+    param = tunable.param if tunable else Param("")
     # Who needs all digits finds them among the results.
     if isinstance(value, bool):
         shown = "yes" if value else "no"
@@ -113,7 +113,7 @@ def value_sentence(stage: Optional[Stage], name: str, value: Any) -> str:
     if tunable is None:
         return f"{name.replace('_', ' ').capitalize()}: {shown}"
     found = "none set, the cloud has" if param.empty else "automatic"
-    return f"{param.label}, {found}: {shown}"
+    return f"{tunable.label}, {found}: {shown}"
 
 
 # How the log begins a line with measurements of a cloud, and what separates these.

@@ -36,13 +36,7 @@ def label(tunable: Tunable) -> str:
     facts = [tunable.param.unit] if tunable.param.unit else []
     if tunable.is_optional:
         facts.append(f"empty = {tunable.param.unset}")
-    return f"{tunable.param.label} ({', '.join(facts)})" if facts else tunable.param.label
-
-
-def plain_label(tunable: Tunable) -> str:
-    """Return the label with its unit, for a dialog whose fields show what an empty one means."""
-    param = tunable.param
-    return f"{param.label} ({param.unit})" if param.unit else param.label
+    return f"{tunable.label} ({', '.join(facts)})" if facts else tunable.label
 
 
 def help_text(tunable: Tunable) -> str:
@@ -130,7 +124,7 @@ def number_outputs(stage: Stage) -> dict[str, str]:
         title = measure.title
         numbers[measure.name.upper()] = f"{title} ({measure.unit})" if measure.unit else title
     for tunable in automatic_numbers(stage):
-        numbers[used_name(tunable)] = f"{plain_label(tunable)}, as used"
+        numbers[used_name(tunable)] = f"{tunable.title}, as used"
     return numbers
 
 

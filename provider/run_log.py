@@ -63,10 +63,10 @@ def parameter_rows(stage: Stage, given: dict[str, Any], used: dict[str, Any]) ->
             took = used.get(name)
             ends = list(dict.fromkeys((took[0], took[-1]))) if isinstance(took, list) else [took]
             shown = " to ".join(written(tunable, one) for one in ends)
-            rows.append(Row(tunable.param.label, shown, tunable.param.unset))
+            rows.append(Row(tunable.label, shown, tunable.param.unset))
         else:
             how = "default" if value == tunable.default else f"set; default: {written(tunable, tunable.default)}"
-            rows.append(Row(tunable.param.label, written(tunable, value), how))
+            rows.append(Row(tunable.label, written(tunable, value), how))
     others = {name: value for name, value in used.items() if name not in stage.tunables and np.isscalar(value)}
     return rows + [Row(title_of(name), _short(value), "found") for name, value in others.items()]
 

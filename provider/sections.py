@@ -11,7 +11,7 @@ from ..algorithms.pipeline import Pipeline, Step
 from ..algorithms.stage import DIMENSION, Tunable
 from ..algorithms.tiling.settings import READ_SETTINGS, SETTINGS, Setting
 from .inputs import CRS
-from .parameters import parameter_name, plain_label
+from .parameters import parameter_name
 
 # "Side of a block (m, empty = automatic)": the title, and what an empty field means.
 _EMPTY = re.compile(r"(.*?)(?:[ (]*empty = (.*)\))?$")
@@ -34,7 +34,7 @@ class Section:
 
     def add(self, name: str, tunable: Tunable, step: Optional[Step] = None) -> None:
         """Add a parameter; where its group does not name the step, its label does."""
-        label = plain_label(tunable)
+        label = tunable.title
         self.labels[name] = step_label(step, label) if step is not None else label
         if tunable.name == DIMENSION:
             self.pickers[name] = DIMENSION

@@ -511,15 +511,15 @@ def quoted(path: Path) -> list[str]:
 def test_titles_that_sentences_name_exist(path):
     """A sentence names a title as the toolbox shows it; stages cannot import each other to derive it."""
     ours = {one.title for one in (*STAGES.values(), *PIPELINES.values())}
-    ours |= {tunable.param.label for stage in STAGES.values() for tunable in stage.tunables.values()}
+    ours |= {tunable.label for stage in STAGES.values() for tunable in stage.tunables.values()}
     assert not set(quoted(path)) - ours - TITLES_OF_QGIS - OPTIONS
 
 
 @pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
 def test_tunable_is_labeled_and_explained(stage, tunable):
     param = tunable.param
-    assert is_sentence_case(param.label)
-    assert not param.label.endswith((".", ":", ")"))
+    assert is_sentence_case(tunable.label)
+    assert not tunable.label.endswith((".", ":", ")"))
     assert is_sentences(param.help)
     assert [bool(param.automatic), bool(param.empty)].count(True) == tunable.is_optional
     assert not param.unset_text or param.unset_text.endswith(".")
@@ -609,7 +609,7 @@ def values_outside(tunable: Tunable) -> list:
 @pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
 def test_bounds_refuse_with_a_sentence_that_names_the_tunable(stage, tunable):
     for value in values_outside(tunable):
-        with pytest.raises(ValueError, match=re.escape(f"{tunable.param.label} ({tunable.name}) must be ")) as refusal:
+        with pytest.raises(ValueError, match=re.escape(f"{tunable.label} ({tunable.name}) must be ")) as refusal:
             stage.check({tunable.name: value})
         shown = float(value) if tunable.type is float and isinstance(value, int) and value is not True else value
         assert str(refusal.value).endswith(f", got {shown!r}.")

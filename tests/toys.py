@@ -27,17 +27,17 @@ def toy_lift(
     xyz,
     classification,
     *,
-    step: Annotated[float, Param("Step", "Added to all heights.", within="(0, 10] m")] = 1.5,
+    step: Annotated[float, Param("Added to all heights.", within="(0, 10] m")] = 1.5,
     base: Annotated[
-        Optional[float], Param("Base", "Taken off all heights.", within="[0, inf) m", automatic="the lowest point.")
+        Optional[float], Param("Taken off all heights.", within="[0, inf) m", automatic="the lowest point.")
     ] = None,
-    times: Annotated[int, Param("Times", "How often the step is added.", within="[1, 5]", advanced=True)] = 2,
-    sign: Annotated[str, Param("Sign", "Up or down.", choices=("up", "down"))] = "up",
-    only: Annotated[tuple, Param("Only", "Classes that are lifted.", choices=("ground", "building"))] = (
+    times: Annotated[int, Param("How often the step is added.", within="[1, 5]", advanced=True)] = 2,
+    sign: Annotated[str, Param("Up or down.", choices=("up", "down"))] = "up",
+    only: Annotated[tuple, Param("Classes that are lifted.", choices=("ground", "building"))] = (
         "ground",
         "building",
     ),
-    flat: Annotated[bool, Param("Flat", "All heights alike.")] = False,
+    flat: Annotated[bool, Param("All heights alike.")] = False,
     monitor=None,
 ):
     """Lift every point.
@@ -82,7 +82,7 @@ def toy_outline(
     xyz,
     height_above_ground=None,
     *,
-    margin: Annotated[float, Param("Margin", "Around the points.", within="[0, 9] m")] = 0.0,
+    margin: Annotated[float, Param("Around the points.", within="[0, 9] m")] = 0.0,
     monitor=None,
 ):
     """Draw a box with a hole around all points."""
@@ -108,7 +108,7 @@ def toy_compare(xyz, reference_xyz, *, monitor=None):
     creates=("xyz", "classification"),
     layers=(Layer("truth", "Truth", "Point", (Field("id", int, "Id."),)),),
 )
-def toy_make(*, n_points: Annotated[int, Param("Points", "How many.", within="[1, 1000]")] = 10, monitor=None):
+def toy_make(*, n_points: Annotated[int, Param("How many.", label="Points", within="[1, 1000]")] = 10, monitor=None):
     """Make a row of points."""
     xyz = np.column_stack([np.arange(n_points), np.zeros(n_points), np.full(n_points, 3.0)])
     return xyz, np.full(n_points, 2, np.uint8), LayerFeatures([np.array([1.0, 2.0, 3.0])], {"id": [1]})
@@ -118,7 +118,7 @@ def toy_make(*, n_points: Annotated[int, Param("Points", "How many.", within="[1
 def toy_trouble(
     xyz,
     *,
-    kind: Annotated[str, Param("Kind", "What goes wrong.", choices=("value", "bug", "memory", "cancel"))] = "value",
+    kind: Annotated[str, Param("What goes wrong.", choices=("value", "bug", "memory", "cancel"))] = "value",
     monitor=None,
 ):
     """Fail in a chosen way."""
@@ -136,9 +136,9 @@ def toy_keep(
     xyz,
     values=None,
     *,
-    dimension: Annotated[str, Param("Dimension", "What is looked at; heights, if empty.")] = "",
-    low: Annotated[float, Param("Low", "Points with less go.", within="[-1e9, inf)")] = 12.0,
-    sink: Annotated[float, Param("Sink", "How far the others go down.", within="[0, inf) m")] = 0.0,
+    dimension: Annotated[str, Param("What is looked at; heights, if empty.")] = "",
+    low: Annotated[float, Param("Points with less go.", within="[-1e9, inf)")] = 12.0,
+    sink: Annotated[float, Param("How far the others go down.", within="[0, inf) m")] = 0.0,
     monitor=None,
 ):
     """Keep what is high, and number it."""
@@ -150,7 +150,7 @@ def toy_keep(
 def toy_merge(
     xyz,
     *,
-    apart: Annotated[float, Param("Apart", "Each cloud higher than the last.", within="[0, inf)")] = 0.0,
+    apart: Annotated[float, Param("Each cloud higher than the last.", within="[0, inf)")] = 0.0,
     monitor=None,
 ):
     """Put clouds together and number them."""
@@ -199,7 +199,7 @@ def toy_arrows(old, new, extra=None, *, monitor=None):
 def toy_heights(
     xyz,
     *,
-    cell_size: Annotated[float, Param("Cell size", "Side of a cell.", within="[0.1, inf) m")] = 2.0,
+    cell_size: Annotated[float, Param("Side of a cell.", within="[0.1, inf) m")] = 2.0,
     monitor=None,
 ):
     """Draw the highest and the lowest point of each cell."""

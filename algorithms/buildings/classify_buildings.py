@@ -41,7 +41,6 @@ _MEASURED = 256
 _MaxPenetration = Annotated[
     float,
     Param(
-        "Maximum penetration",
         "Share of the beam that may pass through a building: cells with points below, and returns that are not "
         "the last.",
         within="(0, 1]",
@@ -51,9 +50,9 @@ _MaxPenetration = Annotated[
 _MinShareAround = Annotated[
     float,
     Param(
-        "Minimum share of buildings around",
         "Share of the points within a few meters around a building that must belong to buildings, its own "
         "included. Around smooth spots of crowns it is less.",
+        label="Minimum share of buildings around",
         within="[0, 1]",
     ),
 ]

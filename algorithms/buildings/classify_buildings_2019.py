@@ -49,7 +49,6 @@ def classify_buildings_2019(
     two_classes: Annotated[
         str,
         Param(
-            "Two classes",
             "How the mean entropies are separated: 'exact' tries every gap between them; 'k-means' is scikit-learn's, "
             "from ten random starts.",
             choices=("exact", "k-means"),

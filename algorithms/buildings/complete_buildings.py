@@ -58,8 +58,8 @@ def complete_buildings(
     gap: Annotated[
         Optional[float],
         Param(
-            "Gap to close",
             "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
+            label="Gap to close",
             within=f"[0, {2 * SCENE.ground_within}] m",
             automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to "
             f"{2 * SCENE.ground_within:g} m.",
@@ -67,14 +67,16 @@ def complete_buildings(
     ] = None,
     roof_clearance: Annotated[
         float,
-        Param("Clearance above the roof", "Points up to this far above the roof belong to it.", within="[0, 20] m"),
+        Param(
+            "Points up to this far above the roof belong to it.", label="Clearance above the roof", within="[0, 20] m"
+        ),
     ] = 1.0,
     structure_height: Annotated[
         float,
         Param(
-            "Structures on the roof",
             "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
             "dormers, masts). Trees cover more.",
+            label="Structures on the roof",
             within="[0, 100] m",
         ),
     ] = 4.0,
@@ -82,10 +84,10 @@ def complete_buildings(
     min_roof_share: Annotated[
         float,
         Param(
-            "Minimum share of roof surfaces",
             "Share of the points at about the height of a building's roof, within the clearance above and below, that "
             "must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched "
             "images it is not examined.",
+            label="Minimum share of roof surfaces",
             within="[0, 1]",
         ),
     ] = 0.6,

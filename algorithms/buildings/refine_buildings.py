@@ -79,9 +79,9 @@ def refine_buildings(
     learn: Annotated[
         bool,
         Param(
-            "Learn from the scene",
             "Learn what buildings of this cloud look like, and correct points near their edges that look otherwise. "
             "Without it nothing is changed.",
+            label="Learn from the scene",
         ),
     ] = True,
     density: PointDensity = None,

@@ -85,7 +85,6 @@ def extract_facades(
     search_in: Annotated[
         str,
         Param(
-            "Search in",
             "All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from "
             "the scanner, behind cars, trees and people. Facade lines need the GPS time of the points.",
             choices=(ALL_POINTS, FACADE_LINES),
@@ -94,7 +93,6 @@ def extract_facades(
     tolerance: Annotated[
         Optional[float],
         Param(
-            "Tolerance",
             "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
             "strips and separates shallower recesses.",
             within="(0, 1] m",
@@ -105,13 +103,15 @@ def extract_facades(
     max_tilt: FacadeTilt = 10.0,
     min_area: Annotated[
         float,
-        Param("Minimum facade area", "Area of the smallest facade, where it has points.", within="[0.1, 10_000] m²"),
+        Param(
+            "Area of the smallest facade, where it has points.", label="Minimum facade area", within="[0.1, 10_000] m²"
+        ),
     ] = 2.0,
     min_height: Annotated[
         float,
         Param(
-            "Minimum facade height",
             "Height of the lowest facade; cars and hedges are lower than walls.",
+            label="Minimum facade height",
             within="[0, 100] m",
         ),
     ] = 2.5,

@@ -64,14 +64,11 @@ def extract_openings(
     max_depth: Annotated[
         float,
         Param(
-            "Maximum depth",
             "How far behind the wall points may belong to its openings; deeper recesses are parts of the building.",
             within="[0.05, 10] m",
         ),
     ] = 0.8,
-    min_size: Annotated[
-        float, Param("Minimum size", "Least width and height of a window or door.", within="[0.05, 10] m")
-    ] = 0.4,
+    min_size: Annotated[float, Param("Least width and height of a window or door.", within="[0.05, 10] m")] = 0.4,
     max_tilt: FacadeTilt = 10.0,
     max_gap: FacadeGap = 1.0,
     corner_distance: CornerDistance = 0.4,

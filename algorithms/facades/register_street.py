@@ -60,16 +60,9 @@ def register_street(
     footprints,
     *,
     max_shift: Annotated[
-        float,
-        Param(
-            "Maximum shift",
-            "How far the street scan may be off the airborne cloud, along either axis.",
-            within="[0, 20] m",
-        ),
+        float, Param("How far the street scan may be off the airborne cloud, along either axis.", within="[0, 20] m")
     ] = 3.0,
-    min_size: Annotated[
-        float, Param("Minimum size", "Least width and height of a window or door.", within="[0.05, 10] m")
-    ] = 0.4,
+    min_size: Annotated[float, Param("Least width and height of a window or door.", within="[0.05, 10] m")] = 0.4,
     monitor=None,
 ):
     """Find facades, windows and doors in a street scan and move them onto the airborne cloud.

@@ -70,7 +70,6 @@ def segment_facade_lines(
     line_duration: Annotated[
         Optional[float],
         Param(
-            "Line duration",
             "Time of one turn of the scanner's mirror.",
             within="(0, 60] s",
             automatic="the median time between two views of the sky, which give no points.",
@@ -79,7 +78,6 @@ def segment_facade_lines(
     tolerance: Annotated[
         float,
         Param(
-            "Tolerance",
             "Distance within which points lie on a line segment: a few standard deviations of the noise and of the "
             "relief of walls.",
             within="(0, 1] m",
@@ -88,23 +86,19 @@ def segment_facade_lines(
     max_ground_height: Annotated[
         float,
         Param(
-            "Maximum ground height",
-            "Level segments at most this high over the lowest one of their line are ground (d0).",
-            within="[0, 10] m",
+            "Level segments at most this high over the lowest one of their line are ground (d0).", within="[0, 10] m"
         ),
     ] = 0.5,
     facade_distance: Annotated[
         float,
         Param(
-            "Facade distance",
             "Steep segments at most this much nearer to the scanner than the farthest one on their side of the line "
             "are of the facade (h0).",
             within="[0, 50] m",
         ),
     ] = 1.5,
     min_points: Annotated[
-        int,
-        Param("Minimum points", "Points of the shortest segment; shorter ones are stray points.", within="[3, 1000]"),
+        int, Param("Points of the shortest segment; shorter ones are stray points.", within="[3, 1000]")
     ] = 5,
     monitor=None,
 ):

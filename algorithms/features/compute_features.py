@@ -94,14 +94,12 @@ _OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
 _REACH = 5.0
 
 _Features = Annotated[
-    tuple[str, ...],
-    Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=tuple(_FEATURES)),
+    tuple[str, ...], Param("What to compute; each becomes a dimension of the cloud.", choices=tuple(_FEATURES))
 ]
 
 _Radius = Annotated[
     Optional[float],
     Param(
-        "Radius",
         "Radius of the sphere around a point; used by the neighborhood 'radius'.",
         within="(0, inf) m",
         automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
@@ -111,9 +109,9 @@ _Radius = Annotated[
 _NNeighbors = Annotated[
     int,
     Param(
-        "Nearest points",
         "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
         "More of them smooth noise away and blur small objects.",
+        label="Nearest points",
         within="[3, 1000]",
     ),
 ]
@@ -121,8 +119,8 @@ _NNeighbors = Annotated[
 _NeighborsStep = Annotated[
     int,
     Param(
-        "Step of nearest points",
         "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
+        label="Step of nearest points",
         within="[1, 100]",
         advanced=True,
     ),
@@ -144,7 +142,6 @@ def compute_features(
     neighborhood: Annotated[
         str,
         Param(
-            "Neighborhood",
             "Which points describe a point: a number of nearest ones, all within a radius, or as many nearest ones as "
             "show the clearest shape (least eigenentropy), chosen for each point.",
             choices=("nearest", "radius", "optimal"),
@@ -155,16 +152,16 @@ def compute_features(
     min_neighbors: Annotated[
         int,
         Param(
-            "Minimum nearest points",
             "Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.",
+            label="Minimum nearest points",
             within="[3, 1000]",
         ),
     ] = 10,
     max_neighbors: Annotated[
         int,
         Param(
-            "Maximum nearest points",
             "Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.",
+            label="Maximum nearest points",
             within="[3, 1000]",
         ),
     ] = 100,

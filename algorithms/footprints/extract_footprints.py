@@ -72,19 +72,18 @@ def extract_footprints(
     *,
     min_area: MinBuildingArea = 4.0,
     min_hole_area: Annotated[
-        float,
-        Param("Minimum hole area", "Smaller holes are filled, larger ones are courtyards.", within="[0, 10_000] m²"),
+        float, Param("Smaller holes are filled, larger ones are courtyards.", within="[0, 10_000] m²")
     ] = 5.0,
     regularize: Annotated[
         bool,
         Param(
-            "Regularize outlines", "Make walls straight and, where they nearly are, parallel or square to each other."
+            "Make walls straight and, where they nearly are, parallel or square to each other.",
+            label="Regularize outlines",
         ),
     ] = True,
     tolerance: Annotated[
         Optional[float],
         Param(
-            "Tolerance",
             "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
             within="[0.01, 100] m",
             automatic=_AUTOMATIC_TOLERANCE,
@@ -94,10 +93,10 @@ def extract_footprints(
     merge_touching: Annotated[
         bool,
         Param(
-            "Merge touching buildings",
             "Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house "
             "of a row of three or more, where valleys between the roofs, steps or walls above them show the party "
             "walls.",
+            label="Merge touching buildings",
         ),
     ] = False,
     sampling: Optional[CloudSampling] = None,

@@ -45,21 +45,20 @@ def classify_vegetation(
     number_of_returns=None,
     *,
     look_for: Annotated[
-        bool, Param("Look for vegetation", "If not, no class changes. For models that contain this step.")
+        bool, Param("If not, no class changes. For models that contain this step.", label="Look for vegetation")
     ] = True,
     heights: Annotated[
         str,
         Param(
-            "Heights of medium and high vegetation",
             "Height above the ground from which vegetation is medium (4), and that from which it is high (5); below "
             "both it is low (3). The last two are those of the French and the Australian surveys.",
+            label="Heights of medium and high vegetation",
             choices=tuple(HEIGHTS),
         ),
     ] = "2 m and 5 m",
     min_height: Annotated[
         float,
         Param(
-            "Minimum height",
             "Points at least this high above the ground are vegetation; all others are unclassified.",
             within="[0, 10] m",
         ),
@@ -67,8 +66,8 @@ def classify_vegetation(
     medium_height: Annotated[
         Optional[float],
         Param(
-            "Medium vegetation from",
             "Height above the ground from which vegetation is medium (4).",
+            label="Medium vegetation from",
             within="[0, 100] m",
             automatic="the lower one of the heights chosen above.",
             advanced=True,
@@ -77,8 +76,8 @@ def classify_vegetation(
     high_height: Annotated[
         Optional[float],
         Param(
-            "High vegetation from",
             "Height above the ground from which vegetation is high (5).",
+            label="High vegetation from",
             within="[0, 100] m",
             automatic="the higher one of the heights chosen above.",
             advanced=True,

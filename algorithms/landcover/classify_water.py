@@ -33,10 +33,11 @@ def classify_water(
     return_number=None,
     *,
     look_for: Annotated[
-        bool, Param("Look for water", "If not, no class changes. For models that contain this step.")
+        bool, Param("If not, no class changes. For models that contain this step.", label="Look for water")
     ] = True,
     min_area: Annotated[
-        float, Param("Minimum water area", "Area of the smallest water body to be found.", within="[10, 1_000_000] m²")
+        float,
+        Param("Area of the smallest water body to be found.", label="Minimum water area", within="[10, 1_000_000] m²"),
     ] = 50.0,
     noise: SurfaceNoise = None,
     sampling: Optional[CloudSampling] = None,

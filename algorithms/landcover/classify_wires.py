@@ -47,11 +47,9 @@ def classify_wires(
     height_above_ground,
     *,
     look_for: Annotated[
-        bool, Param("Look for wires", "If not, no class changes. For models that contain this step.")
+        bool, Param("If not, no class changes. For models that contain this step.", label="Look for wires")
     ] = True,
-    min_height: Annotated[
-        float, Param("Minimum height", "Height above the ground of the lowest wires.", within="[1, 100] m")
-    ] = 4.0,
+    min_height: Annotated[float, Param("Height above the ground of the lowest wires.", within="[1, 100] m")] = 4.0,
     noise: SurfaceNoise = None,
     seed: Seed = 0,
     sampling: Optional[CloudSampling] = None,

@@ -38,9 +38,9 @@ def keep_classes(
     keep: Annotated[
         str,
         Param(
-            "Keep existing classes",
             "Which classes of a cloud that comes classified stay as they are: none, ground (2), ground and buildings "
             "(6), or all but 0 and 1. Where ground or buildings are kept, no others are looked for.",
+            label="Keep existing classes",
             choices=tuple(_KEPT),
         ),
     ] = _NONE,

@@ -43,18 +43,18 @@ def recode_classes(
     codes: Annotated[
         str,
         Param(
-            "Codes to write",
             "Whose class codes are written: those of ASPRS, which all other steps read, or those of the Dutch, the "
             "French or the American survey.",
+            label="Codes to write",
             choices=tuple(CODES),
         ),
     ] = _ASPRS,
     mapping: Annotated[
         str,
         Param(
-            "Own codes",
             "Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges "
             "before the equals sign, entries separated by semicolons; empty for none.",
+            label="Own codes",
         ),
     ] = "",
     monitor=None,

@@ -42,7 +42,6 @@ def export_for_roofer(
     margin: Annotated[
         float,
         Param(
-            "Margin",
             "Points up to this distance from the box of a footprint are kept, so that its ground is among them.",
             within="[0, 1000] m",
         ),

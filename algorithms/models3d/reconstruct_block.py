@@ -90,7 +90,7 @@ def reconstruct_block(
     openings,
     *,
     min_plane_area: Annotated[
-        float, Param("Minimum plane area", "Area of the smallest roof plane, seen from above.", within="[0.1, 1000] m²")
+        float, Param("Area of the smallest roof plane, seen from above.", within="[0.1, 1000] m²")
     ] = 1.5,
     sampling: Optional[CloudSampling] = None,
     monitor=None,

@@ -73,12 +73,15 @@ def reconstruct_gables(
     segment_id,
     *,
     min_area: Annotated[
-        float, Param("Minimum plane area", "Area of the smallest roof plane of a gable.", within="[0.5, 10_000] m²")
+        float,
+        Param("Area of the smallest roof plane of a gable.", label="Minimum plane area", within="[0.5, 10_000] m²"),
     ] = 4.0,
     max_gap: Annotated[
         float,
         Param(
-            "Largest gap at the ridge", "Points of both roof planes come this near to each other.", within="(0, 10] m"
+            "Points of both roof planes come this near to each other.",
+            label="Largest gap at the ridge",
+            within="(0, 10] m",
         ),
     ] = 1.5,
     monitor=None,

@@ -47,7 +47,6 @@ _NAMED = 5
 _Tolerance = Annotated[
     Optional[float],
     Param(
-        "Tolerance",
         "Distance at which a point lies on a plane. A larger one gives fewer planes.",
         within="[0.01, 5] m",
         automatic=TOLERANCE_TEXT,
@@ -58,8 +57,8 @@ _Tolerance = Annotated[
 _TopPercentile = Annotated[
     float,
     Param(
-        "Percentile of level tops",
         "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
+        label="Percentile of level tops",
         within="[0, 100] %",
         advanced=True,
     ),
@@ -98,7 +97,6 @@ def reconstruct_roofs(
     level_of_detail: Annotated[
         str,
         Param(
-            "Level of detail",
             "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.2: the planes of the "
             "roof. Files have the simpler levels too.",
             choices=LEVELS,
@@ -106,28 +104,21 @@ def reconstruct_roofs(
     ] = "2.2",
     min_plane_area: Annotated[
         float,
-        Param(
-            "Minimum plane area",
-            "Area of the smallest roof plane, seen from above; dormers have 2 m² and more.",
-            within="[0.1, 1000] m²",
-        ),
+        Param("Area of the smallest roof plane, seen from above; dormers have 2 m² and more.", within="[0.1, 1000] m²"),
     ] = 1.5,
     min_step: Annotated[
-        float,
-        Param("Minimum step", "At level 1.3, parts of a roof that step by less are one part.", within="[0, 100] m"),
+        float, Param("At level 1.3, parts of a roof that step by less are one part.", within="[0, 100] m")
     ] = 3.0,
     top_percentile: _TopPercentile = 70.0,
-    max_slope: Annotated[
-        float, Param("Maximum slope", "Slope of the steepest roof plane.", within="[1, 85]°", advanced=True)
-    ] = 75.0,
+    max_slope: Annotated[float, Param("Slope of the steepest roof plane.", within="[1, 85]°", advanced=True)] = 75.0,
     tolerance: _Tolerance = None,
     id_field: Annotated[
         str,
         Param(
-            "Identifier",
             "Attribute of the footprints that names buildings in all results. With it, the layer of buildings and "
             "CityJSON keep all attributes of the footprints. If empty, buildings are named by the attribute 'id' or "
             "'fid', or numbered, and in CityJSON also by their position, so that files can be merged.",
+            label="Identifier",
         ),
     ] = "",
     sampling: Optional[CloudSampling] = None,

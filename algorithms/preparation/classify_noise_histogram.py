@@ -48,7 +48,6 @@ def classify_noise_histogram(
     cell_size: Annotated[
         Optional[float],
         Param(
-            "Cell size",
             "Side of the cells whose heights are counted, each together with the eight cells around it.",
             within="[0.1, 10_000] m",
             automatic=f"cells of {HISTOGRAM.points_per_cell:g} points on average.",
@@ -58,7 +57,6 @@ def classify_noise_histogram(
     bin_height: Annotated[
         Optional[float],
         Param(
-            "Bin height",
             "Height of the bins; noise is parted from the scene by at least two empty ones.",
             within="[0.01, 1000] m",
             automatic=AUTOMATIC_BIN,
@@ -68,7 +66,6 @@ def classify_noise_histogram(
     max_clearance: Annotated[
         float,
         Param(
-            "Maximum clearance",
             "Height over the scene, or depth under it, beyond which everything is noise, however many points it has: "
             "clouds, aircraft, flocks. Cables over a deep valley may need more.",
             within="[1, 100_000] m",
@@ -78,8 +75,8 @@ def classify_noise_histogram(
     isolated: Annotated[
         bool,
         Param(
-            "Isolated points under the ground",
             "Also find single points and a few together under the ground (multipath), within the heights of the scene.",
+            label="Isolated points under the ground",
         ),
     ] = True,
     sampling: Optional[CloudSampling] = None,

@@ -44,7 +44,6 @@ def classify_noise_histogram_2019(
     cell_size: Annotated[
         Optional[float],
         Param(
-            "Cell size",
             "Side of the cells whose heights are counted.",
             within="[0.1, 10_000] m",
             automatic=f"cells of {_POINTS_PER_CELL:,} points on average.",
@@ -52,8 +51,7 @@ def classify_noise_histogram_2019(
         ),
     ] = None,
     bin_height: Annotated[
-        Optional[float],
-        Param("Bin height", "Height of the bins.", within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True),
+        Optional[float], Param("Height of the bins.", within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True)
     ] = None,
     sampling: Optional[CloudSampling] = None,
     monitor=None,

@@ -41,24 +41,26 @@ def classify_noise_statistical(
     n_neighbors: Annotated[
         int,
         Param(
-            "Neighbors", "Nearest points whose mean distance is taken, the point itself not counted.", within="[1, 200]"
+            "Nearest points whose mean distance is taken, the point itself not counted.",
+            label="Neighbors",
+            within="[1, 200]",
         ),
     ] = 8,
     deviations: Annotated[
         float,
         Param(
-            "Standard deviations",
             "How far a point's mean distance may lie over that of the whole cloud. Smaller values remove more, "
             "and sparse parts of the scene with it.",
+            label="Standard deviations",
             within="[0, 100]",
         ),
     ] = 6.0,
     isolated: Annotated[
         bool,
         Param(
-            "Isolated points",
             "Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), "
             "within the heights of the scene.",
+            label="Isolated points",
         ),
     ] = True,
     sampling: Optional[CloudSampling] = None,

@@ -31,7 +31,7 @@ def clip_cloud(
     xyz,
     polygons: Optional[LayerFeatures] = None,
     *,
-    outside: Annotated[bool, Param("Keep outside", "Keep the points outside all polygons instead.")] = False,
+    outside: Annotated[bool, Param("Keep the points outside all polygons instead.", label="Keep outside")] = False,
     monitor=None,
 ):
     """Keep the points that lie in polygons, within an extent, or both; all their dimensions stay.

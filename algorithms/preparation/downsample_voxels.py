@@ -62,7 +62,6 @@ def downsample_voxels(
     voxel_size: Annotated[
         float,
         Param(
-            "Voxel size",
             "Side of the cubes that are left with one point each. Take more than the noise of the scanner and less "
             "than the smallest object of interest.",
             within="[0.001, 1000] m",

@@ -31,14 +31,12 @@ def filter_points(
     classes: Annotated[
         str,
         Param(
-            "Classes",
-            "Keep points of these classes: numbers and ranges, separated by commas (2, 6-9); empty keeps every class.",
+            "Keep points of these classes: numbers and ranges, separated by commas (2, 6-9); empty keeps every class."
         ),
     ] = "",
     min_height: Annotated[
         Optional[float],
         Param(
-            "Minimum height",
             "Keep points at least this high above the ground: 0.3 m removes ground and grass.",
             within="[-10_000, 10_000] m",
             empty=_NO_LIMIT,
@@ -47,23 +45,19 @@ def filter_points(
     max_height: Annotated[
         Optional[float],
         Param(
-            "Maximum height",
             "Greatest height above the ground of the points kept: 2.5 m leaves everything lower than roofs.",
             within="[-10_000, 10_000] m",
             empty=_NO_LIMIT,
         ),
     ] = None,
     dimension: Annotated[
-        str,
-        Param(
-            "Dimension", "Any dimension of the cloud, by name (Intensity, NormalZ, Z), whose range is to be limited."
-        ),
+        str, Param("Any dimension of the cloud, by name (Intensity, NormalZ, Z), whose range is to be limited.")
     ] = "",
     low: Annotated[
         Optional[float],
         Param(
-            "Minimum value",
             "Keep points that have at least this in the dimension.",
+            label="Minimum value",
             within=f"[{-_LARGEST}, {_LARGEST}]",
             empty=_NO_LIMIT,
         ),
@@ -71,14 +65,14 @@ def filter_points(
     high: Annotated[
         Optional[float],
         Param(
-            "Maximum value",
             "Keep points that have at most this in the dimension.",
+            label="Maximum value",
             within=f"[{-_LARGEST}, {_LARGEST}]",
             empty=_NO_LIMIT,
         ),
     ] = None,
     invert: Annotated[
-        bool, Param("Invert", "Keep the points that any of the limits leaves out, and leave out the others.")
+        bool, Param("Keep the points that any of the limits leaves out, and leave out the others.")
     ] = False,
     monitor=None,
 ):

@@ -61,12 +61,11 @@ def merge_clouds(
     transforms: Annotated[
         str,
         Param(
-            "Transforms",
             "Where the clouds after the first go, in their order and separated by semicolons; empty for a cloud that "
             "stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order, "
             "counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, "
             "row by row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the "
-            "second cloud, leaves the third and moves the fourth as the file says.",
+            "second cloud, leaves the third and moves the fourth as the file says."
         ),
     ] = "",
     monitor=None,

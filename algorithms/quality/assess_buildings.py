@@ -97,7 +97,6 @@ def assess_buildings(
     cell_size: Annotated[
         Optional[float],
         Param(
-            "Cell size",
             "Side of the cells that are compared from above.",
             within="[0.05, 100] m",
             automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",

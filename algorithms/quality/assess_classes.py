@@ -63,9 +63,8 @@ def assess_classes(
     merged_classes: Annotated[
         str,
         Param(
-            "Merged classes",
             "Classes that count as one: numbers and ranges separated by commas, and one such group from the next by a "
-            "semicolon; empty merges none.",
+            "semicolon; empty merges none."
         ),
     ] = "0, 1; 3-5; 7, 18; 13-16",
     monitor=None,

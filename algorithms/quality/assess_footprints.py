@@ -122,25 +122,20 @@ def assess_footprints(
     compared: Annotated[
         str,
         Param(
-            "Footprints compared",
             "Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it "
             "may cover a part of the survey. Everywhere: all footprints, of which those without a building are "
             "invented.",
+            label="Footprints compared",
             choices=(AROUND, EVERYWHERE),
         ),
     ] = AROUND,
     min_overlap: Annotated[
         float,
-        Param(
-            "Minimum overlap",
-            "Share of a building that the other layer must cover for the building to be in it.",
-            within="(0, 1]",
-        ),
+        Param("Share of a building that the other layer must cover for the building to be in it.", within="(0, 1]"),
     ] = 0.5,
     tolerance: Annotated[
         Optional[float],
         Param(
-            "Tolerance",
             "Corners farther apart are not the same corner.",
             within="(0, 100] m",
             automatic="three times the median distance of a corner from the nearest one of the other layer, pairs by "

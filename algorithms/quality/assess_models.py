@@ -109,16 +109,11 @@ def assess_models(
     *,
     min_plane_area: Annotated[
         float,
-        Param(
-            "Minimum plane area",
-            "Smaller planes of the points, seen from above, are not reported as missing.",
-            within="[0.1, 1000] m²",
-        ),
+        Param("Smaller planes of the points, seen from above, are not reported as missing.", within="[0.1, 1000] m²"),
     ] = 2.0,
     tolerance: Annotated[
         Optional[float],
         Param(
-            "Tolerance",
             "Distance at which a point lies on a face or plane.",
             within="[0.01, 5] m",
             automatic=TOLERANCE_TEXT,

@@ -41,19 +41,13 @@ def assess_segments(
     min_overlap: Annotated[
         float,
         Param(
-            "Minimum overlap",
             "Share of the points of a segment that must lie in the other one, more than 0.5, so that each segment has "
             "one counterpart at most. 0.8 is usual.",
             within="(0.5, 1]",
         ),
     ] = 0.8,
     min_points: Annotated[
-        int,
-        Param(
-            "Minimum points",
-            "Smaller segments, of the input and of the reference, are ignored.",
-            within=f"[1, {10**9}]",
-        ),
+        int, Param("Smaller segments, of the input and of the reference, are ignored.", within=f"[1, {10**9}]")
     ] = 1,
     monitor=None,
 ):

@@ -97,15 +97,12 @@ def compare_corners(
     min_overlap: Annotated[
         float,
         Param(
-            "Minimum overlap",
-            "Share of a building's area that the other map must cover for the building to be the same.",
-            within="(0, 1]",
+            "Share of a building's area that the other map must cover for the building to be the same.", within="(0, 1]"
         ),
     ] = 0.5,
     tolerance: Annotated[
         Optional[float],
         Param(
-            "Tolerance",
             "Corners farther apart, after the shift between the maps is removed, are not the same corner.",
             within="(0, 100] m",
             automatic="three times the median distance of a corner from the nearest one of the other map, pairs by "

@@ -110,7 +110,6 @@ def compare_surveys(
     min_overlap: Annotated[
         float,
         Param(
-            "Minimum overlap",
             "Share of the smaller building that both surveys must have for two buildings to be the same.",
             within="(0, 1]",
         ),
@@ -118,7 +117,6 @@ def compare_surveys(
     outline_tolerance: Annotated[
         Optional[float],
         Param(
-            "Outline tolerance",
             "An outline has changed if it is farther than this from the earlier one somewhere.",
             within="[0, 100] m",
             automatic=f"{RULES.deviations:g} times the median distance between the outlines of both surveys, "
@@ -128,7 +126,6 @@ def compare_surveys(
     height_tolerance: Annotated[
         Optional[float],
         Param(
-            "Height tolerance",
             "A height has changed if it differs by more.",
             within="[0, 100] m",
             automatic=f"{RULES.deviations:g} times the median difference between the heights of both surveys, "

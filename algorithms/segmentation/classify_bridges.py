@@ -40,7 +40,6 @@ def classify_bridges(
     search: Annotated[
         str,
         Param(
-            "Search",
             "Where bridges are looked for: everywhere, or only around level surfaces over a gap in the ground with "
             "ground at their height at both ends, in a fraction of the time.",
             choices=(_EVERYWHERE, _OVER_GAPS),

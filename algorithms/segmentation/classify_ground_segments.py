@@ -42,12 +42,12 @@ def classify_ground_segments(
     max_width: BridgeWidth = 40.0,
     min_bridge_area: BridgeArea = 20.0,
     min_area: Annotated[
-        float, Param("Minimum ground area", "Area of the smallest segment of the bare earth.", within="[1, 100_000] m²")
+        float,
+        Param("Area of the smallest segment of the bare earth.", label="Minimum ground area", within="[1, 100_000] m²"),
     ] = 10.0,
     max_object_area: Annotated[
         float,
         Param(
-            "Maximum object area",
             "Area of the largest object: larger segments are bare earth, also where they are raised along their "
             "border, as islands and quarters between canals are.",
             within="[1, 10_000_000] m²",

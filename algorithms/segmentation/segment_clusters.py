@@ -33,7 +33,6 @@ def segment_clusters(
     radius: Annotated[
         Optional[float],
         Param(
-            "Radius",
             "Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.",
             within="(0, 100] m",
             automatic=f"{_RADIUS_SPACINGS:g} times the point spacing.",
@@ -42,7 +41,6 @@ def segment_clusters(
     min_points: Annotated[
         Optional[int],
         Param(
-            "Minimum points",
             "Points within the radius, the point itself among them, that make a point the core of a cluster; "
             "larger leaves out thin objects.",
             within="[1, 1_000_000]",

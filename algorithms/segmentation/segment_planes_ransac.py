@@ -45,7 +45,6 @@ def segment_planes_ransac(
     voxel_size: Annotated[
         Optional[float],
         Param(
-            "Voxel size",
             "Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.",
             within="[0.1, 20] m",
             automatic=f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
@@ -55,36 +54,33 @@ def segment_planes_ransac(
     tolerance: Annotated[
         Optional[float],
         Param(
-            "Tolerance",
             "Distance within which a point lies on a plane.",
             within="(0, 10] m",
             automatic=f"{ON_PLANE:.2g} times the roughness: {ROUGHNESS}.",
         ),
     ] = None,
     min_slope: Annotated[
-        float, Param("Minimum slope", "Slope of the flattest plane that is kept; 70° keeps walls.", within="[0, 90]°")
+        float, Param("Slope of the flattest plane that is kept; 70° keeps walls.", within="[0, 90]°")
     ] = 0.0,
     max_slope: Annotated[
-        float, Param("Maximum slope", "Slope of the steepest plane that is kept; 90° keeps walls.", within="[0, 90]°")
+        float, Param("Slope of the steepest plane that is kept; 90° keeps walls.", within="[0, 90]°")
     ] = 60.0,
     min_area: Annotated[
-        float, Param("Minimum plane area", "Area of the smallest plane, measured on it.", within="[0, 10_000] m²")
+        float, Param("Area of the smallest plane, measured on it.", label="Minimum plane area", within="[0, 10_000] m²")
     ] = 2.0,
     min_height: MinClusterHeight = 0.0,
     max_planes: Annotated[
-        int, Param("Planes per voxel", "Planes that are looked for in one voxel.", within="[1, 20]", advanced=True)
+        int,
+        Param("Planes that are looked for in one voxel.", label="Planes per voxel", within="[1, 20]", advanced=True),
     ] = 4,
     trials: Annotated[
-        int,
-        Param(
-            "Trials", "Planes through three points that are tried for each plane.", within="[1, 10_000]", advanced=True
-        ),
+        int, Param("Planes through three points that are tried for each plane.", within="[1, 10_000]", advanced=True)
     ] = 100,
     normals: Annotated[
         bool,
         Param(
-            "Write normals",
             "Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written.",
+            label="Write normals",
         ),
     ] = False,
     seed: Seed = 1,

@@ -44,7 +44,6 @@ _NEAREST = 3
 _Tolerance = Annotated[
     Optional[float],
     Param(
-        "Tolerance",
         "Distance from the straight line through a piece, and of its ends from the plane of a region.",
         within="(0, 100] m",
         automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
@@ -73,7 +72,6 @@ def segment_recorded_lines(
     surfaces: Annotated[
         str,
         Param(
-            "Surfaces",
             "Pieces join a region near the plane of all its points (planar), as published, or near the plane of the "
             "pieces beside them (smooth), so that terrain, domes and ramps are one.",
             choices=("planar", "smooth"),
@@ -83,7 +81,6 @@ def segment_recorded_lines(
     line_distance: Annotated[
         Optional[float],
         Param(
-            "Line distance",
             "Distance of neighboring points on adjacent scan lines at most.",
             within="(0, 1000] m",
             automatic=f"{_LINES:g} times the mean distance of scan lines.",
@@ -92,27 +89,23 @@ def segment_recorded_lines(
     max_gap: Annotated[
         Optional[float],
         Param(
-            "Widest gap",
             "Scan lines end where two points in a row are farther apart.",
+            label="Widest gap",
             within="(0, 1000] m",
             automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINE_GAPS:g} distances of scan "
             "lines.",
         ),
     ] = None,
     min_overlap: Annotated[
-        float,
-        Param(
-            "Minimum overlap",
-            "Share of the shorter of two pieces of a seed that lies beside the other.",
-            within="[0, 1]",
-        ),
+        float, Param("Share of the shorter of two pieces of a seed that lies beside the other.", within="[0, 1]")
     ] = 0.5,
     min_piece: Annotated[
-        int, Param("Minimum points of a piece", "Straight pieces with fewer points join nothing.", within="[3, 10_000]")
+        int,
+        Param(
+            "Straight pieces with fewer points join nothing.", label="Minimum points of a piece", within="[3, 10_000]"
+        ),
     ] = 5,
-    min_points: Annotated[
-        int, Param("Minimum points", "Segments with fewer points get no id.", within="[1, 10_000_000]")
-    ] = 30,
+    min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 10_000_000]")] = 30,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
     sampling: Optional[CloudSampling] = None,

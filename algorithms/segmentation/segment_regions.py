@@ -41,9 +41,9 @@ def segment_regions(
     plan_distance: Annotated[
         Optional[float],
         Param(
-            "Planimetric distance",
             "Points closer than this in plan, and close enough in height, belong together (T_Dxy; the paper has 0.6 m "
             "at 12.5 and 1.4 m at 4 points/m²).",
+            label="Planimetric distance",
             within="(0, 100] m",
             automatic="twice the point spacing.",
         ),
@@ -51,9 +51,9 @@ def segment_regions(
     height_distance: Annotated[
         Optional[float],
         Param(
-            "Height difference",
             "Points whose heights differ by less than this, and that are close enough in plan, belong together (T_Dh; "
             "the paper has 0.2 m at 12.5 and 0.3 m at 4 points/m²).",
+            label="Height difference",
             within="(0, 100] m",
             automatic="10 times the measured surface noise, 0.2 to 0.3 m.",
         ),

@@ -65,7 +65,6 @@ def segment_roofs(
     min_height: Annotated[
         Optional[float],
         Param(
-            "Minimum height",
             "Mean height above ground of the lowest roof and of other clusters.",
             within="[0, 100] m",
             automatic=f"{LASER.lowest_roof:g} m; {IMAGES.lowest_roof:g} m in clouds of matched images, where edges "
@@ -74,12 +73,13 @@ def segment_roofs(
     ] = None,
     min_area: Annotated[
         float,
-        Param("Minimum roof area", "Area of the smallest roof surface, seen from above.", within="[0.1, 10_000] m²"),
+        Param(
+            "Area of the smallest roof surface, seen from above.", label="Minimum roof area", within="[0.1, 10_000] m²"
+        ),
     ] = 2.0,
     max_slope: Annotated[
         float,
         Param(
-            "Maximum slope",
             "Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the "
             "trees that they touch; outlines then get less even.",
             within="[0, 90]°",

@@ -40,13 +40,10 @@ def segment_scan_lines(
     xyz,
     classification,
     *,
-    directions: Annotated[
-        int, Param("Directions", "Directions of artificial scan lines, evenly spread.", within="[2, 16]")
-    ] = 4,
+    directions: Annotated[int, Param("Directions of artificial scan lines, evenly spread.", within="[2, 16]")] = 4,
     line_width: Annotated[
         Optional[float],
         Param(
-            "Line width",
             "Width of an artificial scan line.",
             within="(0, 1000] m",
             automatic=f"{_WIDTH_SPACINGS:g} times the point spacing.",
@@ -55,7 +52,6 @@ def segment_scan_lines(
     distance: Annotated[
         Optional[float],
         Param(
-            "Distance",
             "Points of a line that are closer in space may belong together; larger passes over wider obstacles.",
             within="(0, 1000] m",
             automatic=f"{_DISTANCE_SPACINGS:g} times the point spacing.",
@@ -64,7 +60,6 @@ def segment_scan_lines(
     max_slope: Annotated[
         float,
         Param(
-            "Maximum slope",
             "Points of a line belong together if the line between them is no steeper; 90 leaves the criterion out.",
             within="[0, 90]°",
         ),
@@ -72,8 +67,8 @@ def segment_scan_lines(
     max_step: Annotated[
         Optional[float],
         Param(
-            "Height step",
             "Points of a line also belong together if their heights differ by no more than this.",
+            label="Height step",
             within="[0, 100] m",
             automatic=f"{_NOISE_STEP:g} standard deviations of the surface noise.",
         ),
@@ -81,20 +76,20 @@ def segment_scan_lines(
     max_obstacle: Annotated[
         float,
         Param(
-            "Widest obstacle",
             "A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without "
             "points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every "
             "obstacle.",
+            label="Widest obstacle",
             within="[0, 1000] m",
         ),
     ] = 0.0,
     min_piece: Annotated[
         int,
-        Param("Minimum points of a piece", "Pieces of a line with fewer points join nothing.", within="[2, 10_000]"),
+        Param(
+            "Pieces of a line with fewer points join nothing.", label="Minimum points of a piece", within="[2, 10_000]"
+        ),
     ] = 5,
-    min_points: Annotated[
-        int, Param("Minimum points", "Segments with fewer points get no id.", within="[1, 10_000_000]")
-    ] = 20,
+    min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 10_000_000]")] = 20,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
     sampling: Optional[CloudSampling] = None,

@@ -44,8 +44,8 @@ _WIDE_RADIUS = 0.5
 _Noise = Annotated[
     Optional[float],
     Param(
-        "Surface noise",
         "Standard deviation of the points across a smooth surface.",
+        label="Surface noise",
         within="(0, 10] m",
         automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
         "where that is less.",
@@ -56,7 +56,6 @@ _Noise = Annotated[
 _Tolerance = Annotated[
     Optional[float],
     Param(
-        "Tolerance",
         "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
         "surfaces.",
         within="(0, 100] m",
@@ -68,7 +67,6 @@ _Tolerance = Annotated[
 _Radius = Annotated[
     Optional[float],
     Param(
-        "Radius",
         "Reach of the neighborhood in which planes are fitted, and of growth.",
         within="(0, 1000] m",
         automatic=f"{_RADIUS_SPACINGS:g} times the point spacing on surfaces.",
@@ -91,7 +89,6 @@ def segment_surfaces(
     seeds: Annotated[
         str,
         Param(
-            "Seeds",
             "How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points "
             "around are of one surface; robust least squares leaves outliers out. The local Hough transform finds "
             "planes among outliers and at edges, in 4 times the time.",
@@ -101,7 +98,6 @@ def segment_surfaces(
     planarity: Annotated[
         str,
         Param(
-            "Planarity",
             "Local: points are accepted near the plane of the surface around the nearest of its points, so that "
             "smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). "
             "None: at any distance from a plane.",
@@ -109,13 +105,11 @@ def segment_surfaces(
         ),
     ] = "local",
     smooth_normals: Annotated[
-        bool,
-        Param("Smooth normals", "Points are accepted only if their normals are like that of the surface beside them."),
+        bool, Param("Points are accepted only if their normals are like that of the surface beside them.")
     ] = False,
     proximity: Annotated[
         str,
         Param(
-            "Proximity",
             "Points are near if they are among the nearest within the radius, or joined by an edge of the "
             "triangulation in plan that is no longer (for clouds with one surface above each position).",
             choices=("radius", "edges"),
@@ -123,21 +117,17 @@ def segment_surfaces(
     ] = "radius",
     radius: _Radius = None,
     neighbors: Annotated[
-        int,
-        Param("Neighbors", "Nearest points within the radius that are used, the point included.", within="[6, 200]"),
+        int, Param("Nearest points within the radius that are used, the point included.", within="[6, 200]")
     ] = _NEIGHBORS,
     tolerance: _Tolerance = None,
     max_angle: Annotated[
         float,
         Param(
-            "Maximum angle",
             "Largest angle between the normals of a point and of the surface, with smooth normals only.",
             within="(0, 90]°",
         ),
     ] = 15.0,
-    min_points: Annotated[
-        int, Param("Minimum points", "Surfaces with fewer points get no id.", within="[1, 10_000_000]")
-    ] = 20,
+    min_points: Annotated[int, Param("Surfaces with fewer points get no id.", within="[1, 10_000_000]")] = 20,
     noise: _Noise = None,
     density: PointDensity = None,
     sampling: Optional[CloudSampling] = None,

@@ -41,7 +41,6 @@ def segment_tin_planes(
     tolerance: Annotated[
         Optional[float],
         Param(
-            "Tolerance",
             "Two surfaces merge if neither lies farther than this from their common plane (root mean square).",
             within="(0, 100] m",
             automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} "
@@ -51,14 +50,13 @@ def segment_tin_planes(
     max_edge: Annotated[
         Optional[float],
         Param(
-            "Maximum edge",
             "Triangles with a longer edge belong to no surface: they lie across walls and gaps.",
             within="(0, 10_000] m",
             automatic=f"{_EDGE_SPACINGS:g} point spacings.",
         ),
     ] = None,
     min_area: Annotated[
-        float, Param("Minimum area", "Area of the smallest surface, along the surface.", within="[0, 1_000_000] m²")
+        float, Param("Area of the smallest surface, along the surface.", within="[0, 1_000_000] m²")
     ] = 2.0,
     noise: SurfaceNoise = None,
     density: PointDensity = None,

@@ -32,7 +32,6 @@ _OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "cl
 _VoxelSize = Annotated[
     Optional[float],
     Param(
-        "Voxel size",
         "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
         within="[0.001, 1000] m",
         automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces.",
@@ -42,10 +41,10 @@ _VoxelSize = Annotated[
 _CountFilter = Annotated[
     str,
     Param(
-        "Filter of counts",
         "Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left "
         "out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and "
         "the maximum widens, and the median removes single voxels.",
+        label="Filter of counts",
         choices=("none", *FILTERS),
         advanced=True,
     ),
@@ -79,7 +78,6 @@ def segment_voxels(
     neighbors: Annotated[
         str,
         Param(
-            "Neighbors",
             "Voxels that belong together: those that share a face (6), a face or an edge (18), or a face, an edge or a "
             "corner (26).",
             choices=("6", "18", "26"),
@@ -89,7 +87,6 @@ def segment_voxels(
     operation: Annotated[
         str,
         Param(
-            "Operation",
             "Applied before voxels are connected: erosion shrinks and dilation enlarges objects, opening removes thin "
             "parts, closing fills narrow gaps.",
             choices=("none", *_OPERATIONS),
@@ -98,31 +95,29 @@ def segment_voxels(
     element: Annotated[
         str,
         Param(
-            "Structuring element",
             "Neighbors that the operation reaches with each step: 6, 18 or 26.",
+            label="Structuring element",
             choices=("6", "18", "26"),
             advanced=True,
         ),
     ] = "26",
     steps: Annotated[
-        int, Param("Steps", "How many times the operation erodes or dilates.", within="[1, 100]", advanced=True)
+        int, Param("How many times the operation erodes or dilates.", within="[1, 100]", advanced=True)
     ] = 1,
     min_count: Annotated[
         int,
         Param(
-            "Minimum points of a voxel",
             "Voxels with fewer points, after the filter, count as empty: more suppress scattered points.",
+            label="Minimum points of a voxel",
             within="[1, 1_000_000]",
         ),
     ] = 1,
-    min_points: Annotated[
-        int, Param("Minimum points", "Segments with fewer points get no id.", within="[1, 1_000_000]")
-    ] = 1,
+    min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 1_000_000]")] = 1,
     thin: Annotated[
         bool,
         Param(
-            "Skeleton only",
             "Thin the voxels of the layer to lines in the middle of the objects; the segments of the points stay.",
+            label="Skeleton only",
         ),
     ] = False,
     sampling: Optional[CloudSampling] = None,

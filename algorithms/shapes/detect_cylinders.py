@@ -46,19 +46,16 @@ def detect_cylinders(
     min_seen: Annotated[
         float,
         Param(
-            "Minimum share seen",
             "Least share of the circumference that must have points, 0 to 1. A cylinder of which less is seen has an "
             "uncertain radius.",
+            label="Minimum share seen",
             within="[0.05, 1]",
         ),
     ] = 0.2,
-    min_points: Annotated[
-        int, Param("Minimum points", "Points of the smallest cylinder.", within=f"[{LEAST_POINTS}, 1_000_000]")
-    ] = 40,
+    min_points: Annotated[int, Param("Points of the smallest cylinder.", within=f"[{LEAST_POINTS}, 1_000_000]")] = 40,
     max_gap: Annotated[
         float,
         Param(
-            "Maximum gap",
             "Longest part of an axis without points, behind a flange or in the shadow of another object, across which "
             "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always parts them.",
             within="[0, 100] m",

@@ -39,7 +39,6 @@ def detect_spheres(
     method: Annotated[
         str,
         Param(
-            "Method",
             "With center first, points vote for a center, and those of the best center for a radius. With four "
             "dimensions, they vote for both together, which takes more memory.",
             choices=METHODS,
@@ -51,15 +50,13 @@ def detect_spheres(
     min_seen: Annotated[
         float,
         Param(
-            "Minimum share seen",
             "Least share of the sphere that must have points, 0 to 1. A sphere of which less is seen has an uncertain "
             "radius.",
+            label="Minimum share seen",
             within="[0.05, 1]",
         ),
     ] = 0.15,
-    min_points: Annotated[
-        int, Param("Minimum points", "Points of the smallest sphere.", within=f"[{LEAST_POINTS}, 1_000_000]")
-    ] = 40,
+    min_points: Annotated[int, Param("Points of the smallest sphere.", within=f"[{LEAST_POINTS}, 1_000_000]")] = 40,
     search_in: SearchIn = WHOLE_CLOUD,
     n_neighbors: NormalPoints = None,
     sampling: Optional[CloudSampling] = None,

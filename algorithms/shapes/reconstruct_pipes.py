@@ -45,8 +45,8 @@ def reconstruct_pipes(
     radius: Annotated[
         float,
         Param(
-            "Radius without attribute",
             "Radius of lines and points that have no attribute 'radius', such as wires.",
+            label="Radius without attribute",
             within="[0.001, 100] m",
         ),
     ] = 0.05,

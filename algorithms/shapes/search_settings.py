@@ -31,7 +31,6 @@ _SHARE_OF_EXTENT = 0.5
 MinRadius = Annotated[
     Optional[float],
     Param(
-        "Minimum radius",
         "Least radius that is looked for.",
         within="[0.001, 1000] m",
         automatic=f"the larger of {_RADIUS_SPACINGS:g} times the point spacing and {_RADIUS_DEVIATIONS:g} times the "
@@ -42,7 +41,6 @@ MinRadius = Annotated[
 MaxRadius = Annotated[
     Optional[float],
     Param(
-        "Maximum radius",
         "Largest radius that is looked for.",
         within="[0.001, 1000] m",
         automatic=f"{_LARGEST_RADIUS:g} m, but no more than half of the longest side of the cloud, and at least twice "
@@ -53,7 +51,6 @@ MaxRadius = Annotated[
 ShapeTolerance = Annotated[
     Optional[float],
     Param(
-        "Tolerance",
         "Distance within which a point lies on the surface.",
         within="(0, 10] m",
         automatic="3 times the roughness of surfaces, which is the root of the sum of the squares of the noise of "

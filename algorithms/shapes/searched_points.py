@@ -37,7 +37,6 @@ WHOLE_CLOUD, WITHOUT_SHAPE, EACH_SEGMENT = SEARCHES = ("whole cloud", "points wi
 SearchIn = Annotated[
     str,
     Param(
-        "Search in",
         "Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without "
         "a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep "
         "their segment.",

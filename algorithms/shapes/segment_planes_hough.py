@@ -47,7 +47,6 @@ _MOST_ANGLE = 10.0
 _Tolerance = Annotated[
     Optional[float],
     Param(
-        "Tolerance",
         "Distance within which a point lies on a plane.",
         within="(0, 10] m",
         automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
@@ -58,7 +57,6 @@ _Tolerance = Annotated[
 _DistanceBin = Annotated[
     Optional[float],
     Param(
-        "Distance bin",
         "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
         "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
         within="(0, 10] m",
@@ -69,7 +67,6 @@ _DistanceBin = Annotated[
 _SlopeBin = Annotated[
     Optional[float],
     Param(
-        "Slope bin",
         "Width of a bin in the slopes of a plane. Smaller bins separate directions, need more memory and time, "
         "and scatter a plane over several.",
         within="(0, 30]°",
@@ -80,7 +77,6 @@ _SlopeBin = Annotated[
 _MaxGap = Annotated[
     Optional[float],
     Param(
-        "Maximum gap",
         "Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part "
         "coplanar surfaces.",
         within="(0, 1000] m",
@@ -106,7 +102,6 @@ def segment_planes_hough(
     method: Annotated[
         str,
         Param(
-            "Method",
             "With points, each point votes for all planes through it. With normals, the normal of each point votes "
             "for a direction, then the point for a distance, which needs surfaces smooth enough for normals.",
             choices=METHODS,
@@ -119,7 +114,6 @@ def segment_planes_hough(
     window_size: Annotated[
         Optional[float],
         Param(
-            "Window size",
             "Side of the cubes in which planes are looked for; planes that continue in the next cube are joined.",
             within="(0, 100] m",
             automatic="wide enough for 40 points of a surface and for 20 tolerances.",
@@ -129,8 +123,8 @@ def segment_planes_hough(
     min_area: Annotated[
         Optional[float],
         Param(
-            "Minimum plane area",
             "Area of the smallest surface, measured on it.",
+            label="Minimum plane area",
             within="[0, 10_000] m²",
             automatic="half the side of a window, squared.",
         ),

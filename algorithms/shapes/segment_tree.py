@@ -64,7 +64,6 @@ def segment_tree(
     voxel_size: Annotated[
         Optional[float],
         Param(
-            "Voxel size",
             "Side of a voxel: about the thickness of the thinnest branches. Smaller voxels show thinner branches and "
             "need denser points.",
             within="[0.005, 10] m",
@@ -74,25 +73,19 @@ def segment_tree(
     min_count: Annotated[
         int,
         Param(
-            "Minimum points of a voxel",
             "Voxels with fewer points are left out: wood has several points to a voxel, leaves have single ones.",
+            label="Minimum points of a voxel",
             within="[1, 1000]",
         ),
     ] = 2,
     max_gap: Annotated[
         Optional[float],
         Param(
-            "Maximum gap",
-            "Widest gap in a stem or branch that is crossed.",
-            within="[0, 10] m",
-            automatic=f"{_GAP_VOXELS:g} voxels.",
+            "Widest gap in a stem or branch that is crossed.", within="[0, 10] m", automatic=f"{_GAP_VOXELS:g} voxels."
         ),
     ] = None,
     min_length: Annotated[
-        float,
-        Param(
-            "Minimum length", "Length of the shortest branch; points of shorter ones are leaves.", within="[0, 100] m"
-        ),
+        float, Param("Length of the shortest branch; points of shorter ones are leaves.", within="[0, 100] m")
     ] = 0.3,
     sampling: Optional[CloudSampling] = None,
     monitor=None,

@@ -31,9 +31,9 @@ _KEPT: WeakKeyDictionary[CloudSampling, tuple[tuple, np.ndarray]] = WeakKeyDicti
 NormalPoints = Annotated[
     Optional[int],
     Param(
-        "Points for normals",
         "Points of the neighborhood that gives a point its normal, itself among them. More are less noisy and round "
         "off edges and thin pipes.",
+        label="Points for normals",
         within="[4, 1000]",
         automatic=f"as many as hold the error of normals from the noise to 3°, {_LEAST_POINTS} to {_MOST_POINTS}.",
         advanced=True,

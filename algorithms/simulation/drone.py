@@ -16,10 +16,10 @@ from .scene import Scene
 from .solids import dot
 from .street_site import SIZE
 
-LineRate = Annotated[float, Param("Line rate", "Scan lines of each scanner.", within="[1, 500] 1/s", advanced=True)]
+LineRate = Annotated[float, Param("Scan lines of each scanner.", within="[1, 500] 1/s", advanced=True)]
 
 AngularStep = Annotated[
-    float, Param("Angular step", "Angle between neighboring beams of a scanner.", within="[0.02, 5]°", advanced=True)
+    float, Param("Angle between neighboring beams of a scanner.", within="[0.02, 5]°", advanced=True)
 ]
 
 # Number of each scanner, which is the source id of its points.

@@ -34,14 +34,14 @@ RECORDED = (
 PulseDensity = Annotated[
     float,
     Param(
-        "Pulse density",
         "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
+        label="Pulse density",
         within="[0.5, 100] pulses/m²",
     ),
 ]
 
 RangeNoise = Annotated[
-    float, Param("Range noise", "Standard deviation of the measured distances.", within="[0, 0.2] m", advanced=True)
+    float, Param("Standard deviation of the measured distances.", within="[0, 0.2] m", advanced=True)
 ]
 
 # Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.

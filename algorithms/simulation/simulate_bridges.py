@@ -36,17 +36,16 @@ def simulate_bridges(
     kind: Annotated[
         str,
         Param(
-            "Kind",
             "A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a "
             "cutting, a bridge over a valley, a fly-over with ramps. Or no bridge: the mouths of a tunnel, a "
             "jetty, a ramp that ends over a wall. 'all' lays them side by side.",
             choices=(_ALL, *KINDS),
         ),
     ] = _ALL,
-    angle: Annotated[float, Param("Angle", "Angle of the decks to the shortest way across.", within="[0, 50]°")] = 0.0,
+    angle: Annotated[float, Param("Angle of the decks to the shortest way across.", within="[0, 50]°")] = 0.0,
     density: PulseDensity = 8.0,
-    cars: Annotated[bool, Param("Cars", "Cars on the decks.")] = True,
-    trees: Annotated[bool, Param("Trees", "Trees on the land.")] = True,
+    cars: Annotated[bool, Param("Cars on the decks.")] = True,
+    trees: Annotated[bool, Param("Trees on the land.")] = True,
     range_noise: RangeNoise = 0.02,
     seed: Seed = 1,
     monitor=None,

@@ -46,42 +46,43 @@ _FIELDS = (
 )
 def simulate_drone_site(
     *,
-    size: Annotated[float, Param("Size", "Side of the site, a square from (0, 0).", within="[40, 400] m")] = 150.0,
+    size: Annotated[float, Param("Side of the site, a square from (0, 0).", within="[40, 400] m")] = 150.0,
     density: Annotated[
-        float, Param("Point density", "Points on open ground, seen from above.", within="[5, 400] points/m²")
+        float, Param("Points on open ground, seen from above.", label="Point density", within="[5, 400] points/m²")
     ] = 40.0,
-    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", within="[0, 20]°")] = 4.0,
+    slope: Annotated[float, Param("Mean slope of the ground.", within="[0, 20]°")] = 4.0,
     terrace_height: Annotated[
-        float, Param("Height of terraces", "Rise of steps in the slope.", within="[0, 3] m")
+        float, Param("Rise of steps in the slope.", label="Height of terraces", within="[0, 3] m")
     ] = 1.5,
     buildings: Annotated[
-        float, Param("Buildings", "Houses on a hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha")
+        float, Param("Houses on a hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha")
     ] = 16.0,
-    trees: Annotated[float, Param("Trees", "Trees in gardens.", within="[0, 200] per ha")] = 30.0,
+    trees: Annotated[float, Param("Trees in gardens.", within="[0, 200] per ha")] = 30.0,
     halls: Annotated[
-        int, Param("Flat halls", "Flat roofs with parapets, 10 to 100 m long, where there is room.", within="[0, 20]")
+        int,
+        Param("Flat roofs with parapets, 10 to 100 m long, where there is room.", label="Flat halls", within="[0, 20]"),
     ] = 2,
     unevenness: Annotated[
         float,
         Param(
-            "Unevenness of the ground",
             "Standard deviation of the ground from the slope: gardens, kerbs, ruts.",
+            label="Unevenness of the ground",
             within="[0, 0.5] m",
         ),
     ] = 0.12,
     rounding: Annotated[
-        float, Param("Rounding of edges", "Distance over which eaves and ridges are rounded.", within="[0, 2] m")
+        float, Param("Distance over which eaves and ridges are rounded.", label="Rounding of edges", within="[0, 2] m")
     ] = 0.5,
     waves: Annotated[
-        float, Param("Waves", "Standard deviation of errors that neighboring points share.", within="[0, 0.3] m")
+        float, Param("Standard deviation of errors that neighboring points share.", within="[0, 0.3] m")
     ] = 0.03,
     walls: Annotated[
         float,
-        Param("Share of walls", "Density of points on walls, as a share of that on open ground.", within="[0, 1]"),
+        Param(
+            "Density of points on walls, as a share of that on open ground.", label="Share of walls", within="[0, 1]"
+        ),
     ] = 0.6,
-    noise: Annotated[
-        float, Param("Noise", "Standard deviation of each point in every direction.", within="[0, 0.2] m")
-    ] = 0.01,
+    noise: Annotated[float, Param("Standard deviation of each point in every direction.", within="[0, 0.2] m")] = 0.01,
     seed: Seed = 1,
     monitor=None,
 ):

@@ -20,12 +20,11 @@ from .street_site import build_site
 def simulate_flight(
     *,
     height: Annotated[
-        float, Param("Flight height", "How high over the street the drone climbs.", within="[2, 25] m")
+        float, Param("How high over the street the drone climbs.", label="Flight height", within="[2, 25] m")
     ] = 8.0,
     duration: Annotated[
         float,
         Param(
-            "Duration",
             "From take-off to landing: a fifth of it each for the climb and the landing, the rest for one turn. "
             "Longer flights have more points.",
             within="[5, 600] s",
@@ -34,18 +33,15 @@ def simulate_flight(
     scanners: Annotated[
         str,
         Param(
-            "Scanners",
             "Whose points are wanted. Run twice with one scanner each, the same flight gives two clouds to be merged.",
             choices=("both", *SCANNERS),
         ),
     ] = "both",
-    trees: Annotated[int, Param("Trees", "Trees along the street.", within="[0, 22]")] = 4,
-    slope: Annotated[float, Param("Slope", "Slope of the ground, which is a plane.", within="[0, 10]°")] = 1.5,
+    trees: Annotated[int, Param("Trees along the street.", within="[0, 22]")] = 4,
+    slope: Annotated[float, Param("Slope of the ground, which is a plane.", within="[0, 10]°")] = 1.5,
     line_rate: LineRate = 40.0,
     angular_step: AngularStep = 0.25,
-    max_range: Annotated[
-        float, Param("Maximum range", "How far the scanners see.", within="[1, 40] m", advanced=True)
-    ] = 30.0,
+    max_range: Annotated[float, Param("How far the scanners see.", within="[1, 40] m", advanced=True)] = 30.0,
     range_noise: RangeNoise = 0.03,
     seed: Seed = 1,
     monitor=None,

@@ -62,32 +62,26 @@ _CENTER_FIELDS = tuple(field for field in _AXIS_FIELDS if field.name not in {"ki
 )
 def simulate_plant(
     *,
-    pipes: Annotated[
-        int, Param("Pipes", "Straight pipes with diameters of 5 to 60 cm, on racks.", within="[1, 2000]")
-    ] = 200,
+    pipes: Annotated[int, Param("Straight pipes with diameters of 5 to 60 cm, on racks.", within="[1, 2000]")] = 200,
     tanks: Annotated[
         int,
         Param(
-            "Tanks",
-            "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.",
-            within="[0, 20]",
+            "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.", within="[0, 20]"
         ),
     ] = 3,
-    spheres: Annotated[int, Param("Spheres", "Spherical vessels with diameters of 1 to 3 m.", within="[0, 50]")] = 4,
+    spheres: Annotated[int, Param("Spherical vessels with diameters of 1 to 3 m.", within="[0, 50]")] = 4,
     clutter: Annotated[
-        bool, Param("Beams, gratings and clutter", "What carries the pipes or lies near them and is no pipe.")
+        bool, Param("What carries the pipes or lies near them and is no pipe.", label="Beams, gratings and clutter")
     ] = True,
     density: Annotated[
         float,
         Param(
-            "Point density",
             "Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth.",
+            label="Point density",
             within="[100, 100_000] points/m²",
         ),
     ] = 4000.0,
-    noise: Annotated[
-        float, Param("Noise", "Standard deviation of the distance of a point.", within="[0, 0.1] m")
-    ] = 0.002,
+    noise: Annotated[float, Param("Standard deviation of the distance of a point.", within="[0, 0.1] m")] = 0.002,
     seed: Seed = 1,
     monitor=None,
 ):

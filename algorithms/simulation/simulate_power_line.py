@@ -18,15 +18,16 @@ from .scanner import RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pul
 )
 def simulate_power_line(
     *,
-    size: Annotated[float, Param("Size", "Side of the site, a square from (0, 0).", within="[80, 1000] m")] = 200.0,
+    size: Annotated[float, Param("Side of the site, a square from (0, 0).", within="[80, 1000] m")] = 200.0,
     density: PulseDensity = 8.0,
     span: Annotated[
-        float, Param("Span", "Distance between the towers of the transmission line.", within="[50, 500] m")
+        float, Param("Distance between the towers of the transmission line.", within="[50, 500] m")
     ] = 120.0,
-    angle: Annotated[float, Param("Angle", "Direction of both lines from east.", within="[0, 90]°")] = 15.0,
-    trees: Annotated[float, Param("Trees", "Trees outside the forest.", within="[0, 200] per ha")] = 20.0,
+    angle: Annotated[float, Param("Direction of both lines from east.", within="[0, 90]°")] = 15.0,
+    trees: Annotated[float, Param("Trees outside the forest.", within="[0, 200] per ha")] = 20.0,
     forest: Annotated[
-        float, Param("Share of forest", "Share of the site that is forest, also under the lines.", within="[0, 1]")
+        float,
+        Param("Share of the site that is forest, also under the lines.", label="Share of forest", within="[0, 1]"),
     ] = 0.15,
     range_noise: RangeNoise = 0.02,
     seed: Seed = 1,

@@ -51,7 +51,6 @@ _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
 _Unevenness = Annotated[
     float,
     Param(
-        "Unevenness",
         "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
         "plane.",
         within="[0, 1] m",
@@ -60,14 +59,16 @@ _Unevenness = Annotated[
 
 _Density = Annotated[
     float,
-    Param("Pulse density", "Laser pulses of the scan from the air.", within="[0.5, 100] pulses/m²", advanced=True),
+    Param(
+        "Laser pulses of the scan from the air.", label="Pulse density", within="[0.5, 100] pulses/m²", advanced=True
+    ),
 ]
 
 _Stoops = Annotated[
     float,
     Param(
-        "Height of stoops",
         "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
+        label="Height of stoops",
         within="[0, 4] m",
     ),
 ]
@@ -87,35 +88,30 @@ _Stoops = Annotated[
 )
 def simulate_street(
     *,
-    length: Annotated[float, Param("Length", "Length of the street.", within="[10, 2000] m")] = 60.0,
-    width: Annotated[float, Param("Width", "Distance between the fronts of both sides.", within="[12, 60] m")] = 16.0,
-    slope: Annotated[float, Param("Slope", "Slope along the street.", within="[0, 10]°")] = 1.0,
+    length: Annotated[float, Param("Length of the street.", within="[10, 2000] m")] = 60.0,
+    width: Annotated[float, Param("Distance between the fronts of both sides.", within="[12, 60] m")] = 16.0,
+    slope: Annotated[float, Param("Slope along the street.", within="[0, 10]°")] = 1.0,
     clutter: Annotated[
-        bool, Param("Clutter", "Put parked cars, trees, poles and people before the fronts, which hide parts of them.")
+        bool, Param("Put parked cars, trees, poles and people before the fronts, which hide parts of them.")
     ] = True,
     stoops: _Stoops = 0.0,
     unevenness: _Unevenness = 0.0,
-    houses: Annotated[
-        bool, Param("Houses", "Put houses with gable roofs behind the fronts; no front is curved then.")
-    ] = False,
+    houses: Annotated[bool, Param("Put houses with gable roofs behind the fronts; no front is curved then.")] = False,
     view: Annotated[
         str,
         Param(
-            "View",
             "Scan the street from a vehicle or from an airplane. Both see the same street for the same seed.",
             choices=VIEWS,
         ),
     ] = "vehicle",
     density: _Density = 12.0,
     glass: Annotated[
-        float, Param("Glass", "Share of the pulses on window panes that pass them and are lost.", within="[0, 100] %")
+        float, Param("Share of the pulses on window panes that pass them and are lost.", within="[0, 100] %")
     ] = 70.0,
-    speed: Annotated[float, Param("Speed", "Speed of the vehicle.", within="[0.5, 30] m/s", advanced=True)] = 5.0,
+    speed: Annotated[float, Param("Speed of the vehicle.", within="[0.5, 30] m/s", advanced=True)] = 5.0,
     line_rate: LineRate = 100.0,
     angular_step: AngularStep = 0.25,
-    max_range: Annotated[
-        float, Param("Maximum range", "How far the scanners see.", within="[5, 200] m", advanced=True)
-    ] = 40.0,
+    max_range: Annotated[float, Param("How far the scanners see.", within="[5, 200] m", advanced=True)] = 40.0,
     range_noise: RangeNoise = 0.01,
     seed: Seed = 1,
     monitor=None,

@@ -12,7 +12,6 @@ from .town_layout import MAX_BUILDINGS, TownPlan, build_town
 _MaxScanAngle = Annotated[
     float,
     Param(
-        "Maximum scan angle",
         "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
         "behind them.",
         within="[5, 30]°",
@@ -23,7 +22,6 @@ _MaxScanAngle = Annotated[
 _Buildings = Annotated[
     float,
     Param(
-        "Buildings",
         "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
         "The river's valley and the forest have none.",
         within=f"[0, {MAX_BUILDINGS}] per ha",
@@ -33,7 +31,6 @@ _Buildings = Annotated[
 _NoisePoints = Annotated[
     float,
     Param(
-        "Noise points",
         "Points far above (birds) and below the ground (multipath), half of each.",
         within="[0, 1000] per ha",
         advanced=True,
@@ -49,32 +46,32 @@ _NoisePoints = Annotated[
 )
 def simulate_town(
     *,
-    size: Annotated[float, Param("Size", "Side of the town, a square from (0, 0).", within="[50, 2000] m")] = 200.0,
+    size: Annotated[float, Param("Side of the town, a square from (0, 0).", within="[50, 2000] m")] = 200.0,
     density: PulseDensity = 8.0,
     buildings: _Buildings = 20.0,
     trees: Annotated[
         float,
         Param(
-            "Trees",
-            "Trees outside the forest, single and in clumps, where there is room for them.",
-            within="[0, 200] per ha",
+            "Trees outside the forest, single and in clumps, where there is room for them.", within="[0, 200] per ha"
         ),
     ] = 20.0,
-    forest: Annotated[float, Param("Share of forest", "Share of the town that is forest.", within="[0, 1]")] = 0.1,
-    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", within="[0, 40]°")] = 3.0,
-    relief: Annotated[float, Param("Relief", "Height from hollows to hills, about.", within="[0, 10] m")] = 2.0,
+    forest: Annotated[
+        float, Param("Share of the town that is forest.", label="Share of forest", within="[0, 1]")
+    ] = 0.1,
+    slope: Annotated[float, Param("Mean slope of the ground.", within="[0, 40]°")] = 3.0,
+    relief: Annotated[float, Param("Height from hollows to hills, about.", within="[0, 10] m")] = 2.0,
     terrace_height: Annotated[
-        float, Param("Terrace height", "Height of the banks across the slope, one every 45 m.", within="[0, 5] m")
+        float, Param("Height of the banks across the slope, one every 45 m.", within="[0, 5] m")
     ] = 1.5,
-    river: Annotated[bool, Param("River", "A river in a channel, with a bridge for every street.")] = True,
+    river: Annotated[bool, Param("A river in a channel, with a bridge for every street.")] = True,
     clutter: Annotated[
-        bool, Param("Cars, hedges, walls and wires", "Other objects of a town that are no buildings.")
+        bool, Param("Other objects of a town that are no buildings.", label="Cars, hedges, walls and wires")
     ] = True,
     pattern: Annotated[
         str,
         Param(
-            "Scan pattern",
             "Parallel lines of a rotating mirror, the zigzag of an oscillating one, or pulses at random.",
+            label="Scan pattern",
             choices=PATTERNS,
             advanced=True,
         ),
@@ -83,8 +80,8 @@ def simulate_town(
     overlap: Annotated[
         float,
         Param(
-            "Strip overlap",
             "Share of a strip that the next one scans too. Without any, roofs and crowns at the seam are cut.",
+            label="Strip overlap",
             within="[0, 0.8]",
             advanced=True,
         ),
@@ -94,9 +91,9 @@ def simulate_town(
     returns: Annotated[
         bool,
         Param(
-            "Several returns",
             "Record what a pulse meets on its way; otherwise the first surface only, with unknown return numbers, "
             "as image matching does.",
+            label="Several returns",
             advanced=True,
         ),
     ] = True,

@@ -79,18 +79,18 @@ class _Limb:
 )
 def simulate_tree(
     *,
-    height: Annotated[float, Param("Height", "Height of the tree.", within="[3, 60] m")] = 14.0,
+    height: Annotated[float, Param("Height of the tree.", within="[3, 60] m")] = 14.0,
     dbh: Annotated[
-        float, Param("Stem diameter", "Diameter of the stem at breast height, 1.3 m.", within="[0.05, 2] m")
+        float, Param("Diameter of the stem at breast height, 1.3 m.", label="Stem diameter", within="[0.05, 2] m")
     ] = 0.3,
-    n_branches: Annotated[int, Param("Branches", "Branches of the stem.", within="[0, 100]")] = 14,
+    n_branches: Annotated[int, Param("Branches of the stem.", label="Branches", within="[0, 100]")] = 14,
     leaves: Annotated[
-        float, Param("Leaves", "Points of leaves around the ends of branches, per point of wood.", within="[0, 5]")
+        float, Param("Points of leaves around the ends of branches, per point of wood.", within="[0, 5]")
     ] = 0.2,
-    density: Annotated[float, Param("Point density", "Points on wood.", within="[100, 100_000] points/m²")] = 5000.0,
-    noise: Annotated[
-        float, Param("Noise", "Standard deviation of a point across the bark.", within="[0, 0.05] m")
-    ] = 0.003,
+    density: Annotated[
+        float, Param("Points on wood.", label="Point density", within="[100, 100_000] points/m²")
+    ] = 5000.0,
+    noise: Annotated[float, Param("Standard deviation of a point across the bark.", within="[0, 0.05] m")] = 0.003,
     seed: Seed = 1,
     monitor=None,
 ):

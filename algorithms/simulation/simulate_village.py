@@ -40,8 +40,8 @@ _MAP_FIELDS = (
 _Oblique = Annotated[
     float,
     Param(
-        "Oblique angle",
         "Angle of the four oblique views to the vertical: more shows more of the walls.",
+        label="Oblique angle",
         within="[0, 30]°",
         advanced=True,
     ),
@@ -50,8 +50,8 @@ _Oblique = Annotated[
 _Density = Annotated[
     float,
     Param(
-        "Point density",
         "Points on open ground; roofs have about as many, walls a tenth of it where a view reaches them.",
+        label="Point density",
         within="[5, 1000] points/m²",
     ),
 ]
@@ -69,50 +69,54 @@ _Density = Annotated[
 )
 def simulate_village(
     *,
-    size: Annotated[float, Param("Size", "Side of the village, a square from (0, 0).", within="[50, 1000] m")] = 150.0,
+    size: Annotated[float, Param("Side of the village, a square from (0, 0).", within="[50, 1000] m")] = 150.0,
     density: _Density = 100.0,
     buildings: Annotated[
         float,
         Param(
-            "Buildings",
             "Plots with a house on a hectare of streets and plots, two of three with a shed as well.",
             within=f"[0, {MAX_HOMES}] per ha",
         ),
     ] = 12.0,
-    trees: Annotated[float, Param("Trees", "Trees in gardens.", within="[0, 200] per ha")] = 15.0,
-    slope: Annotated[float, Param("Slope", "Mean slope of the ground.", within="[0, 20]°")] = 2.0,
+    trees: Annotated[float, Param("Trees in gardens.", within="[0, 200] per ha")] = 15.0,
+    slope: Annotated[float, Param("Mean slope of the ground.", within="[0, 20]°")] = 2.0,
     overhang: Annotated[
         float,
-        Param("Overhang of roofs", "How far the eaves jut out over the walls; sheds have half.", within="[0, 1] m"),
+        Param(
+            "How far the eaves jut out over the walls; sheds have half.", label="Overhang of roofs", within="[0, 1] m"
+        ),
     ] = 0.5,
-    clutter: Annotated[bool, Param("Cars, hedges and bushes", "Objects at walls that are no buildings.")] = True,
-    noise: Annotated[
-        float, Param("Noise", "Standard deviation of a point in every direction.", within="[0, 0.2] m")
-    ] = 0.03,
+    clutter: Annotated[bool, Param("Objects at walls that are no buildings.", label="Cars, hedges and bushes")] = True,
+    noise: Annotated[float, Param("Standard deviation of a point in every direction.", within="[0, 0.2] m")] = 0.03,
     holes: Annotated[
         float,
-        Param("Share of holes", "Approximate share of all surfaces where matching finds nothing.", within="[0, 0.5]"),
+        Param(
+            "Approximate share of all surfaces where matching finds nothing.", label="Share of holes", within="[0, 0.5]"
+        ),
     ] = 0.1,
     oblique: _Oblique = 28.0,
     noise_points: Annotated[
-        float,
-        Param("Noise points", "Wrong matches above and below the ground.", within="[0, 1000] per ha", advanced=True),
+        float, Param("Wrong matches above and below the ground.", within="[0, 1000] per ha", advanced=True)
     ] = 20.0,
     map_shift: Annotated[
         float,
-        Param("Shift of the old map", "How far the old map lies to the east and to the north.", within="[0, 2] m"),
+        Param(
+            "How far the old map lies to the east and to the north.", label="Shift of the old map", within="[0, 2] m"
+        ),
     ] = 0.3,
     map_noise: Annotated[
         float,
         Param(
-            "Noise of the old map", "Standard deviation of its corners to the east and to the north.", within="[0, 1] m"
+            "Standard deviation of its corners to the east and to the north.",
+            label="Noise of the old map",
+            within="[0, 1] m",
         ),
     ] = 0.15,
     map_changes: Annotated[
         float,
         Param(
-            "Changes since the old map",
             "Share of the buildings that the map lacks; as many demolished ones are added to it, where plots are free.",
+            label="Changes since the old map",
             within="[0, 0.5]",
         ),
     ] = 0.1,

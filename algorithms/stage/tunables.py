@@ -15,7 +15,6 @@ import numpy as np
 class Param:
     """One tunable: everything but its name, type and default, which the signature gives."""
 
-    label: str  #: What the dialog calls it, sentence case, without the unit
     help: str  #: One or two sentences: what it does and when to change it
     #: Interval and unit of a number: "(0, 100] m" is above 0 and at most 100 m, "[3, inf)" at least 3
     within: str = ""
@@ -25,12 +24,13 @@ class Param:
     #: For tunables that have no effect when they are None: what happens then, as the end of the sentence "Empty: …"
     empty: str = ""
     advanced: bool = False  #: Folded away in the dialog
+    label: str = ""  #: What the dialog calls it, sentence case, without the unit; where that is not its name in words
 
     @cached_property
     def _interval(self) -> re.Match:
         found = _INTERVAL.fullmatch(self.within)
         if found is None:
-            raise ValueError(f"{self.label} must lie within an interval such as '(0, 100] m', got {self.within!r}.")
+            raise ValueError(f"A tunable lies within an interval such as '(0, 100] m', got {self.within!r}.")
         return found
 
     @property
@@ -57,11 +57,6 @@ class Param:
     def open_high(self) -> bool:
         """Whether the upper bound itself is refused."""
         return self._interval["closes"] == ")"
-
-    @property
-    def title(self) -> str:
-        """Label with its unit, for users."""
-        return f"{self.label} ({self.unit})" if self.unit else self.label
 
     @property
     def unset(self) -> str:
@@ -101,6 +96,10 @@ def _bound(text: Optional[str]) -> Optional[float]:
     return None if math.isinf(value) else int(value) if value.is_integer() else value
 
 
+# What names of tunables begin with, in words.
+_WORDS = {"min": "minimum", "max": "maximum"}
+
+
 @dataclass(frozen=True)
 class Tunable:
     """A :class:`Param` with the name, type and default that the signature gives."""
@@ -109,6 +108,17 @@ class Tunable:
     type: type
     default: Any
     param: Param
+
+    @property
+    def label(self) -> str:
+        """What the dialog calls it: "Minimum height" of ``min_height``, unless its declaration says otherwise."""
+        first, *others = self.name.split("_")
+        return self.param.label or " ".join([_WORDS.get(first, first), *others]).capitalize()
+
+    @property
+    def title(self) -> str:
+        """Label with its unit, for users."""
+        return f"{self.label} ({self.param.unit})" if self.param.unit else self.label
 
     @property
     def is_optional(self) -> bool:
@@ -170,7 +180,7 @@ class Tunable:
         return not (too_low or too_high)
 
     def _refusal(self, called: str, wanted: str, value: Any) -> str:
-        return f"{self.param.label} ({called or self.name}) must be {wanted or 'a finite number'}, got {value!r}."
+        return f"{self.label} ({called or self.name}) must be {wanted or 'a finite number'}, got {value!r}."
 
 
 _KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a word", tuple: "a list of words"}

@@ -43,39 +43,30 @@ def classify_ground_cloth(
     classification,
     *,
     cell_size: Annotated[
-        float, Param("Grid cell size", "Distance of the cloth's particles (grid resolution).", within="[0.05, 100] m")
+        float,
+        Param("Distance of the cloth's particles (grid resolution).", label="Grid cell size", within="[0.05, 100] m"),
     ] = 0.5,
     rigidness: Annotated[
-        int,
-        Param(
-            "Rigidness",
-            "Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.",
-            within="[1, 3]",
-        ),
+        int, Param("Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.", within="[1, 3]")
     ] = 3,
     threshold: Annotated[
         float,
-        Param("Class threshold", "Points at most this far above or below the cloth are ground.", within="(0, 100] m"),
+        Param(
+            "Points at most this far above or below the cloth are ground.", label="Class threshold", within="(0, 100] m"
+        ),
     ] = 0.5,
     slope_processing: Annotated[
         bool,
         Param(
-            "Slope post-processing",
             "Let the cloth down where it hangs over slopes without a step of 0.3 m from one particle to the next.",
+            label="Slope post-processing",
         ),
     ] = True,
     time_step: Annotated[
         float,
-        Param(
-            "Time step",
-            "How far the cloth falls in one step; smaller is slower and steadier.",
-            within="(0, 2]",
-            advanced=True,
-        ),
+        Param("How far the cloth falls in one step; smaller is slower and steadier.", within="(0, 2]", advanced=True),
     ] = 0.65,
-    iterations: Annotated[
-        int, Param("Iterations", "Most steps of the simulation.", within="[1, 10_000]", advanced=True)
-    ] = 500,
+    iterations: Annotated[int, Param("Most steps of the simulation.", within="[1, 10_000]", advanced=True)] = 500,
     monitor=None,
 ):
     """Find the ground by letting a cloth fall onto the terrain turned upside down.

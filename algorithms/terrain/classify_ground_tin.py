@@ -59,7 +59,6 @@ _REACH = 40.0
 _IterationDistance = Annotated[
     Optional[float],
     Param(
-        "Iteration distance",
         "Largest distance from its facet at which a point joins the surface.",
         within="(0, 100] m",
         automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
@@ -71,7 +70,6 @@ _IterationDistance = Annotated[
 _SweepDistance = Annotated[
     Optional[float],
     Param(
-        "Sweep distance",
         "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
         within="[0, 100] m",
         automatic=f"{GROUND.sweep_noise:g} times the roughness of the finished surface, or the surface noise where "
@@ -83,7 +81,6 @@ _SweepDistance = Annotated[
 _IterationAngle = Annotated[
     Optional[float],
     Param(
-        "Iteration angle",
         "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
         "larger follows steeper breaks and lets more low objects in.",
         within="(0, 90]°",
@@ -94,7 +91,6 @@ _IterationAngle = Annotated[
 _MaxBuildingSize = Annotated[
     Optional[float],
     Param(
-        "Maximum building size",
         "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
         within="[1, 1000] m",
         automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
@@ -105,8 +101,8 @@ _MaxBuildingSize = Annotated[
 _CellSize = Annotated[
     Optional[float],
     Param(
-        "Grid cell size",
         "Cell in which the lowest point is looked for.",
+        label="Grid cell size",
         within="[0.1, 100] m",
         automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
         advanced=True,
@@ -132,7 +128,6 @@ def classify_ground_tin(
     terrain: Annotated[
         Optional[str],
         Param(
-            "Terrain",
             "Kind of terrain and of its buildings: it sets the maximum building size "
             f"({', '.join(f'{_largest_building(kind):g}' for kind in _TERRAINS)} m) and the iteration angle "
             f"({GROUND.angle_in_nature:g}° in nature, else {GROUND.angle:g}°) where these are automatic.",
@@ -143,7 +138,6 @@ def classify_ground_tin(
     granularity: Annotated[
         Optional[str],
         Param(
-            "Granularity",
             "How finely the surface is started and refined: it sets the grid cell size where that is automatic, at "
             "least 2 m (coarse), 1 m (medium, fine) or 0.5 m (extra fine).",
             choices=tuple(_GRANULARITIES),
@@ -157,7 +151,6 @@ def classify_ground_tin(
     edge_length: Annotated[
         Optional[float],
         Param(
-            "Edge length",
             "Facets whose edges are all shorter are not refined.",
             within="[0, 1000] m",
             automatic="twice the grid cell size.",
@@ -168,8 +161,8 @@ def classify_ground_tin(
     keep_ground: Annotated[
         bool,
         Param(
-            "Keep existing ground",
             "Where the cloud has ground (2) already, it stays as it is and no other is looked for.",
+            label="Keep existing ground",
         ),
     ] = False,
     source: PointSource = "automatic",

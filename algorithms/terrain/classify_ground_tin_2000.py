@@ -29,7 +29,6 @@ _MIN_MIRROR_REACH = 1.0
 _IterationDistance = Annotated[
     Optional[float],
     Param(
-        "Iteration distance",
         "Largest distance from its facet at which a point joins the surface.",
         within="(0, 100] m",
         automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
@@ -41,7 +40,6 @@ _IterationDistance = Annotated[
 _MaxBuildingSize = Annotated[
     float,
     Param(
-        "Maximum building size",
         "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
         "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
         "towns, 25 m in cities and 50 m in the largest cities.",
@@ -68,7 +66,6 @@ def classify_ground_tin_2000(
     terrain_angle: Annotated[
         float,
         Param(
-            "Terrain angle",
             "Steepest line from a point to the nodes of its facet under which it joins the surface.",
             within="(0, 90]°",
             advanced=True,
@@ -77,7 +74,6 @@ def classify_ground_tin_2000(
     iteration_angle: Annotated[
         float,
         Param(
-            "Iteration angle",
             "Upper bound of the angle between a facet and the lines to its nodes under which a point joins the "
             "surface, which is estimated in each round. Larger follows steeper breaks and lets more low objects in.",
             within="(0, 90]°",
@@ -87,7 +83,6 @@ def classify_ground_tin_2000(
     edge_length: Annotated[
         Optional[float],
         Param(
-            "Edge length",
             "Facets whose edges are all shorter are not refined.",
             within="[0, 1000] m",
             automatic=f"the point spacing, at least {_MIN_EDGE:g} m.",
@@ -97,7 +92,6 @@ def classify_ground_tin_2000(
     sweep_distance: Annotated[
         Optional[float],
         Param(
-            "Sweep distance",
             "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
             within="[0, 100] m",
             automatic=f"{_SWEEP_DEVIATIONS:g} times the roughness of the finished surface.",

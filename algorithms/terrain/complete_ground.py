@@ -29,7 +29,6 @@ def complete_ground(
     max_distance: Annotated[
         float,
         Param(
-            "Maximum distance",
             "Unclassified points no farther above or below the surface of the ground become ground; 0 adds none.",
             within="[0, 1] m",
         ),

@@ -48,7 +48,6 @@ def rasterize_terrain(
     cell_size: Annotated[
         Optional[float],
         Param(
-            "Cell size",
             "Side of a cell of the rasters.",
             within=f"[0.01, {_MOST_CELL}] m",
             automatic=f"{_CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
@@ -58,7 +57,6 @@ def rasterize_terrain(
     gap_distance: Annotated[
         Optional[float],
         Param(
-            "Gap distance",
             "Cells of the surface model without points are interpolated up to this far from cells with points.",
             within="[0, 10_000] m",
             automatic=f"{_GAP_CELLS:g} cells.",

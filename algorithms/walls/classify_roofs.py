@@ -40,14 +40,14 @@ def classify_roofs(
     segment_id,
     *,
     min_height: Annotated[
-        float, Param("Minimum height", "Height above the ground over which half of a roof lies.", within="[0.5, 100] m")
+        float, Param("Height above the ground over which half of a roof lies.", within="[0.5, 100] m")
     ] = 2.0,
     min_area: MinBuildingArea = 6.0,
     gap: Annotated[
         Optional[float],
         Param(
-            "Gap between roofs",
             "Points of planes at most this far apart belong to one building.",
+            label="Gap between roofs",
             within="(0, 20] m",
             automatic="3 times the point spacing, from 0.6 to 5 m.",
         ),

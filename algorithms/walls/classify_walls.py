@@ -56,20 +56,14 @@ def classify_walls(
     height_above_ground,
     cluster_id,
     *,
-    min_height: Annotated[
-        float, Param("Minimum height", "Lower points may be ground, kerbs and plants.", within="[0, 10] m")
-    ] = 0.3,
+    min_height: Annotated[float, Param("Lower points may be ground, kerbs and plants.", within="[0, 10] m")] = 0.3,
     max_height: Annotated[
-        float,
-        Param("Maximum height", "Walls are looked for up to this height above the ground.", within="[0.5, 100] m"),
+        float, Param("Walls are looked for up to this height above the ground.", within="[0.5, 100] m")
     ] = 2.5,
-    max_tilt: Annotated[
-        float, Param("Maximum tilt", "Largest angle of a wall to the vertical.", within="[0, 90]°")
-    ] = 30.0,
+    max_tilt: Annotated[float, Param("Largest angle of a wall to the vertical.", within="[0, 90]°")] = 30.0,
     neighborhood: Annotated[
         str,
         Param(
-            "Neighborhood",
             "Which points give a point its normal: a number of nearest ones, or all within a radius.",
             choices=("nearest", "radius"),
         ),
@@ -77,23 +71,22 @@ def classify_walls(
     n_neighbors: Annotated[
         Optional[int],
         Param(
-            "Nearest points",
             "Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.",
+            label="Nearest points",
             within="[3, 1000]",
             automatic=f"as many as reach {_REACH_DEVIATIONS:g} times the roughness at the density of low points near "
             "roofs, 8 to 30.",
         ),
     ] = None,
     radius: Annotated[
-        float,
-        Param("Radius", "Radius of the sphere around a point; used by the neighborhood 'radius'.", within="(0, 10] m"),
+        float, Param("Radius of the sphere around a point; used by the neighborhood 'radius'.", within="(0, 10] m")
     ] = 0.5,
     noise: SurfaceNoise = None,
     margin: Annotated[
         float,
         Param(
-            "Margin around roofs",
             "How far the convex hull of a roof is grown; walls outside it belong to no roof.",
+            label="Margin around roofs",
             within="[0, 20] m",
         ),
     ] = 0.3,

@@ -75,7 +75,6 @@ _EDGE_FIELDS = (
 _Tolerance = Annotated[
     Optional[float],
     Param(
-        "Tolerance",
         "Distance within which points lie on a wall.",
         within="[0.01, 2] m",
         automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
@@ -84,11 +83,7 @@ _Tolerance = Annotated[
 
 _MaxOverhang = Annotated[
     float,
-    Param(
-        "Maximum overhang",
-        "How far roofs may jut out over their walls; parts deeper under a roof are inside.",
-        within="[0, 10] m",
-    ),
+    Param("How far roofs may jut out over their walls; parts deeper under a roof are inside.", within="[0, 10] m"),
 ]
 
 
@@ -114,14 +109,15 @@ def extract_wall_footprints(
     *,
     min_area: MinBuildingArea = 6.0,
     min_length: Annotated[
-        float, Param("Minimum wall length", "Length of the shortest wall that is looked for.", within="[0.2, 100] m")
+        float,
+        Param("Length of the shortest wall that is looked for.", label="Minimum wall length", within="[0.2, 100] m"),
     ] = 1.2,
     max_overhang: _MaxOverhang = 1.2,
     min_seen: Annotated[
         float,
         Param(
-            "Minimum share of walls seen",
             "Where less of the perimeter has wall points, the outline of the roof is given instead.",
+            label="Minimum share of walls seen",
             within="[0, 1]",
         ),
     ] = 0.25,

@@ -34,7 +34,7 @@ def classify_toy(
     classification,
     height_above_ground=None,
     *,
-    limit: Annotated[float, Param("Limit", "Higher points become 6.", within="[0, inf) m")] = 2.0,
+    limit: Annotated[float, Param("Higher points become 6.", within="[0, inf) m")] = 2.0,
     monitor=None,
 ):
     """Make points over a limit class 6, and say how many points there were."""
@@ -52,7 +52,7 @@ def compute_toy(xyz, *, monitor=None):
 
 
 @stage("Toy town", group="Toys", creates=("xyz", "classification"))
-def simulate_toy(*, count: Annotated[int, Param("Count", "Points.", within="[1, 9]")] = 3, monitor=None):
+def simulate_toy(*, count: Annotated[int, Param("Points.", within="[1, 9]")] = 3, monitor=None):
     """Make points in a row."""
     return np.outer(np.arange(count), [1.0, 2.0, 3.0]), np.full(count, 2)
 
@@ -82,9 +82,9 @@ def filter_toy(
     xyz,
     values=None,
     *,
-    dimension: Annotated[str, Param("Dimension", "What is looked at.")] = "",
-    low: Annotated[float, Param("Low", "Lower values go.", within="[-1e9, inf)")] = 2.0,
-    step: Annotated[float, Param("Step", "Moved east.", within="[0, inf) m")] = 0.0,
+    dimension: Annotated[str, Param("What is looked at.")] = "",
+    low: Annotated[float, Param("Lower values go.", within="[-1e9, inf)")] = 2.0,
+    step: Annotated[float, Param("Moved east.", within="[0, inf) m")] = 0.0,
     monitor=None,
 ):
     """Keep what is high, the last point first, and move it east."""
@@ -98,7 +98,7 @@ def merge_toy(
     classification,
     cluster_id=None,
     *,
-    lift: Annotated[float, Param("Lift", "How far later clouds are lifted.", within="[0, inf) m")] = 0.0,
+    lift: Annotated[float, Param("How far later clouds are lifted.", within="[0, inf) m")] = 0.0,
     monitor=None,
 ):
     """Put clouds together, each higher than the one before."""

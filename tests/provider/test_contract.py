@@ -263,7 +263,7 @@ def test_every_tunable_is_a_parameter(stage, algorithm):
         definition = algorithm.parameterDefinition(tunable.name.upper())
         default = list(tunable.default) if isinstance(tunable.default, tuple) else tunable.default
         assert definition.defaultValue() == default
-        assert definition.description().startswith(tunable.param.label)
+        assert definition.description().startswith(tunable.label)
         assert definition.help().startswith(tunable.param.help)
         flags = definition.flags()
         assert bool(flags & Qgis.ProcessingParameterFlag.Advanced) == tunable.param.advanced
@@ -319,7 +319,7 @@ def test_help_is_complete(stage, algorithm):
     text = algorithm.shortHelpString()
     assert stage.summary.split()[0] in text
     for tunable in stage.tunables.values():
-        assert f"<b>{tunable.param.title}</b>".replace("<b>", "").replace("</b>", "").split("<")[0] in text
+        assert f"<b>{tunable.title}</b>".replace("<b>", "").replace("</b>", "").split("<")[0] in text
     for name in ("Notes", "References"):
         assert (f"<h3>{name}</h3>" in text) == bool(stage.section(name))
     for definition in algorithm.parameterDefinitions():

@@ -9,9 +9,9 @@ from lidar_buildings.algorithms.stage import Param, stage
 def toy_words(
     xyz,
     *,
-    width: Annotated[float, Param("Width", "How wide.", within="[0, inf) m")] = 2.0,
-    count: Annotated[Optional[int], Param("Count", "How many.", within="[1, inf)", automatic="all.")] = None,
-    color: Annotated[Optional[str], Param("Color", "Which.", empty="it stays as it is.")] = None,
+    width: Annotated[float, Param("How wide.", within="[0, inf) m")] = 2.0,
+    count: Annotated[Optional[int], Param("How many.", within="[1, inf)", automatic="all.")] = None,
+    color: Annotated[Optional[str], Param("Which.", empty="it stays as it is.")] = None,
     monitor=None,
 ):
     """Say something in one paragraph.
