@@ -22,7 +22,7 @@ from lidar_buildings.algorithms.stage import (
 )
 
 
-@stage("Toy lift", group="Toys", writes=("height_above_ground",), tags="toy, lift")
+@stage("Toys", writes=("height_above_ground",), tags="toy, lift")
 def toy_lift(
     xyz,
     classification,
@@ -63,8 +63,7 @@ def toy_lift(
 
 
 @stage(
-    "Toy outline",
-    group="Toys",
+    "Toys",
     layers=(
         Layer(
             "footprints",
@@ -93,7 +92,7 @@ def toy_outline(
     return LayerFeatures([[box, hole]], {"id": np.array([7]), "height": [height], "kind": ["box"]})
 
 
-@stage("Toy compare", group="Toys", measures=(Measure("difference", "Difference", "m"), Measure("points", "Points")))
+@stage("Toys", measures=(Measure("difference", "Difference", "m"), Measure("points", "Points")))
 def toy_compare(xyz, reference_xyz, *, monitor=None):
     """Compare mean heights."""
     difference = np.float64(xyz[:, 2].mean() - reference_xyz[:, 2].mean())
@@ -103,10 +102,7 @@ def toy_compare(xyz, reference_xyz, *, monitor=None):
 
 
 @stage(
-    "Toy make",
-    group="Toys",
-    creates=("xyz", "classification"),
-    layers=(Layer("truth", "Truth", "Point", (Field("id", int, "Id."),)),),
+    "Toys", creates=("xyz", "classification"), layers=(Layer("truth", "Truth", "Point", (Field("id", int, "Id."),)),)
 )
 def toy_make(*, n_points: Annotated[int, Param("How many.", label="Points", within="[1, 1000]")] = 10, monitor=None):
     """Make a row of points."""
@@ -114,7 +110,7 @@ def toy_make(*, n_points: Annotated[int, Param("How many.", label="Points", with
     return xyz, np.full(n_points, 2, np.uint8), LayerFeatures([np.array([1.0, 2.0, 3.0])], {"id": [1]})
 
 
-@stage("Toy trouble", group="Toys", writes=("height_above_ground",))
+@stage("Toys", writes=("height_above_ground",))
 def toy_trouble(
     xyz,
     *,
@@ -131,7 +127,7 @@ def toy_trouble(
     }[kind]
 
 
-@stage("Toy keep", group="Toys", writes=("xyz", "cluster_id"), selects=True)
+@stage("Toys", writes=("xyz", "cluster_id"), selects=True)
 def toy_keep(
     xyz,
     values=None,
@@ -146,7 +142,7 @@ def toy_keep(
     return kept, xyz[kept] - [0, 0, sink] if sink else None, np.arange(1, len(kept) + 1)
 
 
-@stage("Toy merge", group="Toys", writes=("xyz", "point_source_id"), merges=True)
+@stage("Toys", writes=("xyz", "point_source_id"), merges=True)
 def toy_merge(
     xyz,
     *,
@@ -160,8 +156,7 @@ def toy_merge(
 
 
 @stage(
-    "Toy mask",
-    group="Toys",
+    "Toys",
     writes=("cluster_id",),
     input_layers=(InputLayer("areas", "Areas", "Polygon", "Boxes of these number the points.", optional=True),),
 )
@@ -175,8 +170,7 @@ def toy_mask(xyz, areas=None, *, monitor=None):
 
 
 @stage(
-    "Toy arrows",
-    group="Toys",
+    "Toys",
     input_layers=(
         InputLayer("old", "Old map", "Polygon", "What it was."),
         InputLayer("new", "New map", "Polygon", "What it is."),
@@ -195,7 +189,7 @@ def toy_arrows(old, new, extra=None, *, monitor=None):
     return LayerFeatures(arrows, {"length": length}), Report({"longest": longest}, f"<html>{longest:.3f}</html>")
 
 
-@stage("Toy heights", group="Toys", rasters=(Raster("top", "Top", unit="m"), Raster("floor", "Floor", "top", "m")))
+@stage("Toys", rasters=(Raster("top", "Top", unit="m"), Raster("floor", "Floor", "top", "m")))
 def toy_heights(
     xyz,
     *,
@@ -213,7 +207,7 @@ def toy_heights(
     return tuple(RasterSurface(np.where(empty, np.nan, values), west, north, cell_size) for values in (top, floor))
 
 
-@stage("Toy picture", group="Toys", rasters=(Raster("picture", "Picture"),))
+@stage("Toys", rasters=(Raster("picture", "Picture"),))
 def toy_picture(xyz, *, monitor=None):
     """Draw two cells, one of them empty."""
     return RasterSurface(np.array([[1.5, np.nan]]), 0.0, 0.0, 3.0)

@@ -59,8 +59,7 @@ _MinShareAround = Annotated[
 
 
 @stage(
-    "Classify buildings",
-    group="Buildings",
+    "Buildings",
     tags="building,entropy,k-means,unsupervised,classification,lasclassify",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason", "weakest_evidence"),
     measures=MEASURES,

@@ -25,8 +25,8 @@ _REACH = 5.0
 
 
 @stage(
-    "Classify buildings (as published 2019)",
-    group="Buildings",
+    "Buildings",
+    title="Classify buildings (as published 2019)",
     tags="building,entropy,k-means,kmeans,unsupervised,classification,Santos",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason", "weakest_evidence"),
     measures=MEASURES,

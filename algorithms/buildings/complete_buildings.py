@@ -35,8 +35,7 @@ COMPLETION = CompletionRules()
 
 
 @stage(
-    "Complete buildings",
-    group="Buildings",
+    "Buildings",
     tags="building,roof,facade,chimney,dormer,attach",
     writes=("classification", "cluster_id", "confidence", "reason"),
     written_if={"confidence": "where the cloud has them", "reason": "where the cloud has them"},

@@ -49,8 +49,7 @@ _RULES = _Rules()
 
 
 @stage(
-    "Refine buildings",
-    group="Buildings",
+    "Buildings",
     tags="building,self-training,learning,logistic regression,refine",
     writes=("classification", "cluster_id", "confidence", "reason", "building_probability"),
     written_if={

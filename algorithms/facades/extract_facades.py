@@ -68,8 +68,7 @@ FACADES = Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades",
 
 
 @stage(
-    "Extract facades",
-    group="Facades",
+    "Facades",
     tags="facade,wall,street,mobile mapping,terrestrial,TIN,convex hull,boundary,polygon,3D,Peng",
     writes=("segment_id",),
     layers=(FACADES,),

@@ -50,8 +50,7 @@ PIERCED = (
 
 
 @stage(
-    "Extract openings",
-    group="Facades",
+    "Facades",
     tags="window,door,opening,facade,wall,shop front,glass,mobile mapping,terrestrial,Peng",
     layers=PIERCED,
     reach=lambda tunables: max(tunables["max_depth"], BEFORE),

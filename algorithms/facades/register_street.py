@@ -39,8 +39,8 @@ _MEANINGS = {
 
 
 @stage(
-    "Register street scan",
-    group="Facades",
+    "Facades",
+    title="Register street scan",
     tags="registration,alignment,shift,coregistration,mobile mapping,terrestrial,airborne,facade,street,Peng",
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings, from the airborne cloud."),

@@ -56,8 +56,7 @@ LINE_FIELDS = (
 
 
 @stage(
-    "Segment facade lines",
-    group="Facades",
+    "Facades",
     tags="scan line,vehicle,mobile mapping,facade,ground,street,segmentation,Peng",
     writes=("segment_id",),
     layers=(Layer("lines", "Line segments", "LineString", LINE_FIELDS),),

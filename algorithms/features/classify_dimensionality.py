@@ -19,8 +19,7 @@ class Dimensionality(IntEnum):
 
 
 @stage(
-    "Classify dimensionality",
-    group="Features",
+    "Features",
     tags="linear,planar,volumetric,linearity,planarity,scattering,structure,dimensionality,wire,power line",
     writes=("dimensionality",),
     cost=0.1,

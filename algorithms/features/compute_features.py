@@ -128,8 +128,7 @@ _NeighborsStep = Annotated[
 
 
 @stage(
-    "Compute features",
-    group="Features",
+    "Features",
     tags="PCA,covariance,eigenvalues,linearity,planarity,scattering,entropy,normals,verticality,geometric,optimal,"
     "scale",
     writes=tuple(_FEATURES),

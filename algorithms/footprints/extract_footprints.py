@@ -53,8 +53,7 @@ _FOUND, _DRAWN = 0.4, 0.9
 
 
 @stage(
-    "Extract footprints",
-    group="Buildings",
+    "Buildings",
     tags="polygons,outlines,vectorize,regularize,right angles,level line,dynamic programming,las2building,lasboundary",
     layers=(Layer("footprints", "Footprints", "Polygon", FIELDS, style="footprints"),),
     of_whole=(_ROOF_SPACING,),

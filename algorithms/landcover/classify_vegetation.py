@@ -31,8 +31,7 @@ HEIGHTS = {
 
 
 @stage(
-    "Classify vegetation",
-    group="Land cover",
+    "Land cover",
     tags="vegetation,tree,canopy,bush,hedge,crown,plant,forest,low,medium,high,car,pole,fence",
     writes=("classification",),
     reach=REACH,

@@ -20,8 +20,7 @@ _DEVIATIONS = 3.0
 
 
 @stage(
-    "Classify water",
-    group="Land cover",
+    "Land cover",
     tags="water,river,canal,lake,pond,hydrography,shore,bank,breakline,hydro flattening",
     writes=("classification",),
     reach=REACH,

@@ -35,8 +35,7 @@ _LEAST_REACH, _MOST_REACH = 8.0, 15.0
 
 
 @stage(
-    "Classify wires",
-    group="Land cover",
+    "Land cover",
     tags="wire,power line,powerline,conductor,cable,catenary,span,pole,mast,pylon,tower,electricity,corridor,RANSAC",
     writes=("classification",),
     reach=_LEAST_REACH,

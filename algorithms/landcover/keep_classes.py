@@ -22,8 +22,7 @@ _KEPT = {
 
 
 @stage(
-    "Keep classes",
-    group="Land cover",
+    "Land cover",
     tags="class,keep,existing,classified,freeze,lock,ground,building,reclassify",
     writes=("earlier_class",),
     written_if={"earlier_class": "where classes are kept"},

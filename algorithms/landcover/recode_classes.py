@@ -29,8 +29,7 @@ CODES: dict[str, dict[int, int]] = {
 
 
 @stage(
-    "Recode classes",
-    group="Land cover",
+    "Land cover",
     tags="class,code,mapping,remap,translate,AHN,IGN,USGS,LiDAR HD,3DEP,ASPRS,convert",
     writes=("classification",),
     cost=0.1,

@@ -17,8 +17,7 @@ _WHOLE = (PointClass.GROUND, PointClass.BUILDING)
 
 
 @stage(
-    "Restore classes",
-    group="Land cover",
+    "Land cover",
     tags="class,restore,keep,existing,classified,ground,building",
     writes=("classification", "cluster_id"),
     written_if={"cluster_id": "where buildings are kept"},

@@ -84,8 +84,8 @@ _FIELDS = (
 
 
 @stage(
-    "Heights of buildings",
-    group="3D",
+    "3D",
+    title="Heights of buildings",
     tags="height,heights,LoD1,LoD1.2,3DBAG,OpenStreetMap,Overture,cadastre,base map,eaves,ridge,volume,roof type,"
     "percentile,zonal statistics,attributes,extrusion",
     input_layers=(

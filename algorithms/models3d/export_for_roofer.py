@@ -15,8 +15,7 @@ from .roof_partition import inside_rings
 
 
 @stage(
-    "Export for roofer",
-    group="3D",
+    "3D",
     tags="3D,roofer,3DBAG,LoD2,LoD1.2,LoD1.3,export,CityJSONSeq,roofprint",
     selects=True,
     input_layers=(InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings that are modelled."),),

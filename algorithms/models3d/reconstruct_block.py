@@ -52,8 +52,7 @@ OPENING_FIELDS = (
 
 
 @stage(
-    "Reconstruct block",
-    group="3D",
+    "3D",
     tags="3D,LoD3,city block,street,facade,window,door,roof,solid,city model,CityJSON,mobile mapping,airborne,Peng",
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings, from the airborne cloud."),

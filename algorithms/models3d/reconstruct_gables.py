@@ -61,8 +61,7 @@ GABLE_FIELDS = (
 
 
 @stage(
-    "Reconstruct gables",
-    group="Facades",
+    "Facades",
     tags="gable,roof,ridge,eave,house,building,3D,LoD2,reconstruction,Peng",
     layers=(Layer("gables", "Gable houses", "Polygon", GABLE_FIELDS, style="facades"),),
     files=(TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "gables"),),

@@ -66,8 +66,7 @@ _TopPercentile = Annotated[
 
 
 @stage(
-    "Reconstruct roofs",
-    group="3D",
+    "3D",
     tags="3D,LoD1.2,LoD1.3,LoD2.2,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,CityGML,OBJ,3DBAG,ridge,"
     "gable,hip,dormer",
     input_layers=(

@@ -17,8 +17,8 @@ _REACH = 10.0
 
 
 @stage(
-    "Classify noise in the air",
-    group="Preparation",
+    "Preparation",
+    title="Classify noise in the air",
     tags="noise,outliers,birds,flock,dust,plume,high points,clean",
     writes=("classification",),
     reach=_REACH,

@@ -32,8 +32,8 @@ HISTOGRAM = HistogramRules()
 
 
 @stage(
-    "Classify noise by height histogram",
-    group="Preparation",
+    "Preparation",
+    title="Classify noise by height histogram",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,denoise,lasnoise",
     writes=("classification",),
     # About the width of an automatic cell: histograms are those of a cell and the cells around it.

@@ -29,8 +29,8 @@ _REACH = 64.0
 
 
 @stage(
-    "Classify noise by height histogram (as published 2019)",
-    group="Preparation",
+    "Preparation",
+    title="Classify noise by height histogram (as published 2019)",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,CH filter,Carrilho",
     writes=("classification",),
     reach=lambda tunables: tunables["cell_size"] or _REACH,

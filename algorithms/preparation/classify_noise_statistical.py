@@ -28,8 +28,8 @@ _SAMPLE_WAVE = 1e3 * np.sqrt([2.0, 3.0, 5.0])
 
 
 @stage(
-    "Classify noise by distance",
-    group="Preparation",
+    "Preparation",
+    title="Classify noise by distance",
     tags="noise,outliers,statistical outlier removal,SOR,isolated points,clean,denoise,lasnoise",
     writes=("classification",),
     cost=4.0,

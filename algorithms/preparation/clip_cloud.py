@@ -12,8 +12,7 @@ from ..stage import InputLayer, LayerFeatures, Param, stage
 
 
 @stage(
-    "Clip cloud",
-    group="Preparation",
+    "Preparation",
     tags="las,laz,copc,pdal,clip,crop,cut,polygon,mask,extent,window,area,subset,extract,outside,erase,lasclip",
     selects=True,
     input_layers=(

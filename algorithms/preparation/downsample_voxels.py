@@ -45,8 +45,8 @@ class _Sorted:
 
 
 @stage(
-    "Downsample to voxels",
-    group="Preparation",
+    "Preparation",
+    title="Downsample to voxels",
     tags="las,laz,copc,pdal,thin,decimate,subsample,reduce,voxel grid,center of gravity,centroid,even density,lasthin",
     writes=("xyz", "classification", "voxel_count"),
     selects=True,

@@ -16,8 +16,7 @@ _NO_LIMIT = "no limit; the log gives the range of the cloud."
 
 
 @stage(
-    "Filter points",
-    group="Preparation",
+    "Preparation",
     tags="las,laz,copc,pdal,select,extract,subset,class,height,range,limits,remove,split,expression,las2las",
     selects=True,
     packages=(),

@@ -44,8 +44,8 @@ class Transform:
 
 
 @stage(
-    "Merge point clouds",
-    group="Preparation",
+    "Preparation",
+    title="Merge point clouds",
     tags="las,laz,copc,pdal,combine,append,join,union,tiles,scans,register,lasmerge,"
     "relative orientation,transform,rotate,shift,matrix,4x4",
     writes=("xyz", "point_source_id", "previous_source_id"),

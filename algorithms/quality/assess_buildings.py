@@ -69,8 +69,7 @@ _OBJECTS = Layer(
 
 
 @stage(
-    "Assess buildings",
-    group="Quality",
+    "Quality",
     tags="accuracy,completeness,correctness,F-score,F1,quality,evaluation,reference,validation,IoU,overlap",
     layers=(_OBJECTS,),
     measures=_MEASURES,

@@ -41,8 +41,7 @@ _LEGEND = ("right", "another class called ground", "ground called another class"
 
 
 @stage(
-    "Assess classes",
-    group="Quality",
+    "Quality",
     tags="accuracy,confusion matrix,kappa,overall accuracy,IoU,F-score,F1,completeness,reference,validation",
     measures=(
         Measure("accuracy", "Overall accuracy", "%"),

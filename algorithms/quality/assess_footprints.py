@@ -90,8 +90,7 @@ _MEASURES = (
 
 
 @stage(
-    "Assess footprints",
-    group="Quality",
+    "Quality",
     tags="assess,validation,cadastre,base map,change detection,accuracy,evaluation,reference,polygons,outlines,IoU,"
     "PoLiS,Hausdorff,corners,squareness,merged,split,completeness,correctness",
     input_layers=(

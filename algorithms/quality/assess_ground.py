@@ -12,8 +12,7 @@ from .point_matching import compared_points
 
 
 @stage(
-    "Assess ground",
-    group="Quality",
+    "Quality",
     tags="accuracy,type I error,type II error,total error,kappa,evaluation,reference,filter,validation,RMSE",
     measures=(
         Measure("type_1", "Type I error", "%"),

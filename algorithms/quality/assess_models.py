@@ -88,8 +88,7 @@ _MEASURES = (
 
 
 @stage(
-    "Assess models",
-    group="Quality",
+    "Quality",
     tags="3D,LoD2,city model,roof,accuracy,rms,distance,evaluation,validation,RMSE",
     input_layers=(
         InputLayer(

@@ -13,8 +13,7 @@ from .point_matching import match_points
 
 
 @stage(
-    "Assess segments",
-    group="Quality",
+    "Quality",
     tags="accuracy,Hoover,over-segmentation,under-segmentation,correct,missed,noise,evaluation,reference,planes",
     measures=(
         Measure("correct", "Correct segments"),

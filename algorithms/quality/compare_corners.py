@@ -73,8 +73,7 @@ _MEASURES = (
 
 
 @stage(
-    "Compare corners",
-    group="Quality",
+    "Quality",
     tags="cadastre,land registry,map,update,change detection,changes,displacement,shift,accuracy,footprints,RMSE",
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "New outlines of buildings."),

@@ -88,8 +88,7 @@ _MEASURES = (
 
 
 @stage(
-    "Compare surveys",
-    group="Quality",
+    "Quality",
     tags="change detection,changes,update,new,demolished,epochs,earlier survey,monitoring,cadastre,footprints,height",
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "Buildings of the new survey, cut to the area of both."),

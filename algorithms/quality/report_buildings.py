@@ -42,8 +42,8 @@ def _shown(footprints: LayerFeatures) -> np.ndarray:
 
 
 @stage(
-    "Report on buildings",
-    group="Quality",
+    "Quality",
+    title="Report on buildings",
     tags="report,summary,statistics,map,doubtful,confidence,PDF,print",
     input_layers=(
         InputLayer(

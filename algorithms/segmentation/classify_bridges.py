@@ -23,8 +23,7 @@ _EVERYWHERE, _OVER_GAPS = "everywhere", "gaps in the ground"
 
 
 @stage(
-    "Classify bridges",
-    group="Terrain",
+    "Terrain",
     tags="bridge,fly-over,bridge deck,footbridge,viaduct,ground,terrain,DTM,Sithole,Vosselman",
     writes=("classification",),
     reach=lambda tunables: tunables["max_width"] * (2 if tunables["search"] == _EVERYWHERE else 0.5),

@@ -25,8 +25,7 @@ _STEEPEST = 30.0
 
 
 @stage(
-    "Classify ground segments",
-    group="Terrain",
+    "Terrain",
     tags="ground,bare earth,DTM,bridge,fly-over,bridge deck,segments,filter,Sithole,Vosselman",
     writes=("classification",),
     # Of a square object that a window cuts off in the middle, half of the border is seen and shows its steps. A

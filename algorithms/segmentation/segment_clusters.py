@@ -20,8 +20,8 @@ _CORNER = 0.25
 
 
 @stage(
-    "Segment clusters (DBSCAN)",
-    group="Segmentation",
+    "Segmentation",
+    title="Segment clusters (DBSCAN)",
     tags="cluster,DBSCAN,density,segmentation,objects",
     writes=("cluster_id",),
 )

@@ -30,8 +30,8 @@ _LARGEST_VOXEL = 3.0
 
 
 @stage(
-    "Segment planes (RANSAC)",
-    group="Segmentation",
+    "Segmentation",
+    title="Segment planes (RANSAC)",
     tags="plane,RANSAC,voxel,roof,wall,facade,planar,segmentation",
     writes=("segment_id", "normal"),
     written_if={"normal": "with 'Write normals'"},

@@ -53,8 +53,7 @@ _Tolerance = Annotated[
 
 
 @stage(
-    "Segment recorded lines",
-    group="Segmentation",
+    "Segmentation",
     tags="scan line,scan angle,GPS time,split,region growing,range image,planes,segmentation,Jiang,Bunke",
     writes=("segment_id",),
 )

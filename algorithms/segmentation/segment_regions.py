@@ -25,8 +25,7 @@ _REACH = 5.0
 
 
 @stage(
-    "Segment regions",
-    group="Segmentation",
+    "Segmentation",
     tags="cluster,region growing,connected components,segmentation",
     writes=("cluster_id",),
     reach=lambda tunables: max(tunables["plan_distance"] or 0.0, _REACH),

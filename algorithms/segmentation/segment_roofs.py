@@ -48,8 +48,7 @@ SURFACE, IMAGE_SURFACE = RoofSurfaceRules(), ImageSurfaceRules()
 
 
 @stage(
-    "Segment roofs",
-    group="Segmentation",
+    "Segmentation",
     tags="roof,plane,planar,surface growing,segmentation",
     writes=("segment_id", "cluster_id", "reason"),
     # Width (m) of the surroundings that decide on a cluster; clusters themselves may be of any size.

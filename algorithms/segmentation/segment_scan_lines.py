@@ -30,8 +30,7 @@ _REACH = 5.0
 
 
 @stage(
-    "Segment scan lines",
-    group="Segmentation",
+    "Segmentation",
     tags="scan line,profile,slices,split and merge,region growing,segmentation,Sithole,Vosselman",
     writes=("segment_id",),
     reach=lambda tunables: max(tunables["distance"] or 0.0, tunables["max_obstacle"], _REACH),

@@ -75,8 +75,7 @@ _Radius = Annotated[
 
 
 @stage(
-    "Segment surfaces",
-    group="Segmentation",
+    "Segmentation",
     tags="surface growing,region growing,plane growing,smooth,normals,Hough,planes,segmentation",
     writes=("segment_id",),
     # What decides which points beside each other are of one surface; surfaces themselves may be larger.

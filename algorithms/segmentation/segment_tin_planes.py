@@ -29,8 +29,8 @@ _BENDS = 0.05
 
 
 @stage(
-    "Segment TIN planes",
-    group="Segmentation",
+    "Segmentation",
+    title="Segment TIN planes",
     tags="TIN,triangulation,mesh,merge,planes,roofs,region merging",
     writes=("segment_id",),
 )

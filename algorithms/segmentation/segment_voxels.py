@@ -52,8 +52,7 @@ _CountFilter = Annotated[
 
 
 @stage(
-    "Segment voxels",
-    group="Segmentation",
+    "Segmentation",
     tags="voxel,connected components,morphology,erosion,dilation,opening,closing,distance transform,skeleton,3D grid",
     writes=("segment_id",),
     layers=(

@@ -27,8 +27,7 @@ _FIELDS = (
 
 
 @stage(
-    "Detect cylinders",
-    group="Shapes",
+    "Shapes",
     tags="cylinder,pipe,tank,column,pole,Hough,Gaussian sphere,industry,as-built",
     writes=("segment_id", "shape"),
     reach=lambda tunables: reach_of_radius(tunables["max_radius"]) + tunables["max_gap"],

@@ -23,8 +23,7 @@ _FIELDS = (
 
 
 @stage(
-    "Detect spheres",
-    group="Shapes",
+    "Shapes",
     tags="sphere,ball,vessel,dome,target,Hough,industry,as-built",
     writes=("segment_id", "shape"),
     reach=lambda tunables: reach_of_radius(tunables["max_radius"]),

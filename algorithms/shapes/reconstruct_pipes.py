@@ -20,8 +20,7 @@ _SIDES = 16
 
 
 @stage(
-    "Reconstruct pipes",
-    group="Shapes",
+    "Shapes",
     tags="pipe,tube,sphere,tank,3D,surface,view,polygon,industry",
     input_layers=(
         InputLayer(

@@ -86,8 +86,8 @@ _MaxGap = Annotated[
 
 
 @stage(
-    "Segment planes (Hough)",
-    group="Shapes",
+    "Shapes",
+    title="Segment planes (Hough)",
     tags="plane,Hough,Gaussian sphere,normal,roof,wall,facade,planar,segmentation,parameter space",
     writes=("segment_id", "shape"),
     reach=lambda tunables: 2 * (tunables["window_size"] or _WIDE_WINDOW) + (tunables["max_gap"] or _WIDE_GAP),

@@ -51,8 +51,8 @@ _FIELDS = (
 
 
 @stage(
-    "Segment trees",
-    group="Shapes",
+    "Shapes",
+    title="Segment trees",
     tags="tree,forest,stem,trunk,branch,DBH,wood volume,skeleton,Dijkstra,terrestrial,TLS",
     writes=("segment_id",),
     layers=(Layer("branches", "Stems and branches", "LineString", _FIELDS),),

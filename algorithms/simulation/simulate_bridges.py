@@ -25,8 +25,7 @@ _DECK_FIELDS = (
 
 
 @stage(
-    "Simulate bridges",
-    group="Simulation",
+    "Simulation",
     tags="synthetic,bridge,fly-over,tunnel,canal,quay,ramp,airborne,demo,example,test,truth,teaching",
     creates=RECORDED,
     layers=(Layer("decks", "True bridge decks", "Polygon", _DECK_FIELDS),),

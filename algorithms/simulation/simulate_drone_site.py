@@ -38,8 +38,7 @@ _FIELDS = (
 
 
 @stage(
-    "Simulate drone site",
-    group="Simulation",
+    "Simulation",
     tags="synthetic,drone,UAV,photogrammetry,dense matching,color,shadow,demo,example,test,truth,teaching",
     creates=("xyz", "classification", "return_number", "number_of_returns", "red", "green", "blue", "segment_id"),
     layers=(Layer("footprints", "True footprints", "Polygon", _FIELDS),),

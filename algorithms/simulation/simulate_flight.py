@@ -12,8 +12,8 @@ from .street_site import build_site
 
 
 @stage(
-    "Simulate drone flight",
-    group="Simulation",
+    "Simulation",
+    title="Simulate drone flight",
     tags="synthetic,UAV,UAS,line scanner,facade,demo,example,test,truth,teaching,scene,generate",
     creates=RECORDED,
 )

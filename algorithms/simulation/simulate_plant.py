@@ -51,8 +51,7 @@ _CENTER_FIELDS = tuple(field for field in _AXIS_FIELDS if field.name not in {"ki
 
 
 @stage(
-    "Simulate plant",
-    group="Simulation",
+    "Simulation",
     tags="synthetic,industry,refinery,pipes,tanks,terrestrial,laser scanner,demo,example,test,truth,teaching",
     creates=("xyz", "classification", "segment_id", "shape"),
     layers=(

@@ -11,8 +11,7 @@ from .scanner import RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pul
 
 
 @stage(
-    "Simulate power line",
-    group="Simulation",
+    "Simulation",
     tags="synthetic,power line,wire,conductor,catenary,tower,pylon,pole,airborne,demo,example,test,truth,teaching",
     creates=RECORDED,
 )

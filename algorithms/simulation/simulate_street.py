@@ -75,8 +75,7 @@ _Stoops = Annotated[
 
 
 @stage(
-    "Simulate street",
-    group="Simulation",
+    "Simulation",
     tags="synthetic,mobile mapping,vehicle,facade,window,street,demo,example,test,truth,teaching,generate",
     creates=_CREATED,
     layers=(

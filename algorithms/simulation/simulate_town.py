@@ -39,10 +39,7 @@ _NoisePoints = Annotated[
 
 
 @stage(
-    "Simulate town",
-    group="Simulation",
-    tags="synthetic,scanner,airborne,demo,example,test,truth,teaching,scene,generate",
-    creates=RECORDED,
+    "Simulation", tags="synthetic,scanner,airborne,demo,example,test,truth,teaching,scene,generate", creates=RECORDED
 )
 def simulate_town(
     *,

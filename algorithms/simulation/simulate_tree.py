@@ -71,8 +71,7 @@ class _Limb:
 
 
 @stage(
-    "Simulate tree",
-    group="Simulation",
+    "Simulation",
     tags="synthetic,tree,stem,branches,leaves,terrestrial,laser scanner,DBH,demo,example,test,truth,teaching",
     creates=("xyz", "classification", "segment_id"),
     layers=(Layer("branches", "True stem and branches", "LineString", _FIELDS),),

@@ -58,8 +58,7 @@ _Density = Annotated[
 
 
 @stage(
-    "Simulate village",
-    group="Simulation",
+    "Simulation",
     tags="synthetic,drone,UAV,photogrammetry,oblique,walls,eaves,cadastre,demo,example,test,truth,teaching",
     creates=_CREATED,
     layers=(

@@ -14,7 +14,7 @@ from .arguments import REFERENCE_PREFIX, check_arrays
 from .docstrings import before_first_section, sections, with_tunables, with_values
 from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
-from .tunables import Tunable
+from .tunables import Tunable, in_words
 
 # Names of the outputs that have no declaration of their own: the cloud, and the page of a report.
 CLOUD, REPORT = "output", "report"
@@ -171,7 +171,7 @@ class Stage:
         )
 
 
-def stage(title: str, *, group: str, tags: str = "", **fields: Any) -> Callable[[Callable], Callable]:
+def stage(group: str, *, title: str = "", tags: str = "", **fields: Any) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
     The function returns its results in the order below, and not in a tuple when there is only one. With ``selects`` the
@@ -184,10 +184,10 @@ def stage(title: str, *, group: str, tags: str = "", **fields: Any) -> Callable[
 
     Parameters
     ----------
-    title : str
-        Title in the toolbox.
     group : str
         Group in the toolbox.
+    title : str
+        Title in the toolbox, where it is not the name of the function in words.
     tags : str
         Words to search for, with commas between.
     **fields
@@ -200,7 +200,7 @@ def stage(title: str, *, group: str, tags: str = "", **fields: Any) -> Callable[
     """
 
     def declare(function: Callable) -> Callable:
-        declared = _declared(function, title, group, tags, fields)
+        declared = _declared(function, title or in_words(function.__name__), group, tags, fields)
         _check_declaration(declared)
         checked = _checked(function, declared)
         checked.stage = replace(declared, function=checked)  # type: ignore[attr-defined]

@@ -96,8 +96,14 @@ def _bound(text: Optional[str]) -> Optional[float]:
     return None if math.isinf(value) else int(value) if value.is_integer() else value
 
 
-# What names of tunables begin with, in words.
+# What names begin with, in words.
 _WORDS = {"min": "minimum", "max": "maximum"}
+
+
+def in_words(name: str) -> str:
+    """Return a name as users read it, "Minimum height" of ``min_height``."""
+    first, *others = name.split("_")
+    return " ".join([_WORDS.get(first, first), *others]).capitalize()
 
 
 @dataclass(frozen=True)
@@ -112,8 +118,7 @@ class Tunable:
     @property
     def label(self) -> str:
         """What the dialog calls it: "Minimum height" of ``min_height``, unless its declaration says otherwise."""
-        first, *others = self.name.split("_")
-        return self.param.label or " ".join([_WORDS.get(first, first), *others]).capitalize()
+        return self.param.label or in_words(self.name)
 
     @property
     def title(self) -> str:

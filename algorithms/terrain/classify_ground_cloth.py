@@ -33,8 +33,8 @@ _FARTHEST_BY_LINKS = 20
 
 
 @stage(
-    "Classify ground points (cloth)",
-    group="Terrain",
+    "Terrain",
+    title="Classify ground points (cloth)",
     tags="ground,filter,terrain,bare earth,DTM,cloth simulation,CSF,PMF,SMRF,lasground",
     writes=("classification",),
 )

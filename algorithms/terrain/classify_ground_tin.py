@@ -111,8 +111,8 @@ _CellSize = Annotated[
 
 
 @stage(
-    "Classify ground points (TIN)",
-    group="Terrain",
+    "Terrain",
+    title="Classify ground points (TIN)",
     tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD,PTIN,PMF,SMRF,lasground",
     writes=("classification",),
     reach=lambda tunables: max(tunables["max_building_size"] or 0.0, _REACH),

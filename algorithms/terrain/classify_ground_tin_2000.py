@@ -49,8 +49,8 @@ _MaxBuildingSize = Annotated[
 
 
 @stage(
-    "Classify ground points (TIN, as published 2000)",
-    group="Terrain",
+    "Terrain",
+    title="Classify ground points (TIN, as published 2000)",
     tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD",
     writes=("classification",),
     reach=lambda tunables: tunables["max_building_size"],

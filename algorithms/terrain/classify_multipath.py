@@ -25,8 +25,8 @@ _REACH = 10.0
 
 
 @stage(
-    "Classify multipath under the ground",
-    group="Terrain",
+    "Terrain",
+    title="Classify multipath under the ground",
     tags="multipath,noise,low points,pits,ground,DTM",
     writes=("classification",),
     reach=2 * _REACH,

@@ -14,8 +14,7 @@ _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
 
 
 @stage(
-    "Complete ground",
-    group="Terrain",
+    "Terrain",
     tags="ground,terrain,bare earth,strip,overlap,grass,surface",
     writes=("classification",),
     cost=0.1,

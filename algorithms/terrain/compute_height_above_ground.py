@@ -13,8 +13,8 @@ from .on_decks import on_decks
 
 
 @stage(
-    "Height above ground",
-    group="Terrain",
+    "Terrain",
+    title="Height above ground",
     tags="normalize,normalise,normalization,nDSM,HAG,height,terrain,TIN,lasheight",
     writes=("height_above_ground",),
     reach=SCENE.ground_within,

@@ -31,8 +31,7 @@ _GAP_CELLS = 5.0
 
 
 @stage(
-    "Rasterize terrain",
-    group="Terrain",
+    "Terrain",
     tags="DTM,DSM,nDSM,DEM,CHM,elevation model,raster,GeoTIFF,interpolate,TIN,hillshade,canopy,las2dem,blast2dem,grid",
     rasters=(
         Raster("dtm", "Terrain model", "terrain", "m"),

@@ -27,8 +27,7 @@ _MOST_GAP = 5.0
 
 
 @stage(
-    "Classify roofs",
-    group="Buildings",
+    "Buildings",
     tags="building,roof,plane,cluster,DBSCAN,photogrammetry,UAV,cadastre",
     writes=("classification", "cluster_id"),
     cost=4.0,

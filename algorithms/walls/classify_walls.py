@@ -45,8 +45,7 @@ _NOWHERE = np.array([[0.0, 0.0, np.inf]])
 
 
 @stage(
-    "Classify walls",
-    group="Buildings",
+    "Buildings",
     tags="building,wall,facade,normal,vertical,photogrammetry,UAV,cadastre",
     writes=("classification", "wall_of"),
 )

@@ -88,8 +88,7 @@ _MaxOverhang = Annotated[
 
 
 @stage(
-    "Extract wall footprints",
-    group="Buildings",
+    "Buildings",
     tags="polygons,walls,corners,RANSAC,lines,right angles,cadastre,land registry,vectorize,UAV",
     layers=(
         Layer("wall_footprints", "Wall footprints", "Polygon", _FIELDS),

@@ -28,7 +28,7 @@ from lidar_buildings.algorithms.stage import (
 from lidar_buildings.algorithms.stages import STAGES
 
 
-@stage("Count above", group="Toys", writes=("classification", "cluster_id", "entropy", "normal"))
+@stage("Toys", title="Count above", writes=("classification", "cluster_id", "entropy", "normal"))
 def classify_toy(
     xyz,
     classification,
@@ -45,21 +45,21 @@ def classify_toy(
     return found, np.arange(1, len(xyz) + 1), height / 10, normal
 
 
-@stage("Only heights", group="Toys", writes=("height_above_ground", "entropy"))
+@stage("Toys", title="Only heights", writes=("height_above_ground", "entropy"))
 def compute_toy(xyz, *, monitor=None):
     """Write one of two dimensions."""
     return None, xyz[:, 2]
 
 
-@stage("Toy town", group="Toys", creates=("xyz", "classification"))
+@stage("Toys", title="Toy town", creates=("xyz", "classification"))
 def simulate_toy(*, count: Annotated[int, Param("Points.", within="[1, 9]")] = 3, monitor=None):
     """Make points in a row."""
     return np.outer(np.arange(count), [1.0, 2.0, 3.0]), np.full(count, 2)
 
 
 @stage(
-    "Toy marks",
-    group="Toys",
+    "Toys",
+    title="Toy marks",
     writes=("cluster_id",),
     layers=(Layer("marks", "Marks", "Point", (Field("id", int, "Number."),)),),
     measures=(Measure("points", "Points"),),
@@ -70,14 +70,14 @@ def extract_toy(xyz, *, monitor=None):
     return np.ones(len(xyz)), marks, Report({"points": len(xyz)}, "<html></html>")
 
 
-@stage("Toy difference", group="Toys", measures=(Measure("distance", "Distance", "m"),))
+@stage("Toys", title="Toy difference", measures=(Measure("distance", "Distance", "m"),))
 def assess_toy(xyz, classification, reference_xyz, reference_classification, *, monitor=None):
     """Measure how far two clouds are apart."""
     same = np.array_equal(classification, reference_classification)
     return Report({"distance": float(np.abs(xyz - reference_xyz).max()), "same": same}, "")
 
 
-@stage("Keep toy", group="Toys", writes=("xyz", "cluster_id"), selects=True)
+@stage("Toys", title="Keep toy", writes=("xyz", "cluster_id"), selects=True)
 def filter_toy(
     xyz,
     values=None,
@@ -92,7 +92,7 @@ def filter_toy(
     return kept, xyz[kept] + [step, 0, 0], np.arange(1, len(kept) + 1)
 
 
-@stage("Merge toy", group="Toys", writes=("xyz", "point_source_id"), merges=True)
+@stage("Toys", writes=("xyz", "point_source_id"), merges=True)
 def merge_toy(
     xyz,
     classification,
@@ -108,8 +108,8 @@ def merge_toy(
 
 
 @stage(
-    "Toy raster",
-    group="Toys",
+    "Toys",
+    title="Toy raster",
     input_layers=(
         InputLayer("area", "Area", "Polygon", "Where."),
         InputLayer("spots", "Spots", "Point", "What.", optional=True),
@@ -125,8 +125,8 @@ def rasterize_toy(xyz, intensity=None, area=None, spots=None, *, monitor=None):
 
 
 @stage(
-    "Toy map",
-    group="Toys",
+    "Toys",
+    title="Toy map",
     input_layers=(InputLayer("old", "Old map", "Polygon", "Before."),),
     measures=(Measure("n", "N"),),
 )
@@ -437,20 +437,20 @@ def test_a_stage_of_layers_needs_no_cloud():
 # --- how the cloud was sampled ---------------------------------------------------------------------------------------
 
 
-@stage("Toy sampling", group="Toys", writes=("classification",))
+@stage("Toys", title="Toy sampling", writes=("classification",))
 def classify_sampled(xyz, classification, *, sampling=None, monitor=None):
     """Call a point in a hundred noise, and say which sampling was given."""
     monitor.resolved(given=sampling, density=sampling.density)
     return np.where(np.arange(len(xyz)) % 100 == 0, 18, classification)
 
 
-@stage("Toy halves", group="Toys", selects=True)
+@stage("Toys", title="Toy halves", selects=True)
 def filter_halves(xyz, *, monitor=None):
     """Keep every other point."""
     return np.arange(0, len(xyz), 2)
 
 
-@stage("Toy east", group="Toys", selects=True)
+@stage("Toys", title="Toy east", selects=True)
 def filter_east(xyz, *, monitor=None):
     """Keep the points in the eastern half."""
     return np.flatnonzero(xyz[:, 0] > xyz[:, 0].mean())
@@ -530,11 +530,11 @@ def test_cells_begin_at_the_corner_of_all_points_but_withheld_ones(lattice):
 
 def test_sampling_needs_the_points_of_one_cloud():
     with pytest.raises(TypeError, match="must read the xyz of one cloud"):
-        stage("Toy", group="Toys")(lambda intensity, *, sampling=None, monitor=None: None)
+        stage("Toys", title="Toy")(lambda intensity, *, sampling=None, monitor=None: None)
     with pytest.raises(TypeError, match="must read the xyz of one cloud"):
-        stage("Toy", group="Toys", merges=True)(lambda xyz, *, sampling=None, monitor=None: None)
+        stage("Toys", title="Toy", merges=True)(lambda xyz, *, sampling=None, monitor=None: None)
     with pytest.raises(TypeError, match="must take the sampling None"):
-        stage("Toy", group="Toys")(lambda xyz, *, sampling, monitor=None: None)
+        stage("Toys", title="Toy")(lambda xyz, *, sampling, monitor=None: None)
 
 
 @pytest.mark.parametrize(
@@ -549,9 +549,9 @@ def test_sampling_needs_the_points_of_one_cloud():
 )
 def test_what_can_not_be_kept_is_refused_when_it_is_declared(declared, sentence):
     with pytest.raises(TypeError, match=sentence):
-        stage("Toy", group="Toys", **declared)(lambda xyz, monitor=None: None)
+        stage("Toys", title="Toy", **declared)(lambda xyz, monitor=None: None)
 
 
 def test_values_need_the_tunable_that_names_them():
     with pytest.raises(TypeError, match="has no tunable 'dimension'"):
-        stage("Toy", group="Toys", selects=True)(lambda xyz, values: None)
+        stage("Toys", title="Toy", selects=True)(lambda xyz, values: None)

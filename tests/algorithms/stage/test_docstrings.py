@@ -5,7 +5,7 @@ from typing import Annotated, Optional
 from lidar_buildings.algorithms.stage import Param, stage
 
 
-@stage("Toy words", group="Toys", writes=("cluster_id",))
+@stage("Toys", writes=("cluster_id",))
 def toy_words(
     xyz,
     *,
@@ -30,7 +30,7 @@ def toy_words(
     """
 
 
-@stage("Toy silence", group="Toys", writes=("cluster_id",))
+@stage("Toys", writes=("cluster_id",))
 def toy_silence(xyz, *, monitor=None):
     """Say it all at once."""
 
@@ -72,7 +72,7 @@ def test_words_and_lines_within_a_section_are_its_text():
     toy.__doc__ = (
         f"Count.\n\nReferences\nto others come last.\n\nNotes\n-----\n{notes}\n\nReferences\n----------\nNobody."
     )
-    words = stage("Toy", group="Toys", writes=("cluster_id",))(toy).stage
+    words = stage("Toys", title="Toy", writes=("cluster_id",))(toy).stage
     assert words.description == "References\nto others come last."
     assert words.section("Notes") == notes
     assert words.section("References") == "Nobody."
@@ -86,5 +86,5 @@ def test_constants_that_a_docstring_names_become_their_values():
     def toy(xyz, *, monitor=None):
         """Cut strips of ``_WIDTH`` m, not ``width``; ``Optional`` is no number."""
 
-    words = stage("Toy", group="Toys", writes=("cluster_id",))(toy).stage
+    words = stage("Toys", title="Toy", writes=("cluster_id",))(toy).stage
     assert words.summary == "Cut strips of 1,250.5 m, not ``width``; ``Optional`` is no number."

@@ -273,7 +273,7 @@ def test_that_some_blocks_have_no_building_is_no_warning(tmp_path, monkeypatch):
     assert "No point is called building (class 6), so there are no footprints." in monitor.warnings
 
 
-@stage("Toy", group="Toys", writes=("classification",), reach=1.0)
+@stage("Toys", title="Toy", writes=("classification",), reach=1.0)
 def classify_warned(classification, *, monitor=None):
     """Warn of buildings."""
     if (classification == 6).any():

@@ -92,7 +92,7 @@ def test_blocks_give_what_the_whole_cloud_gives(cloud, tmp_path, name, tunables,
         assert same.mean() >= (0.9995 if dimension in ("dimensionality", "linearity") else 1.0), dimension
 
 
-@stage("Cells", group="Toys", writes=("classification",), reach=5.0)
+@stage("Toys", title="Cells", writes=("classification",), reach=5.0)
 def classify_cells(xyz, *, sampling=None, monitor=None):
     """Write the parity of the cell that a point is in; none lies at an edge, where rounding would decide."""
     cell = np.floor(sampling.from_corner(xyz)[:, :2] / 7.00013)
@@ -118,7 +118,7 @@ def test_cells_of_a_part_of_a_survey_are_those_of_the_whole(cloud, tmp_path, mon
     np.testing.assert_array_equal(found, whole[at])
 
 
-@stage("Middle", group="Toys", writes=("classification",), reach=5.0, of_whole=("middle",))
+@stage("Toys", title="Middle", writes=("classification",), reach=5.0, of_whole=("middle",))
 def classify_by_middle(xyz, *, sampling=None, monitor=None):
     """Write whether a point is higher than half of all points; refuse parts in the west."""
     if sampling.from_corner(xyz)[:, 0].max() < 30:
@@ -181,7 +181,7 @@ def test_of_a_large_survey_it_is_the_median_of_samples_but_of_those_that_a_step_
     np.testing.assert_array_equal(found, xyz[:, 2] - origin[2] > values["middle"])
 
 
-@stage("Mean", group="Toys", writes=("classification",), reach=5.0, of_whole=("mean",))
+@stage("Toys", title="Mean", writes=("classification",), reach=5.0, of_whole=("mean",))
 def classify_by_mean(xyz, *, sampling=None, monitor=None):
     """Write whether a point is higher than the mean of all, which is learned from a table of elevations."""
     (mean,) = sampling.learned("mean", lambda: xyz[:, 2:], lambda table: (float(table.mean()),))

@@ -476,7 +476,7 @@ def test_a_window_grows_where_a_feature_ends_nearer_to_its_edge_than_points_deci
 ):
     """A box from 20 to 29 m east of the survey's corner, in a block whose window ends 6 m behind it."""
 
-    @stage("Boxes", group="Toys", layers=(Layer("boxes", "Boxes", "Polygon", (), around=around),), reach=5.0)
+    @stage("Toys", title="Boxes", layers=(Layer("boxes", "Boxes", "Polygon", (), around=around),), reach=5.0)
     def outline_box(xyz, *, sampling=None, monitor=None):
         """Outline the part of the box that is seen."""
         ring = np.array([[20.0, 4], [29, 4], [29, 14], [20, 14], [20, 4]]) + sampling.corner
