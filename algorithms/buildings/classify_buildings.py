@@ -11,7 +11,7 @@ from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
 from ..params import MinBuildingArea, PointDensity, PointSource, nearest_points
 from ..rules import rule
-from ..sampling.cloud_sampling import GROUND_NOISE, CloudSampling
+from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.sufficiency import doubted, why_doubtful
 from ..sampling.surface_noise import plane_roughness
 from ..stage import Monitor, Param, stage
@@ -89,7 +89,7 @@ def classify_buildings(
     min_share_around: _MinShareAround = 0.5,
     density: PointDensity = None,
     source: PointSource = "automatic",
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find the buildings among clusters by their mean entropy and by how far laser beams penetrate them.
@@ -181,7 +181,6 @@ def classify_buildings(
     >>> bool((found[z > 0] == 6).all())
     True
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     doubt = why_doubtful(xyz, classification, sampling)
     if doubt:

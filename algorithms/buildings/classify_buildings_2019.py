@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 
 from ..neighborhoods.covariance import Nearest
 from ..params import PAPER_THRESHOLDS, MinBuildingArea, PointDensity, Thresholds, nearest_points
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Param, stage
 from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
@@ -55,7 +55,7 @@ def classify_buildings_2019(
         ),
     ] = "exact",
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find the buildings among clusters by their mean entropy, as published in 2019.
@@ -121,7 +121,6 @@ def classify_buildings_2019(
     >>> bool((found[~crown] == 6).all()), bool((found[crown] == 6).any())
     (True, False)
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     if density is None:
         density = PAPER_THRESHOLDS[thresholds].density if thresholds in PAPER_THRESHOLDS else sampling.density
     if n_neighbors is None:

@@ -13,7 +13,7 @@ from ..geometry.grid import raster_cells, refuse_sparse
 from ..geometry.groups import least_of
 from ..params import MinBuildingArea, PointDensity, PointSource
 from ..rules import rule
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.kinds import IMAGES, LASER, SCENE
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
@@ -92,7 +92,7 @@ def complete_buildings(
     ] = 0.6,
     density: PointDensity = None,
     source: PointSource = "automatic",
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Add walls, chimneys, edges and gaps to each building, and number the buildings.
@@ -158,7 +158,6 @@ def complete_buildings(
     >>> int(clusters.max())
     1
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     density = sampling.effective_density if density is None else density
     kind = sampling.kind(source)

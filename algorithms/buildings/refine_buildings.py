@@ -14,7 +14,7 @@ from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage
 from ..params import PointDensity, PointSource
 from ..rules import rule
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.sufficiency import doubted, why_doubtful
 from ..stage import Monitor, Param, stage
@@ -85,7 +85,7 @@ def refine_buildings(
     ] = True,
     density: PointDensity = None,
     source: PointSource = "automatic",
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Correct the edges of buildings by what the other buildings of the scene look like.
@@ -164,7 +164,6 @@ def refine_buildings(
     >>> bool((found == classes).all())
     True
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density
     monitor.resolved(density=density)
     monitor.progress(0.1)

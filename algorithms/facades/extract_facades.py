@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import members
 from ..params import Boundary, CompleteFacades, CornerDistance, FacadeGap, FacadeTilt, Seed
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.least_squares_planes import Planes, off_planes, planes_of
 from ..segmentation.segment_planes_ransac import segment_planes_ransac
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, ProgressOnly, stage
@@ -119,7 +119,7 @@ def extract_facades(
     boundary: Boundary = "straight edges",
     complete: CompleteFacades = True,
     seed: Seed = 1,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find the facades of buildings and draw each as a vertical polygon with its common borders.
@@ -186,7 +186,6 @@ def extract_facades(
     >>> len(facades)
     1
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance
     monitor.resolved(tolerance=tolerance)
     searched = _is_stacked(xyz, min_height)

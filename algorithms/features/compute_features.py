@@ -20,7 +20,7 @@ from ..neighborhoods.covariance import (
     smallest_eigenvectors,
 )
 from ..neighborhoods.optimal_size import Optimal
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, Param, stage
 
 
@@ -166,7 +166,7 @@ def compute_features(
     ] = 100,
     neighbors_step: _NeighborsStep = 1,
     features: _Features = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Describe the shape of each point's neighborhood by the eigenvalues of its covariance.
@@ -241,7 +241,6 @@ def compute_features(
     """
     if not features:
         raise ValueError(f"No feature is chosen; choose at least one of {', '.join(_FEATURES)}.")
-    sampling = sampling or CloudSampling.of(xyz)
     around: dict[str, Callable[[], Neighborhood]] = {
         "nearest": lambda: Nearest(n_neighbors),
         "radius": lambda: Within(radius or _automatic_radius(sampling, n_neighbors, monitor)),

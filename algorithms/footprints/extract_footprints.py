@@ -14,7 +14,7 @@ from ..geometry.groups import split_groups
 from ..geometry.polygon_overlap import meeting_boxes
 from ..geometry.ring_directions import N_STEPS, RingPieces, main_directions, weights_of_pieces
 from ..params import MinBuildingArea
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Layer, LayerFeatures, Monitor, Param, stage
 from ..threads import made_ahead
@@ -98,7 +98,7 @@ def extract_footprints(
             label="Merge touching buildings",
         ),
     ] = False,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Outline each building as a polygon with its area, heights, volume, entropy and confidence.
@@ -177,7 +177,6 @@ def extract_footprints(
     building = _building_points(classification, cluster_id, monitor)
     if not len(building) or not np.ptp(plan_box(xyz.take(building, axis=0)), axis=0).any():
         return _features([], [], min_area)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
     spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
     if not merge_touching and spacing > ROWS.max_spacing:

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple, Optional
 import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Param, stage
 from .solid_objects import REACH, find_solid_objects
 
@@ -82,7 +82,7 @@ def classify_vegetation(
             advanced=True,
         ),
     ] = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Classify low, medium and high vegetation: points above the ground without another class.
@@ -143,7 +143,6 @@ def classify_vegetation(
             "m; raise it or lower the other."
         )
     monitor.resolved(medium_height=medium, high_height=high)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     is_open = np.isin(classification, _OPEN)
     plants = np.flatnonzero(is_open & (height_above_ground >= min_height))
     has_passed = np.zeros(len(plants), bool) if number_of_returns is None else number_of_returns[plants] > 1

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Param, stage
 from .water_bodies import REACH, water_levels
 
@@ -39,7 +39,7 @@ def classify_water(
         Param("Area of the smallest water body to be found.", label="Minimum water area", within="[10, 1_000_000] m²"),
     ] = 50.0,
     noise: SurfaceNoise = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Classify the points on water: where few pulses came back, from one level, lower than the ground around.
@@ -94,7 +94,6 @@ def classify_water(
         return classes
     if not (classification == PointClass.GROUND).any():
         raise ValueError("No ground points (class 2); run 'Classify ground points (TIN)' first.")
-    sampling = sampling or CloudSampling.of(xyz, classification)
     noise = sampling.noise if noise is None else noise
     monitor.resolved(noise=noise)
     if sampling.is_closed_surface():

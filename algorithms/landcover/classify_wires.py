@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import Seed, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, Param, stage
 from .masts import on_masts
 from .wire_candidates import over_free_space, strands, thinned
@@ -51,7 +51,7 @@ def classify_wires(
     min_height: Annotated[float, Param("Height above the ground of the lowest wires.", within="[1, 100] m")] = 4.0,
     noise: SurfaceNoise = None,
     seed: Seed = 0,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Classify the wires of power lines (14), of high and low voltage, and the masts and poles at their ends (15).
@@ -102,7 +102,6 @@ def classify_wires(
     classes = classification.astype(np.uint8)
     if not look_for:
         return classes
-    sampling = sampling or CloudSampling.of(xyz, classification)
     noise = sampling.noise if noise is None else noise
     monitor.resolved(noise=noise)
     if sampling.is_closed_surface():

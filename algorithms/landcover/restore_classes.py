@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.components import connect
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import DENSITY
 from ..stage import stage
 
@@ -24,7 +22,7 @@ _WHOLE = (PointClass.GROUND, PointClass.BUILDING)
     cost=0.1,
 )
 def restore_classes(
-    xyz, classification, cluster_id=None, earlier_class=None, *, sampling: Optional[CloudSampling] = None, monitor=None
+    xyz, classification, cluster_id=None, earlier_class=None, *, sampling: CloudSampling = MEASURED, monitor=None
 ):
     """Put back the classes that 'Keep classes' remembered.
 
@@ -70,7 +68,6 @@ def restore_classes(
     is_building = earlier_class == PointClass.BUILDING
     if cluster_id is None or not is_building.any():
         return classes, None
-    sampling = sampling or CloudSampling.of(xyz, classification)
     gap = max(DENSITY.link * sampling.spacing, DENSITY.least_link)
     points = xyz[is_building]
     number = np.zeros(len(xyz), np.int32)

@@ -14,7 +14,7 @@ from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
 from ..geometry.rings import along_sides, sides_of_rings, signed_area
 from ..packages import spatial
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage
 from .building_facts import CHECKS, type_of_faces
@@ -105,7 +105,7 @@ def compute_building_heights(
     gps_time=None,
     footprints=None,
     *,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Measure the heights, volume and roof type of the buildings of a map, without models.
@@ -171,7 +171,7 @@ def compute_building_heights(
     require_ground(classification)
     rows, outlines = _outlines(footprints, xyz, monitor)
     points = _Points.of(xyz, classification, gps_time, monitor)
-    tolerance = plane_tolerance((sampling or CloudSampling.of(xyz, classification)).roughness)
+    tolerance = plane_tolerance(sampling.roughness)
     borders = _borders(outlines, points.spacing, monitor.part(0.0, 0.2))
     facts = []
     for number, (rings, border) in enumerate(zip(outlines, borders)):

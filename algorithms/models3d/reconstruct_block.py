@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..facades.plan_segments import PlanSegments, facade_segments
 from ..facades.street_walls import fitted_to_walls
 from ..geometry.line_segments import nearest_edge_distances
 from ..packages import spatial
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, Param, TextFile, stage
 from . import cityjson
 from .building_facts import (
@@ -91,7 +91,7 @@ def reconstruct_block(
     min_plane_area: Annotated[
         float, Param("Area of the smallest roof plane, seen from above.", within="[0.1, 1000] m²")
     ] = 1.5,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Model the buildings of a block with the walls, windows and doors that were seen from the street.

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import InputLayer, Layer, LayerFeatures, Monitor, Param, TextFile, feature_names, stage
 from . import cityjson, wavefront
@@ -120,7 +120,7 @@ def reconstruct_roofs(
             label="Identifier",
         ),
     ] = "",
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Model buildings as closed solids of roof planes, walls and a level ground, at levels of detail 1.2, 1.3 and 2.2.
@@ -192,7 +192,6 @@ def reconstruct_roofs(
         return _building_layer([]), _face_layer([], WALL), _face_layer([], ROOF), [], []
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     if tolerance is None:
         tolerance = plane_tolerance(sampling.roughness)
         monitor.resolved(tolerance=tolerance)

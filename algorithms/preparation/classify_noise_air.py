@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import plan_box
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage
 from .points_in_the_air import in_the_air
 
@@ -23,7 +21,7 @@ _REACH = 10.0
     writes=("classification",),
     reach=_REACH,
 )
-def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling] = None, monitor=None):
+def classify_noise_air(xyz, classification, *, sampling: CloudSampling = MEASURED, monitor=None):
     """Find loose points in the open air: birds, flocks, plumes of dust.
 
     They become high noise (class 18). Roofs and crowns that no trunk or wall supports in the cloud stay, as they stop
@@ -62,7 +60,6 @@ def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling]
     >>> int(classify_noise_air(bird, np.zeros(len(bird)))[-1])
     18
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     classes = classification.astype(np.uint8)
     used = not_noise(classes)

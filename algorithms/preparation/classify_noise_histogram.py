@@ -12,7 +12,7 @@ from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..packages import spatial
 from ..params import MinFrequency
 from ..rules import rule
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..stage import Monitor, Param, stage
@@ -79,7 +79,7 @@ def classify_noise_histogram(
             label="Isolated points under the ground",
         ),
     ] = True,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find points far above or below the scene, such as birds, clouds and multipath returns.
@@ -129,7 +129,6 @@ def classify_noise_histogram(
     >>> int(classify_noise_histogram(bird, np.zeros(len(bird)))[-1])
     18
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
     used = not_noise(made)

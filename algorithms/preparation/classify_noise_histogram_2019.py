@@ -9,7 +9,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..params import MinFrequency
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Param, stage
 from .height_histograms import (
     AUTOMATIC_BIN,
@@ -53,7 +53,7 @@ def classify_noise_histogram_2019(
     bin_height: Annotated[
         Optional[float], Param("Height of the bins.", within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True)
     ] = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find points far above or below the scene by the cell histogram filter.
@@ -98,7 +98,6 @@ def classify_noise_histogram_2019(
     >>> int(classify_noise_histogram_2019(bird, np.zeros(len(bird)))[-1])
     18
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     classes = classification.astype(np.uint8)
     used = not_noise(classes)

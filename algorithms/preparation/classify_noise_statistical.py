@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, plan_box
 from ..packages import spatial
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
 from ..threads import n_threads
 from .points_in_the_air import in_the_air, link_length
@@ -63,7 +63,7 @@ def classify_noise_statistical(
             label="Isolated points",
         ),
     ] = True,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find points far from their nearest neighbors, and groups of points apart from all others.
@@ -113,7 +113,6 @@ def classify_noise_statistical(
     >>> int(classify_noise_statistical(bird, np.zeros(len(bird)))[-1])
     18
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
     used = not_noise(made)

@@ -17,7 +17,7 @@ from ..models3d.roof_planes import find_roof_planes
 from ..models3d.roof_points import RULES, are_low, are_on_roof, distances, root_mean_square
 from ..report.charts import BLUE, Mark, Series, draw_histogram
 from ..report.page import Row, build_page, percent
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
 
 # A face with a smaller share of its points on it is invented; a plane with a smaller share on the model is missing.
@@ -119,7 +119,7 @@ def assess_models(
             advanced=True,
         ),
     ] = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Measure how far models of buildings are from the points of their roofs, and which planes are missing or invented.
@@ -178,7 +178,6 @@ def assess_models(
     0
     """
     require_buildings(classification)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     if tolerance is None:
         tolerance = plane_tolerance(sampling.roughness)
         monitor.resolved(tolerance=tolerance)

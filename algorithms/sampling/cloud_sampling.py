@@ -41,6 +41,9 @@ _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
 # Name of the noise of the ground among what parts of a cloud take of the whole.
 GROUND_NOISE = "ground_noise"
 
+# The default of a stage's argument ``sampling``: where it is called alone, it is given that of its own points.
+MEASURED: Any = None
+
 # Returns the numbers that a table shows.
 Learn = Callable[[np.ndarray], tuple[float, ...]]
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import LASER
 from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
@@ -46,7 +46,7 @@ def classify_bridges(
     ] = _EVERYWHERE,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find bridges and fly-overs in a cloud with classified ground, also where the ground filter took them for ground.
@@ -100,7 +100,6 @@ def classify_bridges(
         return classification.astype(np.uint8)
     if not (classification == PointClass.GROUND).any():
         raise ValueError("No ground points (class 2); run 'Classify ground points (TIN)' first.")
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density
     noise = sampling.noise if noise is None else noise
     monitor.resolved(density=density, noise=noise)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import least_of
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import LASER
 from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
@@ -54,7 +54,7 @@ def classify_ground_segments(
     ] = 50_000.0,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Separate bare earth from objects by how segments end, then bridges from bare earth.
@@ -103,7 +103,6 @@ def classify_ground_segments(
     >>> bool((classes[z == 0] == 2).all()), bool((classes[z > 0] == 2).any())
     (True, False)
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density
     noise = sampling.noise if noise is None else noise
     monitor.resolved(density=density, noise=noise)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.boxes import Boxes, Offset, around, by_first_point, connected
 from ..params import MinClusterHeight, PointDensity
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, Param, stage
 from .candidate_points import candidates
 
@@ -49,7 +49,7 @@ def segment_clusters(
     ] = None,
     min_height: MinClusterHeight = 0.0,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Gather the points that are not ground into clusters where they lie densely (DBSCAN).
@@ -99,7 +99,6 @@ def segment_clusters(
     (True, 1)
     """
     used = candidates(classification, height_above_ground, min_height)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density
     radius = _RADIUS_SPACINGS / float(np.sqrt(density)) if radius is None else radius
     min_points = points_at_corner(radius, density) if min_points is None else min_points

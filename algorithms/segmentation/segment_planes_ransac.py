@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.boxes import Boxes, by_first_point
 from ..params import MinClusterHeight, Seed
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, ROUGHNESS
 from ..stage import Monitor, Param, stage
 from .candidate_points import candidates
@@ -84,7 +84,7 @@ def segment_planes_ransac(
         ),
     ] = False,
     seed: Seed = 1,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find planes among the points that are not ground: by RANSAC in voxels, joined where they continue each other.
@@ -143,7 +143,6 @@ def segment_planes_ransac(
     if min_slope > max_slope:
         raise ValueError(f"The minimum slope ({min_slope:g}°) is above the maximum slope ({max_slope:g}°); lower it.")
     used = candidates(classification, height_above_ground, min_height)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     tolerance = ON_PLANE * sampling.roughness if tolerance is None else tolerance
     voxel_size = _voxel_size(sampling.surface_density, tolerance) if voxel_size is None else voxel_size
     monitor.resolved(voxel_size=voxel_size, tolerance=tolerance)

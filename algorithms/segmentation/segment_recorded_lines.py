@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.components import number_large
 from ..packages import spatial
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Param, stage
 from ..threads import n_threads
 from .adjacent_pieces import adjacent_pieces
@@ -107,7 +107,7 @@ def segment_recorded_lines(
     min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 10_000_000]")] = 30,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Split recorded scan lines into straight pieces and merge those of adjacent lines to planes or smooth surfaces.
@@ -163,7 +163,6 @@ def segment_recorded_lines(
     >>> int(ids.max())
     2
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.surface_density if density is None else density
     noise = sampling.noise if noise is None else noise
     deviation = float(np.hypot(noise, _BENDS / np.sqrt(density)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.components import connect, number_large
 from ..params import PAPER_THRESHOLDS, MinBuildingArea, MinClusterHeight, PointDensity, Thresholds
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Param, stage
 from .candidate_points import candidates
 
@@ -60,7 +60,7 @@ def segment_regions(
     min_area: MinBuildingArea = 4.0,
     min_height: MinClusterHeight = 0.0,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Gather the points that are not ground into clusters by region growing.
@@ -117,7 +117,6 @@ def segment_regions(
     (True, 1)
     """
     used = candidates(classification, height_above_ground, min_height)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     if thresholds in PAPER_THRESHOLDS:
         published = PAPER_THRESHOLDS[thresholds]
         plan_distance = published.plan_distance if plan_distance is None else plan_distance

@@ -14,7 +14,7 @@ from ..geometry.components import connect, number_large
 from ..neighborhoods.covariance import Nearest
 from ..params import PointDensity, PointSource, SurfaceNoise
 from ..rules import rule
-from ..sampling.cloud_sampling import GROUND_NOISE, CloudSampling
+from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.density import DENSITY
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.surface_noise import LEAST_NEIGHBORS, SURFACES, plane_roughness
@@ -87,7 +87,7 @@ def segment_roofs(
     noise: SurfaceNoise = None,
     density: PointDensity = None,
     source: PointSource = "automatic",
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Gather the points above the ground into roof surfaces and clusters of everything else.
@@ -141,7 +141,6 @@ def segment_roofs(
     >>> bool((segments[z > 0] == 1).all()), int(segments.max())
     (True, 1)
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density
     noise = sampling.noise_with_ground(xyz, classification) if noise is None else noise
     kind = sampling.kind(source)

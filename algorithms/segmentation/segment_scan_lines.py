@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Param, stage
 from .scan_line_pieces import NearPoints, merged_pieces, pieces
 
@@ -91,7 +91,7 @@ def segment_scan_lines(
     min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 10_000_000]")] = 20,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Cut the cloud into artificial scan lines of several directions, group their points, and merge the groups.
@@ -136,7 +136,6 @@ def segment_scan_lines(
     >>> int(ids.max())
     2
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density
     noise = sampling.noise if noise is None else noise
     spacing = 1 / float(np.sqrt(density))

@@ -10,7 +10,7 @@ from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items
 from ..params import PointDensity
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
 from .local_planes import Criteria, LocalPlanes, local_planes
 from .surface_growing import grow_planes, grow_surfaces
@@ -129,7 +129,7 @@ def segment_surfaces(
     min_points: Annotated[int, Param("Surfaces with fewer points get no id.", within="[1, 10_000_000]")] = 20,
     noise: _Noise = None,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Grow surfaces from smooth seeds to the points beside them.
@@ -182,7 +182,6 @@ def segment_surfaces(
     >>> int(ids.max())
     2
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.surface_density if density is None else density
     spacing = 1 / float(np.sqrt(density))
     radius = _RADIUS_SPACINGS * spacing if radius is None else radius

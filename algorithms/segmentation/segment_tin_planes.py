@@ -11,7 +11,7 @@ from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Param, stage
 from .best_pairs import common_deviation, merge_best_pairs
 from .least_squares_planes import Planes
@@ -60,7 +60,7 @@ def segment_tin_planes(
     ] = 2.0,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Merge the triangles of a TIN to planes, the most similar neighbors first.
@@ -104,7 +104,6 @@ def segment_tin_planes(
     >>> int(ids.max())
     2
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density
     noise = sampling.noise if noise is None else noise
     spacing = 1 / float(np.sqrt(density))

@@ -20,7 +20,7 @@ from ..geometry.sparse_voxels import (
 )
 from ..geometry.voxel_filters import FILTERS, filter_counts
 from ..geometry.voxel_skeleton import skeleton
-from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Field, Layer, LayerFeatures, Param, stage
 
 # Side of an automatic voxel in point spacings on surfaces: it holds four points on average, so that fewer than 2 % of
@@ -119,7 +119,7 @@ def segment_voxels(
             label="Skeleton only",
         ),
     ] = False,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Group points by the connected components of the voxels that they occupy.
@@ -179,7 +179,6 @@ def segment_voxels(
             [], {"segment_id": [], "count": [], "filtered": [], "distance": []}
         )
     if voxel_size is None:
-        sampling = sampling or CloudSampling.of(xyz, classification)
         density = sampling.surface_density
         if not np.isfinite(density):
             raise ValueError("All points lie at one position, so they have no spacing; set the voxel size.")

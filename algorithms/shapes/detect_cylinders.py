@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_evidence import Evidence
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
@@ -62,7 +62,7 @@ def detect_cylinders(
     ] = 1.0,
     search_in: SearchIn = WHOLE_CLOUD,
     n_neighbors: NormalPoints = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find cylinders (pipes, tanks, columns): axes with radius and length, and the points on each.

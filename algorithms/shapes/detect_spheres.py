@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
 from .searched_points import WHOLE_CLOUD, MeasuredPoints, SearchIn, SearchTunables, Shape, search_shapes
@@ -58,7 +58,7 @@ def detect_spheres(
     min_points: Annotated[int, Param("Points of the smallest sphere.", within=f"[{LEAST_POINTS}, 1_000_000]")] = 40,
     search_in: SearchIn = WHOLE_CLOUD,
     n_neighbors: NormalPoints = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find spheres (vessels, domes, targets): centers with radius, and the points on each.

@@ -216,7 +216,7 @@ def search_shapes(
     kind: Shape,
     search: Callable[[MeasuredPoints, float, float, Monitor], list[F]],
     tunables: SearchTunables,
-    sampling: Optional[CloudSampling],
+    sampling: CloudSampling,
     monitor: Monitor,
 ) -> SearchResult[F]:
     """Find the shapes of one kind in a cloud and number them in the order of their first points.
@@ -231,7 +231,7 @@ def search_shapes(
         Returns the shapes among points, for the least and the largest radius (m).
     tunables : SearchTunables
         Tunables of the stages.
-    sampling : CloudSampling, optional
+    sampling : CloudSampling
         How the cloud was sampled.
     monitor : Monitor
         Receives automatic values, a warning where nothing is found, and progress.
@@ -247,7 +247,6 @@ def search_shapes(
         If the range of radii is empty, segments are asked for and missing, or all points lie on one line.
     """
     xyz, classification, segment_id, shape = cloud
-    sampling = sampling or CloudSampling.of(xyz, classification)
     spacing = 1 / float(np.sqrt(sampling.surface_density))
     noise = point_noise(sampling)
     tolerance = _TOLERANCE * noise if tunables.tolerance is None else tunables.tolerance

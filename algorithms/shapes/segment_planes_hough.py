@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.boxes import Boxes, by_first_point
 from ..geometry.groups import split_groups
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, ROUGHNESS_OF_SPACING
 from ..segmentation.plane_merging import joined_planes
 from ..segmentation.segment_clusters import dbscan
@@ -130,7 +130,7 @@ def segment_planes_hough(
         ),
     ] = None,
     n_neighbors: NormalPoints = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find planes as maxima of a parameter space, group their points by proximity, and draw them as polygons.
@@ -199,7 +199,6 @@ def segment_planes_hough(
     2
     """
     refuse_line(xyz)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     spacing = 1 / float(np.sqrt(sampling.surface_density))
     tolerance = ON_PLANE * point_noise(sampling) if tolerance is None else tolerance
     wide = max(np.sqrt(_POINTS_IN_WINDOW) * spacing, _TOLERANCES_IN_WINDOW * tolerance)

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..geometry.groups import split_groups
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.candidate_points import candidates
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_fits import Cylinder
@@ -87,7 +87,7 @@ def segment_tree(
     min_length: Annotated[
         float, Param("Length of the shortest branch; points of shorter ones are leaves.", within="[0, 100] m")
     ] = 0.3,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Divide trees that were scanned from the ground into stems and branches, with diameters, lengths and volumes.
@@ -148,7 +148,6 @@ def segment_tree(
     refuse_line(xyz)
     rows = candidates(classification, None, 0)
     if voxel_size is None:
-        sampling = sampling or CloudSampling.of(xyz, classification)
         voxel_size = max(_VOXEL_SPACINGS / float(np.sqrt(sampling.surface_density)), _LEAST_VOXEL)
     max_gap = _GAP_VOXELS * voxel_size if max_gap is None else max_gap
     monitor.resolved(voxel_size=voxel_size, max_gap=max_gap)

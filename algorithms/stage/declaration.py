@@ -213,6 +213,9 @@ def stage(group: str, *, title: str = "", tags: str = "", **fields: Any) -> Call
 def _checked(function: Callable, declared: Stage) -> Callable:
     """Return the function with a check of its arguments against its declaration."""
     signature = inspect.signature(function)
+    # Up to Python 3.10 a default of None makes it optional.
+    hint = typing.get_type_hints(function).get(SAMPLING)
+    sampling = next(iter(typing.get_args(hint)), hint)
 
     @functools.wraps(function)
     def checked(*args: Any, **kwargs: Any) -> Any:
@@ -223,6 +226,8 @@ def _checked(function: Callable, declared: Stage) -> Callable:
         for name, tunable in declared.tunables.items():
             if name in bound.arguments:
                 bound.arguments[name] = tunable.check(bound.arguments[name])
+        if sampling is not None and bound.arguments.get(SAMPLING) is None and bound.arguments.get("xyz") is not None:
+            bound.arguments[SAMPLING] = sampling.of(bound.arguments["xyz"], bound.arguments.get("classification"))
         if bound.arguments.get(MONITOR) is None:
             bound.arguments[MONITOR] = Monitor()
         return function(*bound.args, **bound.kwargs)

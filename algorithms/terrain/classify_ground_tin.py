@@ -10,7 +10,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..params import PointSource
 from ..rules import rule
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Param, stage
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
@@ -166,7 +166,7 @@ def classify_ground_tin(
         ),
     ] = False,
     source: PointSource = "automatic",
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find the ground by letting a triangulated surface grow through the lowest points.
@@ -233,7 +233,6 @@ def classify_ground_tin(
     if keep_ground and (classification == PointClass.GROUND).any():
         monitor.progress(1.0)
         return classification.astype(np.uint8)
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing
     usable = in_plan_order(xyz, usable, spacing)

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Param, stage
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_lowest
@@ -98,7 +98,7 @@ def classify_ground_tin_2000(
             advanced=True,
         ),
     ] = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find the ground by letting a triangulated surface grow from the lowest point of each large cell.
@@ -157,7 +157,6 @@ def classify_ground_tin_2000(
     >>> bool((classes[z == 0] == 2).all()), bool((classes[z > 0] == 2).any())
     (True, False)
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing
     usable = in_plan_order(xyz, usable, spacing)

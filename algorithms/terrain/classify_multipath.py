@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage
 from .classify_ground_tin import GROUND, sweep
 from .false_pits import false_pits
@@ -37,7 +35,7 @@ def classify_multipath(
     return_number=None,
     number_of_returns=None,
     *,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find groups of multipath points under the ground, which a ground filter takes for pits.
@@ -90,7 +88,6 @@ def classify_multipath(
     """
     if not (classification == PointClass.GROUND).any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
-    sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     usable = in_plan_order(xyz, usable_points(xyz, classification), sampling.spacing)
     points, classes = xyz[usable], classification[usable].copy()

@@ -11,7 +11,7 @@ from ..geometry.grid import EIGHT, refuse_sparse
 from ..geometry.sparse_voxels import voxel_index
 from ..geometry.tiled_tin import TiledTin
 from ..packages import ndimage
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, Param, Raster, RasterSurface, stage
 
 # Side of a cell (point spacings): it holds four points on average, and one in fifty is empty.
@@ -61,7 +61,7 @@ def rasterize_terrain(
             automatic=f"{_GAP_CELLS:g} cells.",
         ),
     ] = None,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Make rasters of the terrain, of the surface with all objects on it, and of the difference.
@@ -112,7 +112,6 @@ def rasterize_terrain(
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
-    sampling = sampling or CloudSampling.of(xyz, classification)
     used = xyz[~np.isin(classification, NOISE)]
     if cell_size is None:
         cell_size = round_cell_size(_CELL_SPACINGS * sampling.spacing)

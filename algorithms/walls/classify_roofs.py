@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..params import MinBuildingArea, PointDensity, PointSource
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..stage import Monitor, Param, stage
@@ -53,7 +53,7 @@ def classify_roofs(
     ] = None,
     density: PointDensity = None,
     source: PointSource = "automatic",
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Gather the planes above a height into the roofs of buildings.
@@ -109,7 +109,6 @@ def classify_roofs(
     >>> bool((found[z > 0] == 6).all()), int(clusters.max())
     (True, 1)
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density
     if gap is None:
         gap = float(np.clip(_GAP_SPACINGS / np.sqrt(density), _LEAST_GAP, _MOST_GAP))

@@ -19,7 +19,7 @@ from ..neighborhoods.covariance import (
 )
 from ..packages import spatial
 from ..params import SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, SURFACES, plane_roughness, surface_density
 from ..segmentation.candidate_points import NO_OBJECTS
 from ..stage import Monitor, Param, stage
@@ -89,7 +89,7 @@ def classify_walls(
             within="[0, 20] m",
         ),
     ] = 0.3,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Find the points of walls below roofs: lower than roofs, upright, and inside the grown hull of a roof.
@@ -146,7 +146,6 @@ def classify_walls(
         raise ValueError(
             f"The minimum height of walls ({min_height:g} m) is above the maximum height ({max_height:g} m); lower it."
         )
-    sampling = sampling or CloudSampling.of(xyz, classification)
     noise = sampling.noise if noise is None else noise
     roughness = plane_roughness(noise, sampling.surface_density)
     monitor.progress(0.2)

@@ -16,7 +16,7 @@ from ..geometry.line_segments import polygons_of
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.rings import perimeter, signed_area
 from ..params import MinBuildingArea, Seed
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..sampling.surface_noise import ROUGHNESS
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
@@ -122,7 +122,7 @@ def extract_wall_footprints(
     ] = 0.25,
     tolerance: _Tolerance = None,
     seed: Seed = 1,
-    sampling: Optional[CloudSampling] = None,
+    sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
     """Outline the walls of each building, without the eaves: corners where walls meet, and a quality for every edge.
@@ -207,7 +207,6 @@ def extract_wall_footprints(
     footprints: list[_Feature] = []
     edges: list[_Feature] = []
     corners: list[_Feature] = []
-    sampling = sampling or CloudSampling.of(xyz)
     buildings = _buildings(xyz, cluster_id, wall_of, sampling)
     if tolerance is None:
         tolerance = min(max(_ON_WALL * sampling.roughness, _LEAST_TOLERANCE), _MOST_TOLERANCE)
