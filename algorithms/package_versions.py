@@ -21,13 +21,13 @@ def requirement(name: str) -> str:
 
 def too_old(name: str) -> str:
     """Return the version of a package that is installed, where it is less than the least one wanted; "" otherwise."""
-    wanted, installed = _requirements().get(name), _installed(name)
+    wanted, installed = _requirements().get(name), installed_version(name)
     return installed if wanted and installed and _numbers(installed) < _numbers(wanted["least"]) else ""
 
 
 def forget_versions() -> None:
     """Look versions up again: packages were installed."""
-    _installed.cache_clear()
+    installed_version.cache_clear()
 
 
 @cache
@@ -38,7 +38,7 @@ def _requirements() -> dict[str, re.Match]:
 
 
 @cache
-def _installed(name: str) -> str:
+def installed_version(name: str) -> str:
     """Return the version of a package that Python finds first, "" where none says its version."""
     try:
         return importlib.metadata.version(name)

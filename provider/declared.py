@@ -30,11 +30,15 @@ class DeclaredAlgorithm:
 
     declared: Union[Stage, Pipeline]
 
+    def createInstance(self) -> DeclaredAlgorithm:  # noqa: N802 - QGIS asks for these names
+        """Return a new algorithm of the same stage or pipeline."""
+        return type(self)(self.declared)  # type: ignore[call-arg]
+
     def name(self) -> str:
         """Return the id, frozen: saved models depend on it."""
         return self.declared.id
 
-    def displayName(self) -> str:  # noqa: N802 - QGIS asks for these names
+    def displayName(self) -> str:  # noqa: N802
         """Return the title."""
         return self.declared.title
 

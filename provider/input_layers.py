@@ -29,14 +29,7 @@ from ..algorithms.cloud.files import read_extent
 from ..algorithms.stage import InputLayer, LayerFeatures, Monitor
 from .crs import crs_of, crs_of_layer
 from .places import Place, refuse_degrees
-from .vectors import SOURCE_TYPES
-
-# Kinds of geometry of QGIS by their names in WKT, as layers are declared.
-_TYPES = {
-    "Polygon": Qgis.GeometryType.Polygon,
-    "LineString": Qgis.GeometryType.Line,
-    "Point": Qgis.GeometryType.Point,
-}
+from .vectors import SOURCE_TYPES, WKB
 
 # How many different vertices a ring, a line and a point have at least.
 _FEWEST = {"Polygon": 3, "LineString": 2, "Point": 1}
@@ -91,7 +84,7 @@ def find_input_layer(
     kind = QgsWkbTypes.geometryType(found.wkbType())
     # Files of some formats, such as GeoJSON, say of their geometries only what the features have.
     is_empty = kind == Qgis.GeometryType.Null and found.featureCount() == 0
-    if not is_empty and kind not in (_TYPES[input_layer.geometry], Qgis.GeometryType.Unknown):
+    if not is_empty and kind not in (QgsWkbTypes.geometryType(WKB[input_layer.geometry]), Qgis.GeometryType.Unknown):
         raise ValueError(
             f"{input_layer.title} ({name}) must be a layer of {input_layer.objects}, got {found.sourceName()!r} with "
             f"{QgsWkbTypes.geometryDisplayString(kind).lower()} geometries; choose another."
@@ -248,7 +241,7 @@ def _transform(
 def _parts(geometry: QgsGeometry, input_layer: InputLayer, transform: QgsCoordinateTransform, place: Place) -> list:
     """Return the parts of a geometry as in :class:`LayerFeatures`; none where it is not valid or of another kind."""
     kind = input_layer.geometry
-    if geometry.isNull() or geometry.isEmpty() or geometry.type() != _TYPES[kind]:
+    if geometry.isNull() or geometry.isEmpty() or geometry.type() != QgsWkbTypes.geometryType(WKB[kind]):
         return []
     straight = QgsGeometry(geometry.constGet().segmentize())
     if not (input_layer.upright or straight.isGeosValid()):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.metadata
 import platform
 import sys
 from pathlib import Path
@@ -26,7 +25,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ..algorithms import packages
 from ..algorithms.cloud.header import SOFTWARE
-from ..algorithms.package_versions import forget_versions, too_old
+from ..algorithms.package_versions import forget_versions, installed_version, too_old
 from . import PROVIDER_ID
 from .dependencies import (
     laz_sentence,
@@ -52,21 +51,14 @@ def installation_text() -> str:
         f"QGIS {Qgis.version()}",
         f"Python {platform.python_version()} ({python()})",
         f"System {platform.platform()}",
-        *(f"{name} {_version(name)}" for name in _VERSIONS),
-        *(f"{name} {_version(name)} (optional)" for name in _OPTIONAL),
+        *(f"{name} {installed_version(name) or 'is not installed'}" for name in _VERSIONS),
+        *(f"{name} {installed_version(name) or 'is not installed'} (optional)" for name in _OPTIONAL),
         f"Folder for packages {package_folder()}",
         f"Folder of the plugin {PLUGIN}",
     ]
     return "\n".join(
         [*lines, "", missing_sentence(packages.REQUIRED.values()) or laz_sentence() or "Everything is installed."]
     )
-
-
-def _version(name: str) -> str:
-    try:
-        return importlib.metadata.version(name)
-    except importlib.metadata.PackageNotFoundError:
-        return "is not installed"
 
 
 def show_installation(parent: Optional[QWidget]) -> None:

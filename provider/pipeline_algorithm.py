@@ -60,10 +60,6 @@ class PipelineAlgorithm(CloudAlgorithm):
         )
         self.made = [_made(pipeline, output) for output in sorted(pipeline.outputs, key=_rank)]
 
-    def createInstance(self) -> PipelineAlgorithm:  # noqa: N802 - QGIS asks for these names
-        """Return a new algorithm of the same pipeline."""
-        return PipelineAlgorithm(self.pipeline)
-
     def help(self) -> str:
         """Return the help as HTML."""
         return pipeline_help(self.pipeline)

@@ -32,10 +32,6 @@ class StageAlgorithm(CloudAlgorithm):
         self.creates = bool(stage.creates)
         self.made = _made(stage)
 
-    def createInstance(self) -> StageAlgorithm:  # noqa: N802 - QGIS asks for these names
-        """Return a new algorithm of the same stage."""
-        return StageAlgorithm(self.stage)
-
     def help(self) -> str:
         """Return the help as HTML."""
         return stage_help(self.stage)

@@ -95,10 +95,6 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.tiled = self.declared = tiled
         self.made = _made(tiled)
 
-    def createInstance(self) -> TilesAlgorithm:  # noqa: N802 - QGIS asks for these names
-        """Return a new algorithm of the same composite."""
-        return TilesAlgorithm(self.tiled)
-
     def help(self) -> str:
         """Return the help as HTML."""
         return tiled_pipeline_help(self.tiled)

@@ -34,7 +34,7 @@ _TYPES = {
     float: QMetaType.Type.Double,
     str: QMetaType.Type.QString,
 }
-_WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
+WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
 SOURCE_TYPES = {
     "Polygon": Qgis.ProcessingSourceType.VectorPolygon,
     "LineString": Qgis.ProcessingSourceType.VectorLine,
@@ -115,7 +115,7 @@ def _type_of(column: Sequence) -> type:
 
 def wkb_type(layer: Layer, features: LayerFeatures) -> Qgis.WkbType:
     """Return the geometry type: with Z when the stage gave heights."""
-    flat = _WKB[layer.geometry]
+    flat = WKB[layer.geometry]
     return QgsWkbTypes.addZ(flat) if any(_width(geometry) == 3 for geometry in features.geometries[:1]) else flat
 
 

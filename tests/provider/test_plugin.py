@@ -287,7 +287,7 @@ def test_a_package_that_is_too_old_is_as_good_as_missing(provider, old_laspy):
     ("installed", "is_old"), [("2.4.1", True), ("2.5", False), ("2.5.0rc1", False), ("2.10.3", False), ("1.7", True)]
 )
 def test_versions_are_compared_by_their_numbers(monkeypatch, installed, is_old):
-    monkeypatch.setattr(package_versions, "_installed", lambda name: installed)
+    monkeypatch.setattr(package_versions, "installed_version", lambda name: installed)
     assert bool(package_versions.too_old("laspy")) == is_old
     assert not package_versions.too_old("numpy")
 
