@@ -226,8 +226,9 @@ def _checked(function: Callable, declared: Stage) -> Callable:
         for name, tunable in declared.tunables.items():
             if name in bound.arguments:
                 bound.arguments[name] = tunable.check(bound.arguments[name])
-        if sampling is not None and bound.arguments.get(SAMPLING) is None and bound.arguments.get("xyz") is not None:
-            bound.arguments[SAMPLING] = sampling.of(bound.arguments["xyz"], bound.arguments.get("classification"))
+        if sampling is not None and bound.arguments.get(SAMPLING) is None and "xyz" in declared.reads:
+            measured_on = [bound.arguments[name] for name in ("xyz", "classification") if name in declared.reads]
+            bound.arguments[SAMPLING] = sampling.of(*measured_on)
         if bound.arguments.get(MONITOR) is None:
             bound.arguments[MONITOR] = Monitor()
         made = function(*bound.args, **bound.kwargs)
