@@ -8,6 +8,7 @@ from typing import Any, Callable
 from qgis.core import QgsSettings
 
 from ..algorithms.cloud.web_addresses import allow_hosts
+from ..algorithms.cloud.web_cache import keep_in
 from ..algorithms.landcover.recode_classes import CODES as AGENCIES
 from ..algorithms.presets import PRESETS
 from ..algorithms.threads import use_threads
@@ -54,8 +55,9 @@ CODES = Option("LIDARBUILDINGS_CODES", "Class codes that dialogs begin with", ne
 THREADS = Option("LIDARBUILDINGS_THREADS", "Threads (empty = one for each core)")
 WEB_LIMIT = Option("LIDARBUILDINGS_WEB_LIMIT", "Most that a run reads of a point cloud on the web (MB)", "500")
 WEB_HOSTS = Option("LIDARBUILDINGS_WEB_HOSTS", "Hosts that files may name point clouds of (with spaces between)")
+WEB_CACHE = Option("LIDARBUILDINGS_WEB_CACHE", "Folder that keeps what runs read from the web (empty = none)")
 
-OPTIONS = (PRESET, CODES, THREADS, WEB_LIMIT, WEB_HOSTS, SCHEDULERS)
+OPTIONS = (PRESET, CODES, THREADS, WEB_LIMIT, WEB_HOSTS, WEB_CACHE, SCHEDULERS)
 
 
 def apply_options() -> None:
@@ -71,6 +73,7 @@ def apply_options() -> None:
         raise ValueError(f"'{THREADS.title}' in the options of Processing must be a whole number from 1, got {text!r}.")
     use_threads(int(text) if text else None)
     allow_hosts(WEB_HOSTS.value.split())
+    keep_in(WEB_CACHE.value)
 
 
 def _processing_config() -> Any:

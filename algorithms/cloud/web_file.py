@@ -19,6 +19,7 @@ from urllib.parse import unquote, urlsplit
 from ..stage import Monitor
 from .printable import shown
 from .web_addresses import is_address, redirected, same_server, split_address, without_query
+from .web_cache import KeptRanges
 from .web_requests import NoAnswerError, Reply, transport
 
 # Least number of bytes that are asked for at once: the header of a COPC file and most pages of its index are shorter.
@@ -116,6 +117,13 @@ class _Content:
                     f"The server of {name} sent {len(reply.data)} bytes from {first} on instead of {expected} from "
                     f"{start} on; download the file."
                 )
+            kept = KeptRanges(self.address, self.login, reply.version, total)
+            if self.size < 0:
+                # The first request shows which version the server has.
+                for at, data in kept.read():
+                    self._keep(at, data)
+            else:
+                kept.keep(start, reply.data)
             self.size, self.version = total, reply.version
             self._keep(start, reply.data)
         return len(reply.data)

@@ -17,7 +17,7 @@ from qgis.core import (
     QgsRectangle,
 )
 
-from lidar_buildings.algorithms.cloud import web_file
+from lidar_buildings.algorithms.cloud import web_cache, web_file
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, sizes_within, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
@@ -25,7 +25,7 @@ from lidar_buildings.algorithms.cloud.web_requests import transport
 from lidar_buildings.provider import menu, web
 from lidar_buildings.provider.clouds import file_of_layer
 from lidar_buildings.provider.menu import open_dialog, view_parameters
-from lidar_buildings.provider.settings import WEB_HOSTS, WEB_LIMIT
+from lidar_buildings.provider.settings import WEB_CACHE, WEB_HOSTS, WEB_LIMIT, apply_options
 from lidar_buildings.provider.web import QgisTransport
 from lidar_buildings.tests.ept_files import made_points, write_ept
 from lidar_buildings.tests.provider.helpers import Interface, run
@@ -283,6 +283,24 @@ def test_the_limit_is_for_all_tiles_together(provider, context, server, folder, 
         assert "a.copc.laz and 1 more files is on the web" in why
     finally:
         WEB_LIMIT.set(WEB_LIMIT.default)
+
+
+def test_what_was_read_is_kept_in_the_folder_of_the_options(provider, context, server, out):
+    given = {"INPUT": server.address("a.copc.laz"), "EXTENT": VIEW, "OUTPUT": "TEMPORARY_OUTPUT"}
+    sent = []
+    WEB_CACHE.set(str(out / "kept"))
+    try:
+        for _ in range(2):
+            web_file._known.clear()
+            server.sent = 0
+            run("toylift", given, context, None)
+            sent.append(server.sent)
+    finally:
+        WEB_CACHE.set("")
+        apply_options()
+    assert sent[0] > 10 * sent[1] > 0
+    assert list((out / "kept").iterdir())
+    assert web_cache._folder == [""]
 
 
 def test_cancel_ends_within_two_seconds(provider, context, log, server, out):

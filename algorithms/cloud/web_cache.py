@@ -1,0 +1,88 @@
+"""Ranges of files on the web that are kept from run to run, in a folder that the user names."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from hashlib import sha256
+from pathlib import Path
+from typing import Optional
+
+from .outputs import os_errors_as_messages, replacing
+
+# Environment variable that names the folder, also for worker processes; without one, nothing is kept.
+_VARIABLE = "LIDARBUILDINGS_WEB_CACHE"
+# Bytes of all ranges in the folder: those written first are removed first.
+_MOST = 2 * 10**9
+# How the names of ranges end; no other file in the folder is removed.
+_ENDING = ".lidar-buildings-range"
+
+_folder = [os.environ.get(_VARIABLE, "")]
+
+
+def keep_in(folder: str) -> None:
+    """Keep ranges in a folder from now on; with "" in that of the environment variable, if there is one."""
+    _folder[0] = folder or os.environ.get(_VARIABLE, "")
+
+
+class KeptRanges:
+    """The ranges that the folder has of one version of a file.
+
+    Parameters
+    ----------
+    address, login : str
+        Where the file is, and how the user is known there. Only a digest of both is in the names of files.
+    version : str
+        As the server names it; what has no version is not kept.
+    size : int
+        Bytes of the whole file.
+    """
+
+    def __init__(self, address: str, login: str, version: str, size: int) -> None:
+        self.folder: Optional[Path] = Path(_folder[0]).expanduser() if _folder[0] and version else None
+        self.name = sha256(repr((address, login, version, size)).encode()).hexdigest()
+
+    def read(self) -> Iterator[tuple[int, bytes]]:
+        """Yield position and bytes of each range, the one written last at the end."""
+        for _, _, file in _oldest_first(self.folder, self.name) if self.folder else ():
+            _, start, size = file.name.split(".")[0].split("-")
+            # Another process may remove it meanwhile.
+            with suppress(FileNotFoundError):
+                data = file.read_bytes()
+                if len(data) == int(size):
+                    yield int(start), data
+
+    def keep(self, start: int, data: bytes) -> None:
+        """Keep a range, and remove the oldest ones of all files beyond the bound.
+
+        Raises
+        ------
+        ValueError
+            If the folder can't be written.
+        """
+        if self.folder is None:
+            return
+        target = self.folder / f"{self.name}-{start}-{len(data)}{_ENDING}"
+        with os_errors_as_messages(target):
+            self.folder.mkdir(0o700, parents=True, exist_ok=True)
+        with replacing(target) as stream:
+            stream.write(data)
+        files = _oldest_first(self.folder, "")
+        excess = sum(size for _, size, _ in files) - _MOST
+        while excess > 0 and files:
+            _, size, file = files.pop(0)
+            # Windows removes no file that another process reads: it goes the next time.
+            with suppress(PermissionError):
+                file.unlink(missing_ok=True)
+            excess -= size
+
+
+def _oldest_first(folder: Path, name: str) -> list[tuple[int, int, Path]]:
+    """Return when each range in a folder whose name begins so was written (ns), its bytes and its file."""
+    found = []
+    for file in folder.glob(f"{name}*-*-*{_ENDING}"):
+        with suppress(FileNotFoundError):
+            state = file.stat()
+            found.append((state.st_mtime_ns, state.st_size, file))
+    return sorted(found)
