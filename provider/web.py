@@ -26,9 +26,6 @@ _LOOK, _WORK = 100, 20
 class QgisTransport:
     """Requests by the network manager of QGIS, which each thread has its own of."""
 
-    # Replies of several threads at once end the process now and then: Python takes one for another that Qt deleted.
-    at_once = 1
-
     def get(self, url: str, first: int, last: int, login: str, is_stopped: Callable[[], bool]) -> Reply:
         """Ask for the bytes from ``first`` to ``last``; redirections are not followed."""
         request = QNetworkRequest(QUrl(url))
@@ -59,21 +56,15 @@ class QgisTransport:
 def _finished(reply: QNetworkReply, loop: QEventLoop, most: int, is_stopped: Callable[[], bool]) -> Reply:
     """Wait for the end of a reply, which is ended where it has more bytes than asked for; return it."""
     timer, kept = QTimer(), b""
-
-    def look() -> None:
-        nonlocal kept
+    timer.start(_LOOK)
+    # No signals: Python keeps what is connected to them, and takes it for that of a later reply at the same address.
+    while not reply.isFinished():
+        loop.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
         if reply.bytesAvailable() >= most:
             # Nothing can be read of a reply that was ended.
             kept = kept or bytes(reply.read(most))
         if kept or is_stopped() or _status(reply) not in (0, 200, 206):
             reply.abort()
-
-    reply.finished.connect(loop.quit)
-    reply.downloadProgress.connect(look)
-    timer.timeout.connect(look)
-    timer.start(_LOOK)
-    if not reply.isFinished():
-        loop.exec()
     timer.stop()
     status = _status(reply)
     if status == 0:

@@ -6,14 +6,16 @@ It has the methods of a path by which point clouds are read, so that one reader 
 from __future__ import annotations
 
 import io
+import os
 import threading
 import time
 import zlib
 from bisect import bisect_right, insort
 from collections.abc import Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
-from typing import Any, Callable, NamedTuple, Optional, Union, cast
+from typing import Any, NamedTuple, Optional, Union, cast
 from urllib.parse import unquote, urlsplit
 
 from ..stage import Monitor
@@ -37,6 +39,8 @@ _WAITS = (0.5, 1.0, 2.0)
 # Redirections that are followed; browsers follow 20, but no survey needs more than two.
 _MOST_REDIRECTIONS = 5
 _REDIRECTIONS, _AGAIN = (301, 302, 303, 307, 308), (408, 429, 500, 502, 503, 504)
+# Requests that are sent at once: as many as browsers open connections to a server.
+_AT_ONCE = 6
 # Seconds between two looks at whether the run was cancelled.
 _LOOK = 0.1
 
@@ -378,8 +382,9 @@ def _fetch_at_once(wanted: list[tuple[_Content, int, int]], monitor: Monitor) ->
     try:
         while open_ones or wanted:
             monitor.progress(min(1.0, done / total))
-            room = transport().at_once - len(open_ones)
-            open_ones |= {_in_thread(one.fetch, start, stop, stopped) for one, start, stop in wanted[:room]}
+            room = _AT_ONCE - len(open_ones)
+            pool = _threads(os.getpid())
+            open_ones |= {pool.submit(one.fetch, start, stop, stopped) for one, start, stop in wanted[:room]}
             wanted = wanted[room:]
             transport().wait()
             ended, open_ones = wait(open_ones, _LOOK, FIRST_COMPLETED)
@@ -388,13 +393,10 @@ def _fetch_at_once(wanted: list[tuple[_Content, int, int]], monitor: Monitor) ->
         stopped.set()
 
 
-def _in_thread(call: Callable[..., int], *arguments: Any) -> Future:
-    """Run a request in a thread of its own: what Qt leaves of one is not taken for another then."""
-    pool = ThreadPoolExecutor(1, "web")
-    try:
-        return pool.submit(call, *arguments)
-    finally:
-        pool.shutdown(wait=False)
+@lru_cache(maxsize=1)
+def _threads(process: int) -> ThreadPoolExecutor:  # noqa: ARG001
+    """Return the threads of all requests of a process: with each thread that ends, Qt deletes objects still in use."""
+    return ThreadPoolExecutor(_AT_ONCE, "web")
 
 
 def file_at(path: Union[str, Path, WebFile]) -> Path:

@@ -39,8 +39,6 @@ def range_of_whole(length: str, data: bytes) -> str:
 class Transport(Protocol):
     """Sends requests."""
 
-    at_once: int  #: How many requests may be sent at once, each in a thread of its own
-
     def get(self, url: str, first: int, last: int, login: str, is_stopped: Callable[[], bool]) -> Reply:
         """Ask for the bytes from ``first`` to ``last``, both included; raise :class:`NoAnswerError` if it fails.
 
@@ -53,8 +51,6 @@ class Transport(Protocol):
 
 class _StandardLibrary:
     """Requests by the standard library, with the proxies of the environment."""
-
-    at_once = 6
 
     def __init__(self) -> None:
         self._opener = OpenerDirector()

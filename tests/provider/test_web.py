@@ -103,6 +103,25 @@ def test_servers_that_can_not_are_refused(provider, context, server, trouble, va
         run("toylift", given, context, None)
 
 
+def test_many_requests_at_once_end_well(server, folder, monkeypatch):
+    # With threads of their own, or slots in Python, some of a hundred requests failed or ended the process.
+    monkeypatch.setattr(web_file, "_MOST_AT_ONCE", 2**14)
+    expected = read_cloud(folder / "a.copc.laz").points
+    for _ in range(10):
+        web_file._known.clear()
+        np.testing.assert_array_equal(read_cloud(server.address("a.copc.laz")).points, expected)
+    assert len(server.requests) > 500
+
+
+def test_requests_are_sent_six_at_once(server, monkeypatch):
+    monkeypatch.setattr(web_file, "_MOST_AT_ONCE", 2**16)
+    server.delay = 0.3
+    start = time.monotonic()
+    read_cloud(server.address("a.copc.laz"))
+    # One after the other they would take 0.3 s each.
+    assert time.monotonic() - start < 0.6 * 0.3 * len(server.requests)
+
+
 def test_redirections_are_followed_with_their_ranges(server, folder):
     with serving(folder) as other:
         other.redirect = server.address("a.copc.laz")
