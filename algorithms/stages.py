@@ -54,6 +54,7 @@ _MODULES = (
     "landcover.restore_classes",
     "landcover.recode_classes",
     "footprints.extract_footprints",
+    "footprints.regularize_polygons",
     "walls.classify_roofs",
     "walls.classify_walls",
     "walls.extract_wall_footprints",

@@ -101,6 +101,7 @@ STAGE_IDS = {
     "reconstructblock",
     "computebuildingheights",
     "exportforroofer",
+    "regularizepolygons",
     "assessbuildings",
     "reportbuildings",
     "assessground",
@@ -177,7 +178,7 @@ WITHOUT_REFERENCES |= {
 # Stems are scanned from the ground, and finer than the scene is.
 WITHOUT_FEATURES = {"segment_tree"}
 # Their layers have the attributes of the layer that they read after their own.
-KEEPS_ATTRIBUTES = {"compute_building_heights"}
+KEEPS_ATTRIBUTES = {"compute_building_heights", "regularize_polygons"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
     ("compute_features", "radius"): {"neighborhood": "radius"},

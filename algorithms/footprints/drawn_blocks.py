@@ -5,7 +5,8 @@ Borders that two buildings have in common, and polygons that are valid and do no
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -46,13 +47,21 @@ class Outlined:
 
 @dataclass(frozen=True)
 class Drawing:
-    """How outlines are drawn: spacing of points, scale of simplification (m), least areas (m²), whole blocks or not."""
+    """How outlines are drawn: spacing of points, scale of simplification (m), least areas (m²), whole blocks or not.
+
+    ``finer`` are the shares of the scale, 0 to 1, at which some buildings are drawn, by their numbers.
+    """
 
     spacing: float
     scale: float
     min_area: float
     min_hole_area: float
     is_merged: bool = False
+    finer: Mapping[int, float] = field(default_factory=dict)
+
+    def prices(self, building: int) -> Prices:
+        """Return what corners and directions of a building cost."""
+        return Prices(_CORNER * (self.finer.get(building, 1.0) * self.scale) ** 3)
 
 
 def draw_block(
@@ -77,8 +86,8 @@ def draw_block(
     how : Drawing
         Spacing, scale of simplification and least areas.
     """
-    prices = Prices(_CORNER * how.scale**3)
-    rings = [draw_ring(ring, directions[piece.building], prices) for piece in pieces for ring in piece.rings]
+    drawn = [(ring, directions[piece.building], how.prices(piece.building)) for piece in pieces for ring in piece.rings]
+    rings = [draw_ring(*each) for each in drawn]
     # Edges on both sides of a border, or of a front that goes on, were drawn from the same points and are less than a
     # spacing apart: they get one line. So does an edge beside a party wall, lest the house beyond gets a strip between.
     numbers = sorted({piece.building for piece in pieces})

@@ -11,8 +11,6 @@ from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED
 from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
-from ..geometry.polygon_overlap import meeting_boxes
-from ..geometry.ring_directions import N_STEPS, RingPieces, main_directions, weights_of_pieces
 from ..params import MinBuildingArea
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
@@ -20,7 +18,7 @@ from ..stage import Layer, LayerFeatures, Monitor, Param, stage
 from ..threads import made_ahead
 from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
-from .outline_pieces import Piece, blocks_of, find_pieces
+from .outline_pieces import Piece, blocks_of, find_pieces, shared_directions
 from .roof_points import edge_weights, find_non_building_points, find_roof_points, thinned
 from .row_houses import ROWS, Houses, split_row
 from .soft_shares import APART, LEAST_SPACING, Shares, find_shares
@@ -37,13 +35,6 @@ _AUTOMATIC_TOLERANCE = (
 # Steps of the spacing from one to its double, in which it is rounded: the same cloud with a tenth fewer points, or a
 # part of it, mostly has the same.
 _STEPS_PER_OCTAVE = 4
-
-# Distance (m) up to which the walls of neighbors count for directions: across a street.
-_NEIGHBORS = 30.0
-
-# Weight of all neighbors together, as a share of that of the building itself: a shed has the directions of the houses
-# around, and a house that is turned against them has its own.
-_INFLUENCE = 0.5
 
 # Name of the mean distance of building points of the whole.
 _ROOF_SPACING = "roof_spacing"
@@ -144,7 +135,7 @@ def extract_footprints(
 
     The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared
     distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The
-    walls of neighbors within ``_NEIGHBORS`` m count, too. Rings with many walls off these directions, and round ones,
+    walls of neighbors across a street count, too. Rings with many walls off these directions, and round ones,
     are drawn as chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each
     cell to a building or to the ground. Clusters whose points lie on one line have no area and give no polygon.
 
@@ -195,7 +186,7 @@ def extract_footprints(
     searching = monitor.part(0.0, _FOUND)
     evidence = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), searching))
     unknown = [dict.fromkeys(one.shares, np.zeros(0)) for one in evidence]
-    directions = _shared_directions(evidence) if regularize else unknown
+    directions = _directions(evidence) if regularize else unknown
     # Threads work on the arrays of houses and attributes; drawing is many small calls, which hold the interpreter.
     houses_of_parts = made_ahead(
         lambda number, _: _houses(parts[number], evidence[number], directions[number], measures, how),
@@ -324,29 +315,10 @@ def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidenc
     return _Evidence({number: shares[number] for number in rings}, pieces, rings)
 
 
-def _shared_directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]:
-    """Return the main directions of the buildings of each part: the walls around count, the nearer the more."""
-    rings = [own for one in evidence for own in one.rings.values()]
-    boxes = np.array([plan_box(np.concatenate(own)) for own in rings]).reshape(-1, 2, 2)
-    pieces = [list(map(RingPieces, own)) for own in rings]
-    weights = [sum(weights_of_pieces(own, [None] * len(own))) for own in pieces]
-    one, other = meeting_boxes(boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]]), boxes)
-    around = []
-    for number, rows in enumerate(split_groups(one, len(rings))):
-        neighbors = [(each, row) for each in other[rows].tolist() if each != number for row in range(len(rings[each]))]
-        # Walls farther away do not count, also where they are of the same neighbor: a window may lack them.
-        off = (_off_box(rings[each][row], boxes[number]) for each, row in neighbors)
-        counts = [np.maximum(1 - distance / _NEIGHBORS, 0.0) for distance in off]
-        around.append(sum(weights_of_pieces([pieces[each][row] for each, row in neighbors], counts), np.zeros(N_STEPS)))
-    together = [own + _INFLUENCE * own.sum() * other / (other.sum() or 1.0) for own, other in zip(weights, around)]
-    counts = [sum(map(len, own)) for own in rings]
-    found = iter([main_directions(*each) for each in zip(together, weights, counts)])
+def _directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]:
+    """Return the main directions, °, of the buildings of each part."""
+    found = iter(shared_directions([own for one in evidence for own in one.rings.values()]))
     return [{number: next(found) for number in one.rings} for one in evidence]
-
-
-def _off_box(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return how far (m) positions (n, 2) are off a box (2, 2), 0 inside."""
-    return np.hypot(*np.maximum(box[0] - positions, positions - box[1]).clip(0.0).T)
 
 
 def _houses(

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.grid import plan_box
+from ..geometry.groups import components, split_groups
 from ..geometry.level_lines import level_lines
 from ..geometry.line_segments import is_inside
-from ..geometry.ring_directions import direction_weights, main_directions
+from ..geometry.polygon_overlap import meeting_boxes
+from ..geometry.ring_directions import N_STEPS, RingPieces, direction_weights, main_directions, weights_of_pieces
 from ..geometry.rings import perimeter, signed_area
 from ..packages import spatial
 from .soft_shares import Shares, find_shares
@@ -19,6 +21,14 @@ _FEWEST = 12
 
 # Pieces closer than this (spacings) are drawn together, since edges move by up to two spacings.
 _TOGETHER = 4.0
+
+
+# Distance (m) up to which the walls of neighbors count for directions: across a street.
+_NEIGHBORS = 30.0
+
+# Weight of all neighbors together, as a share of that of the building itself: a shed has the directions of the houses
+# around, and a house that is turned against them has its own.
+_INFLUENCE = 0.5
 
 
 @dataclass(frozen=True)
@@ -87,3 +97,29 @@ def blocks_of(pieces: list[Piece], spacing: float) -> list[list[Piece]]:
     near = of_piece[spatial.cKDTree(samples).query_pairs(_TOGETHER * spacing, output_type="ndarray")]
     count, block = components(near[:, 0], near[:, 1], len(pieces))
     return [[pieces[i] for i in np.flatnonzero(block == number)] for number in range(count)]
+
+
+def shared_directions(rings: list[list[np.ndarray]]) -> list[np.ndarray]:
+    """Return the main directions (k,), °, of buildings, by samples along the rings of each.
+
+    The walls of other buildings around count, the nearer the more.
+    """
+    boxes = np.array([plan_box(np.concatenate(own)) for own in rings]).reshape(-1, 2, 2)
+    pieces = [list(map(RingPieces, own)) for own in rings]
+    weights = [sum(weights_of_pieces(own, [None] * len(own))) for own in pieces]
+    one, other = meeting_boxes(boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]]), boxes)
+    around = []
+    for number, rows in enumerate(split_groups(one, len(rings))):
+        neighbors = [(each, row) for each in other[rows].tolist() if each != number for row in range(len(rings[each]))]
+        # Walls farther away do not count, also where they are of the same neighbor: a window may lack them.
+        off = (_off_box(rings[each][row], boxes[number]) for each, row in neighbors)
+        counts = [np.maximum(1 - distance / _NEIGHBORS, 0.0) for distance in off]
+        around.append(sum(weights_of_pieces([pieces[each][row] for each, row in neighbors], counts), np.zeros(N_STEPS)))
+    together = [own + _INFLUENCE * own.sum() * other / (other.sum() or 1.0) for own, other in zip(weights, around)]
+    counts = [sum(map(len, own)) for own in rings]
+    return [main_directions(*each) for each in zip(together, weights, counts)]
+
+
+def _off_box(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Return how far (m) positions (n, 2) are off a box (2, 2), 0 inside."""
+    return np.hypot(*np.maximum(box[0] - positions, positions - box[1]).clip(0.0).T)

@@ -138,6 +138,11 @@ def main_directions(weights: np.ndarray, own: np.ndarray, n_samples: int) -> np.
     return np.array(angles)
 
 
+def deviations(samples: np.ndarray, length: int) -> np.ndarray:
+    """Return the standard deviation (n,), m, across the piece of ``length`` samples from each (n, 2) of a ring on."""
+    return _pieces(samples, length)[1]
+
+
 def _pieces(samples: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
     """Return direction (°) and standard deviation across (m) of the pieces of ``length`` samples from each on."""
     ring = np.concatenate([samples, samples[:length]]) - samples.mean(axis=0)

@@ -19,6 +19,11 @@ def signed_area(ring: np.ndarray) -> float:
     return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 
 
+def polygon_area(rings: list[np.ndarray]) -> float:
+    """Return the area (m²) of a polygon, the exterior of which comes first, without its holes."""
+    return 2 * abs(signed_area(rings[0])) - sum(abs(signed_area(ring)) for ring in rings)
+
+
 def perimeter(ring: np.ndarray) -> float:
     """Return the length (m) of a ring."""
     return float(np.hypot(*np.diff(ring, axis=0).T).sum())

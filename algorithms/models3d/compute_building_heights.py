@@ -12,7 +12,7 @@ from ..cloud.asprs import VEGETATION, PointClass
 from ..footprints.footprint_attributes import roof_heights, surface_heights
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
-from ..geometry.rings import along_sides, sides_of_rings, signed_area
+from ..geometry.rings import along_sides, polygon_area, sides_of_rings
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
@@ -335,11 +335,10 @@ def _roof_facts(
     plan, z = xyz[is_roof, :2], xyz[is_roof, 2]
     middles = (cells_inside(rings, spacing) + 0.5) * spacing
     surface = surface_heights(middles if len(middles) else plan, plan, z, spacing)
-    area = 2 * abs(signed_area(rings[0])) - sum(abs(signed_area(ring)) for ring in rings)
     return {
         **{name: float(np.percentile(surface, percent)) for name, percent in _PERCENTILES.items()},
         **roof_heights(*border, plan, z - terrain, spacing),
-        "volume": area * (float(surface.mean()) - terrain),
+        "volume": polygon_area(rings) * (float(surface.mean()) - terrain),
         "roof_type": _roof_type(xyz[is_roof], planes, planes.label[is_roof]),
         "date": points.date(building[is_roof]),
     }

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.polylines import simplify_ring
-from ..geometry.rings import sampled_rings, signed_area
+from ..geometry.rings import polygon_area, sampled_rings, signed_area
 from ..stage import Monitor
 
 # Rings with less area (m²) are no footprints.
@@ -84,8 +84,7 @@ def sound_rings(rings: list) -> list:
 
 def shows_roof(count: int, spacing: float, rings: list) -> bool:
     """Return whether so many points, with that spacing (m), over a footprint show its roof."""
-    area = 2 * abs(signed_area(rings[0])) - sum(abs(signed_area(ring)) for ring in rings)
-    return count >= _LEAST_POINTS and count * spacing**2 >= _LEAST_COVERED * area
+    return count >= _LEAST_POINTS and count * spacing**2 >= _LEAST_COVERED * polygon_area(rings)
 
 
 def ground_beside(ground: np.ndarray, tree: Any, rings: list) -> np.ndarray:

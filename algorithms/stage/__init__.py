@@ -46,5 +46,5 @@ from .inputs_outputs import (
     feature_names,
     given_layers,
 )
-from .monitor import Cancelled, Monitor, Part, ProgressOnly
+from .monitor import Cancelled, Monitor, ProgressOnly
 from .tunables import Param, Tunable

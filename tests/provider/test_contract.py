@@ -86,6 +86,7 @@ IDS = {
     "reconstructblock",
     "computebuildingheights",
     "exportforroofer",
+    "regularizepolygons",
     "simulatetown",
     "simulateflight",
     "simulatevillage",

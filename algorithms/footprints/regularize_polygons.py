@@ -1,0 +1,273 @@
+"""Polygons of any source drawn anew along the main directions of buildings: no points are needed."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.grid import plan_box
+from ..geometry.kept_areas import welded, with_areas
+from ..geometry.line_segments import nearest_edge_distances
+from ..geometry.points_in_polygons import are_within
+from ..geometry.polygon_overlap import as_polygons, overlaps
+from ..geometry.ring_directions import deviations
+from ..geometry.rings import perimeter, polygon_area, sampled_rings, sides_of_rings
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, Param, stage
+from .drawn_blocks import Drawing, draw_block
+from .outline_pieces import Piece, blocks_of, sampled, shared_directions
+from .soft_shares import LEAST_SPACING, Lattice, Shares
+
+# Tolerance (scales) and distance of samples (scales): stairs of a raster are as high as its cells, and each sample is
+# of more than one of them. With samples one scale apart outlines of rasters have a fifth more corners, no closer.
+_TOLERANCE_SCALES, _SAMPLE_SCALES = 1.75, 1.5
+
+# Automatic scale: so many times the standard deviation across straight pieces; stairs of 1 m deviate by 0.25 m.
+_SCALE_DEVIATIONS = 2.5
+
+# Length of these pieces: so many edges, and least and greatest (m). Longer ones go around corners.
+_PIECE_EDGES, _SHORTEST, _LONGEST = 4.0, 2.0, 4.0
+
+# Step (m) of the samples along which they are measured.
+_FINE = 0.1
+
+# Share of its scale at which a polygon is drawn next that can't be drawn at it, and the most of these trials.
+_FINER, _TRIALS = 0.6, 8
+
+# How far (scales) all walls of a drawn polygon may be moved to give it its area: farther it is another polygon. It may
+# be farther where it is drawn finer: neighbors take or leave what is between.
+_MOST_MOVED = 0.5
+
+# Vertices of the smallest closed ring.
+_LEAST_RING = 4
+
+# Edges up to this multiple of the length of one that has turned around are welded.
+_LONGER = 1.01
+
+# Share of its area by which a polygon may differ in the end.
+_KEPT = 0.01
+
+# Share of the smaller polygon that overlaps with another one from which both are drawn apart: parts of buildings that
+# lie in them, or storeys, are no neighbors.
+_OVERLAPPING = 0.2
+
+# Area (m²) that drawn polygons may share by rounding.
+_NO_AREA = 1e-6
+
+_FIELDS = (
+    Field("regularized", int, "1 drawn anew; 0 as it was, since it could not be drawn without losing area or a hole"),
+    Field("moved", float, "greatest distance of its new outline from the one before", "m"),
+)
+
+
+@stage(
+    "Buildings",
+    title="Regularize footprints",
+    tags="regularize,simplify,orthogonalize,right angles,square,generalize,raster,network,deep learning,segmentation,"
+    "Microsoft,Google,Overture,outlines,shared borders,topology,corners",
+    input_layers=(
+        InputLayer(
+            "polygons",
+            "Polygons",
+            "Polygon",
+            "Outlines of buildings: traced from rasters, by networks or from clouds, or drawn by hand.",
+        ),
+    ),
+    layers=(Layer("regularized", "Regularized footprints", "Polygon", _FIELDS),),
+)
+def regularize_polygons(
+    polygons,
+    *,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
+            within="[0.1, 20] m",
+            automatic="1.75 times the length of the edges, or less where walls deviate less from straight lines, at "
+            f"least {_TOLERANCE_SCALES * LEAST_SPACING:.2g} m.",
+        ),
+    ] = None,
+    monitor=None,
+):
+    """Draw polygons anew along few main directions, with right angles, common borders and the same areas.
+
+    Any polygon layer will do; no point cloud is needed. Polygons that touch share their border vertex by vertex. Holes,
+    attributes and the order of the features stay, and curves stay curves.
+
+    Parameters
+    ----------
+    polygons : LayerFeatures
+        Outlines of buildings.
+
+    Returns
+    -------
+    regularized : LayerFeatures
+        The new outlines in their order, with the attributes of the polygons; names that are used become ``map_…``.
+
+    Raises
+    ------
+    ValueError
+        If the layer has no features.
+
+    Notes
+    -----
+    Walls are found as in 'Extract footprints', by one dynamic program over all corners and directions of a ring, from
+    samples along it. The main directions of a building are weighed with those of the buildings across a street. The
+    walls of a block divide the plane into cells, and a minimum cut gives each to a polygon or to the ground, so that
+    polygons do not overlap. Then whole walls are moved along their normals, by little in the sum of squares, until
+    every polygon has its area again.
+
+    A polygon that would lose a hole, cross itself, or need walls moved by more than ``_MOST_MOVED`` of the scale, is
+    drawn again with a finer tolerance. Where that does not help either, its block stays as it is. Polygons that overlap
+    by ``_OVERLAPPING`` of the smaller one are drawn apart from each other.
+
+    References
+    ----------
+    Perez and Vidal (1994), Optimum polygonal approximation of digitized curves. [perez1994]
+    Boykov, Veksler and Zabih (2001), Fast approximate energy minimization via graph cuts. [boykov2001]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> x = np.repeat(np.arange(0.0, 10.5, 0.5), 2)
+    >>> stairs = np.column_stack([x[:-1], x[1:] / 2])
+    >>> ring = np.concatenate([stairs, [[10, 13], [0, 8]], stairs[:1]])
+    >>> made = regularize_polygons(LayerFeatures([[ring]], {"key": ["a"]}))
+    >>> len(ring) - 1, len(made.geometries[0][0]) - 1, made.columns["key"]
+    (43, 4, ['a'])
+    """
+    if not len(polygons):
+        raise ValueError("The layer of polygons has no features; choose another.")
+    monitor.progress(0.0)
+    plan = [[np.asarray(ring, float)[:, :2] for ring in rings] for rings in polygons.geometries]
+    corner = plan_box(np.concatenate([ring for rings in plan for ring in rings]))[0]
+    local = [[ring - corner for ring in rings] for rings in plan]
+    if tolerance is None:
+        tolerance = _TOLERANCE_SCALES * _scale([ring for rings in local for ring in rings])
+        monitor.resolved(tolerance=tolerance)
+    made = _drawn(local, tolerance / _TOLERANCE_SCALES, monitor)
+    moved = [_farthest(new, old) for new, old in zip(made, local)]
+    n_same = sum(new is old for new, old in zip(made, local))
+    n_corners = [sum(len(ring) - 1 for rings in one for ring in rings) for one in (local, made)]
+    monitor.inform(f"{len(local)} polygons had {n_corners[0]:,} corners and have {n_corners[1]:,} now.")
+    if n_same:
+        monitor.warn(f"{n_same} of {len(local)} polygons are as they were: they are too small for the tolerance.")
+    columns = {"regularized": [int(new is not old) for new, old in zip(made, local)], "moved": moved}
+    kept = polygons.kept(range(len(polygons)), _FIELDS)
+    return LayerFeatures([[ring + corner for ring in rings] for rings in made], {**columns, **kept})
+
+
+def _scale(rings: list) -> float:
+    """Return the scale (m) of the detail along rings that is no wall: stairs of cells, noise of points."""
+    length = np.sort(np.concatenate([np.hypot(*np.diff(ring, axis=0).T) for ring in rings]))
+    step = float(length[np.searchsorted(np.cumsum(length), length.sum() / 2)])
+    count = round(float(np.clip(_PIECE_EDGES * step, _SHORTEST, _LONGEST)) / _FINE)
+    long = [ring for ring in rings if perimeter(ring) >= 2 * count * _FINE]
+    across = np.concatenate([np.zeros(0), *(deviations(sampled(ring, _FINE), count) for ring in long)])
+    noise = _SCALE_DEVIATIONS * float(np.median(across)) if len(across) else 0.0
+    return max(LEAST_SPACING, min(step, noise))
+
+
+def _drawn(polygons: list, scale: float, monitor: Monitor) -> list:
+    """Return polygons drawn anew at a scale (m); those that can't be are the same objects as before."""
+    made, done, step = list(polygons), 0, _SAMPLE_SCALES * scale
+    samples = [[sampled(ring, step) for ring in rings] for rings in polygons]
+    for layer in _layers(samples):
+        directions = dict(zip(layer, shared_directions([samples[row] for row in layer])))
+        for block in blocks_of([Piece(row, samples[row]) for row in layer], step):
+            rows = [piece.building for piece in block]
+            for row, rings in zip(rows, _block({row: polygons[row] for row in rows}, directions, scale)):
+                made[row] = rings
+            done += len(rows)
+            monitor.progress(done / len(polygons))
+    return made
+
+
+def _layers(samples: list) -> list[list[int]]:
+    """Return the rows of polygons, by samples along them, in layers of which none overlaps another one clearly."""
+    edges = as_polygons([[np.concatenate([ring, ring[:1]]) for ring in rings] for rings in samples])
+    one, other, shared = overlaps(edges, edges, Monitor())
+    is_over = (one != other) & (shared > _OVERLAPPING * np.minimum(edges.area[one], edges.area[other]))
+    over: list[set[int]] = [set() for _ in samples]
+    for row, neighbor in zip(one[is_over].tolist(), other[is_over].tolist()):
+        over[row].add(neighbor)
+    layers: list[set[int]] = []
+    for row, neighbors in enumerate(over):
+        free = [layer for layer in layers if layer.isdisjoint(neighbors)]
+        layers += [] if free else [{row}]
+        (free or layers[-1:])[0].add(row)
+    return [sorted(layer) for layer in layers]
+
+
+def _block(polygons: dict[int, list], directions: dict[int, np.ndarray], scale: float) -> list:
+    """Return the polygons of a block drawn at a scale (m) or a finer one where they need it, as they are if none helps.
+
+    Polygons and main directions, °, go by their numbers.
+    """
+    finer = dict.fromkeys(polygons, 1.0)
+    for _ in range(_TRIALS):
+        drawn, bad = _tried(polygons, directions, scale, finer)
+        if not bad:
+            return drawn
+        finer.update({number: _FINER * finer[number] for number in bad})
+    return list(polygons.values())
+
+
+def _tried(
+    polygons: dict[int, list], directions: dict[int, np.ndarray], scale: float, finer: dict[int, float]
+) -> tuple[list, list[int]]:
+    """Return polygons of a block drawn at shares of a scale (m), and the numbers of those that are not sound."""
+    spacing, own = _SAMPLE_SCALES * scale, list(polygons.items())
+    pieces = [Piece(number, [sampled(ring, spacing * finer[number]) for ring in rings]) for number, rings in own]
+    shares = {number: _shares(rings, spacing) for number, rings in own}
+    how = Drawing(spacing, scale, scale**2, scale**2, finer=finer)
+    outlined = sorted(draw_block(pieces, shares, directions, {}, how), key=lambda one: polygon_area(one.rings))
+    # Of parts of one polygon the last one stays, the largest.
+    found = {one.building: one.rings for one in outlined}
+    drawn = [found.get(number, []) for number, _ in own]
+    bad = [number for (number, rings), new in zip(own, drawn) if _is_other(new, rings, scale / finer[number])]
+    if bad:
+        return drawn, bad
+    wanted = np.array([polygon_area(rings) for _, rings in own])
+    turned = np.zeros(1)
+    # Walls that end side by side leave short edges, which may turn around where walls are moved.
+    while (turned < scale).all():
+        drawn = welded(drawn, _LONGER * turned.max())
+        lost = [number for (number, _), new in zip(own, drawn) if min(map(len, new)) < _LEAST_RING]
+        if lost:
+            return drawn, lost
+        moved = with_areas(drawn, wanted)
+        turned = np.array([max(map(_turned, new, rings)) for new, rings in zip(moved, drawn)])
+        if not turned.any():
+            break
+    edges = as_polygons(moved)
+    one, other, shared = overlaps(edges, edges, Monitor())
+    is_bad = (turned > 0) | (np.abs(edges.area - wanted) > _KEPT * wanted)
+    is_bad[one[np.abs(shared - np.where(one == other, edges.area[one], 0.0)) > _NO_AREA]] = True
+    return moved, [own[row][0] for row in np.flatnonzero(is_bad)]
+
+
+def _turned(new: np.ndarray, old: np.ndarray) -> float:
+    """Return the length (m) of the longest edge of a ring that has turned around, 0 without any."""
+    way = np.diff(old, axis=0)
+    is_turned = (np.diff(new, axis=0) * way).sum(axis=1) <= 0
+    return float((np.hypot(*way.T) * is_turned).max(initial=0.0))
+
+
+def _is_other(new: list, old: list, scale: float) -> bool:
+    """Return whether a polygon was lost, with or without a hole, or its walls would be moved far for its area."""
+    far = _MOST_MOVED * scale * sum(map(perimeter, old))
+    return len(new) != len(old) or abs(polygon_area(new) - polygon_area(old)) > far
+
+
+def _shares(rings: list, spacing: float) -> Shares:
+    """Return where a polygon is: all of the nodes in it."""
+    lattice = Lattice.around(rings[0], spacing)
+    share = are_within(lattice.positions, sides_of_rings(rings)).reshape(lattice.shape).astype(np.float32)
+    return Shares(lattice, share, 1 - share)
+
+
+def _farthest(new: list, old: list) -> float:
+    """Return the greatest distance (m) of a new outline from the old one."""
+    start, end = np.moveaxis(sides_of_rings(old), 1, 0)
+    return float(nearest_edge_distances(sampled_rings(new, LEAST_SPACING), start, end).max())
