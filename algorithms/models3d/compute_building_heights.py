@@ -192,11 +192,8 @@ def _outlines(footprints: LayerFeatures, xyz: np.ndarray, monitor: Monitor) -> t
     sound = {row: rings for row, rings in rings_of.items() if rings}
     tell_without_area(len(sound), len(footprints), monitor)
     low, high = xyz[:, :2].min(axis=0), xyz[:, :2].max(axis=0)
-    near = [
-        row
-        for row, rings in sound.items()
-        if (rings[0].max(axis=0) >= low).all() and (rings[0].min(axis=0) <= high).all()
-    ]
+    boxes = {row: (rings[0].min(axis=0), rings[0].max(axis=0)) for row, rings in sound.items()}
+    near = [row for row, (least, most) in boxes.items() if ((most >= low) & (least <= high)).all()]
     if not near:
         raise ValueError(
             f"None of the {len(footprints)} footprints touches the extent of the point cloud; choose a layer of the "
@@ -244,16 +241,6 @@ class _Points:
             point_spacing(xyz[np.isin(classification, roofs)]),
         )
 
-    @property
-    def are_classified(self) -> bool:
-        """Whether a class says which points are of buildings."""
-        return PointClass.BUILDING in self.roofs
-
-    def within(self, rings: list) -> np.ndarray:
-        """Return the rows (k,) of the points in a footprint."""
-        rows = rows_near(self.xyz, rings)
-        return rows[inside_rings(self.xyz[rows, :2], rings)]
-
     def date(self, rows: np.ndarray) -> Optional[str]:
         """Return the median day of some points, None where it is unknown."""
         if self.time is None:
@@ -273,14 +260,16 @@ def _borders(outlines: list, spacing: float, monitor: Monitor) -> list[tuple[np.
 
 def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], tolerance: float) -> dict[str, Any]:
     """Return what the points say of the building on a footprint, by the fields."""
-    within = points.within(rings)
+    near, are_classified = rows_near(points.xyz, rings), PointClass.BUILDING in points.roofs
+    within = near[inside_rings(points.xyz[near, :2], rings)]
     kind = points.classification[within]
     base, terrain = np.percentile(ground_beside(points.ground, points.tree, rings), (GROUND_PERCENTILE, 50)).tolist()
     building, plants = within[np.isin(kind, points.roofs)], within[np.isin(kind, VEGETATION)]
-    if not points.are_classified:
+    if not are_classified:
         building = building[points.xyz[building, 2] >= base + _LEAST_HEIGHT]
-    planes = _planes(points.xyz[building], tolerance, points.spacing)
-    if not points.are_classified:
+    least = max(5, round(_MIN_AREA / points.spacing**2))
+    planes = find_roof_planes(points.xyz[building] - points.xyz[building[:1]], tolerance, _STEEPEST, least)
+    if not are_classified:
         is_plant = _are_plants(points.xyz[building], planes.label >= 0, points.spacing)
         plants = np.concatenate([plants, building[is_plant]])
         building, planes = building[~is_plant], RoofPlanes(planes.coefficients, planes.label[~is_plant])
@@ -313,12 +302,6 @@ def _are_plants(xyz: np.ndarray, is_on: np.ndarray, spacing: float) -> np.ndarra
         return np.ones(len(xyz), bool)
     distance, nearest = spatial.cKDTree(xyz[is_on, :2]).query(xyz[:, :2])
     return ~is_on & ((distance > _APART * spacing) | (xyz[:, 2] > xyz[is_on, 2][nearest] + RULES.below))
-
-
-def _planes(xyz: np.ndarray, tolerance: float, spacing: float) -> RoofPlanes:
-    """Return the planes of the points (n, 3) of a building, in coordinates from the first one, m."""
-    least = max(5, round(_MIN_AREA / spacing**2))
-    return find_roof_planes(xyz - xyz[:1], tolerance, _STEEPEST, least)
 
 
 def _roof_facts(
