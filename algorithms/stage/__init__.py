@@ -27,9 +27,9 @@ parameters) is derived from this declaration and written nowhere else. This
 package needs the standard library and numpy only, and is independent of QGIS.
 """
 
-from .arguments import REFERENCE_PREFIX
-from .declaration import CLOUD, DIMENSION, REPORT, SAMPLING, VALUES, Declared, Stage, stage
-from .inputs_outputs import (
+from .arguments import REFERENCE_PREFIX  # noqa: F401 - the names that stages import
+from .declaration import CLOUD, DIMENSION, REPORT, SAMPLING, VALUES, Declared, Stage, stage  # noqa: F401
+from .inputs_outputs import (  # noqa: F401
     Field,
     FileContent,
     FileItem,
@@ -46,5 +46,5 @@ from .inputs_outputs import (
     feature_names,
     given_layers,
 )
-from .monitor import Cancelled, Monitor, ProgressOnly
-from .tunables import Param, Tunable
+from .monitor import Cancelled, Monitor, ProgressOnly  # noqa: F401
+from .tunables import Param, Tunable  # noqa: F401
