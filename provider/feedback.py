@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 from qgis.core import QgsApplication, QgsProcessingAlgorithm, QgsProcessingFeedback
 
-from ..algorithms.stage import SAMPLING, Cancelled, Monitor, Param, Stage
+from ..algorithms.stage import SAMPLING, Cancelled, Monitor, Param, Part, Stage
 from .declared import on_command_line
 from .run_log import RunLog
 
@@ -215,35 +215,22 @@ class ChainMonitor(FeedbackMonitor):
                 self._feedback.pushInfo((_SAMPLING if is_sampling else "") + _BETWEEN.join(new))
 
 
-class _StepMonitor(Monitor):
+class _StepMonitor(Part):
     """The monitor of one step of a chain: values have its labels and units in the log, its name among the results."""
 
     def __init__(
-        self, chain: ChainMonitor, log: RunLog, stage: Stage, given: dict[str, Any], name: str, *part: float
+        self, chain: ChainMonitor, log: RunLog, stage: Stage, given: dict[str, Any], name: str, start: float, end: float
     ) -> None:
-        super().__init__()
-        self._chain, self._log, self._stage, self._given, self._name = chain, log, stage, given, name
-        self._start, self._length = part[0], part[1] - part[0]
-
-    def progress(self, fraction: float) -> None:
-        """Move the progress bar, or raise :class:`Cancelled`."""
-        self._chain.progress(self._start + self._length * fraction)
+        super().__init__(chain, start, end, f"{name}_")
+        self._chain, self._log, self._stage, self._given = chain, log, stage, given
 
     def resolved(self, **values: Any) -> None:
         """Pass on values, and log those that the user didn't give."""
-        self._chain.resolved(**{f"{self._name}_{name}": value for name, value in values.items()})
+        super().resolved(**values)
         self._log.resolved(values)
         for name, value in values.items():
             if self._given.get(name) is None and value is not None:
                 self._chain.found(value_sentence(self._stage, name, value))
-
-    def warn(self, sentence: str) -> None:
-        """Pass on a warning."""
-        self._chain.warn(sentence)
-
-    def inform(self, sentence: str) -> None:
-        """Pass on a sentence."""
-        self._chain.inform(sentence)
 
 
 def show_heading(feedback: QgsProcessingFeedback, heading: str, rest: str = "") -> None:

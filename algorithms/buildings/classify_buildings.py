@@ -212,7 +212,6 @@ def classify_buildings(
     kind = sampling.kind(source)
     decide = kind.choose(laser=_decided_in_scan, images=_decided_in_images)
     decided = decide(given, surface, (red, green, blue), monitor)
-    monitor.progress(1.0)
 
     # 3. All points of a cluster are the same.
     report = build_report(Clusters(entropies.means, decided.reasons, split, through, max_penetration))

@@ -133,7 +133,6 @@ def classify_buildings_2019(
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     decided = decide_by_entropy(entropies.means, split)
     report = build_report(Clusters(entropies.means, decided.reasons, split))
-    monitor.progress(1.0)
     smallest = min_area * density
     weakest = weakest_evidence(entropies, smallest, split)
     return written_to_points(classification, reason, entropies, decided, weakest, smallest, report)

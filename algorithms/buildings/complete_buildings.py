@@ -186,7 +186,6 @@ def complete_buildings(
     decks = deck_cells(coverage.building, coverage.cell, xyz[:, 2], is_ground, coverage.cell_size, min_area)
     owner = np.where(is_ground & (owner == 0), decks[coverage.cell], owner)
     cluster_id = _in_order(owner, np.ravel_multi_index(coverage.cell, coverage.building.shape))
-    monitor.progress(1.0)
 
     result[cluster_id > 0] = PointClass.BUILDING
     explained = _explained(confidence, reason, is_roof, cluster_id, coverage.refusal(owner))

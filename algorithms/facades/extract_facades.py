@@ -217,7 +217,6 @@ def extract_facades(
     facades = [replace(facade, number=number) for number, facade in enumerate(facades, start=1)]
     if corner_distance:
         facades = with_common_borders(facades, corner_distance, monitor.part(0.95, 1.0))
-    monitor.progress(1.0)
     return _result(facades, len(xyz), min_area, min_height, monitor)
 
 

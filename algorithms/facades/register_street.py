@@ -136,7 +136,6 @@ def register_street(
         result = Registration(np.zeros(3), float("nan"), float("nan"), 0, 0, 0)
     else:
         monitor.inform(_sentence(result))
-    monitor.progress(1.0)
     return _moved(facades, result.shift), _moved(openings, result.shift), _report(result)
 
 

@@ -163,7 +163,6 @@ def segment_facade_lines(
     piece = _pieces(xyz[order], line, tolerance, monitor.part(0, 0.8))
     limits = (max_ground_height, facade_distance)
     segment_id, features = _described(xyz, order, line, piece, limits, min_points)
-    monitor.progress(1.0)
     if not features.geometries:
         monitor.none_found("No scan line has a straight segment; lower the minimum points or raise the tolerance.")
     return segment_id, features

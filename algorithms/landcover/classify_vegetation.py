@@ -151,5 +151,4 @@ def classify_vegetation(
     plants = plants[~is_solid]
     layer = np.searchsorted([medium, high], height_above_ground[plants], side="right")
     classes[plants] = np.array(VEGETATION, np.uint8)[layer]
-    monitor.progress(1.0)
     return classes

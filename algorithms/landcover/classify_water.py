@@ -107,5 +107,4 @@ def classify_water(
     level = water_levels(points, is_ground, is_pulse, sampling.spacing, min_area, monitor)
     is_water = np.abs(points[:, 2] - level) <= _DEVIATIONS * noise
     classes[used[is_water & np.isin(classification[used], _OPEN)]] = PointClass.WATER
-    monitor.progress(1.0)
     return classes

@@ -120,7 +120,6 @@ def classify_wires(
         classes[rows[around.on_wire(span, beyond=1.0)]] = PointClass.WIRE_CONDUCTOR
     is_wire = classes[rows] == PointClass.WIRE_CONDUCTOR
     classes[rows[on_masts(points, height, is_wire, spans)]] = PointClass.TRANSMISSION_TOWER
-    monitor.progress(1.0)
     return classes
 
 

@@ -72,7 +72,6 @@ def keep_classes(
     >>> keep_classes([[0, 0, 0], [1, 0, 5]], np.array([2, 6]), keep="ground")
     array([2, 0], dtype=uint8)
     """
-    monitor.progress(1.0)
     if keep == _NONE and earlier_class is None:
         return None
     kept = _KEPT[keep]

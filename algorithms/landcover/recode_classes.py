@@ -99,7 +99,6 @@ def recode_classes(
     table = np.arange(256, dtype=np.uint8)
     for number, code in {**CODES[codes], **parse_mapping(mapping)}.items():
         table[number] = code
-    monitor.progress(1.0)
     return table[classification.astype(np.uint8)]
 
 

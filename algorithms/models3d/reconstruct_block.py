@@ -164,7 +164,6 @@ def reconstruct_block(
     if not len(segments):
         monitor.warn("No facade is an upright polygon with heights, so all walls are those of footprints.")
     _inform(int((seen > 0).sum()), len(footprints), len(done), len(openings), monitor)
-    monitor.progress(1.0)
     return buildings, _walls(pierced, segments), roofs, _opening_layer(done), pierced
 
 

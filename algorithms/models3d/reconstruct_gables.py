@@ -144,7 +144,6 @@ def reconstruct_gables(
             if house is not None:
                 houses.append(replace(house, vertices=house.vertices + start))
             monitor.progress(0.7 + 0.3 * done / len(pairs))
-    monitor.progress(1.0)
     if not houses:
         monitor.warn(
             "No two roof planes rise toward each other to a level ridge, so there is no gable; run "

@@ -69,5 +69,4 @@ def classify_noise_air(xyz, classification, *, sampling: CloudSampling = MEASURE
     hanging = in_the_air(xyz[used], sampling.spacing, monitor)
     classes[used[hanging]] = PointClass.HIGH_NOISE
     monitor.resolved(high_noise=int(hanging.sum()))
-    monitor.progress(1.0)
     return classes

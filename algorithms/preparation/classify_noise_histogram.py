@@ -152,7 +152,6 @@ def classify_noise_histogram(
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
-    monitor.progress(1.0)
     return made
 
 

@@ -124,7 +124,6 @@ def classify_noise_histogram_2019(
     classes[used[is_low]] = PointClass.LOW_NOISE
     classes[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
-    monitor.progress(1.0)
     return classes
 
 

@@ -77,7 +77,6 @@ def clip_cloud(
     if polygons is None:
         if outside:
             raise ValueError("'Keep outside' needs polygons to be outside of; choose a layer or leave it off.")
-        monitor.progress(1.0)
         return np.arange(len(xyz))
     is_kept = are_in_polygons(xyz[:, :2], as_polygons(polygons.geometries), monitor) != outside
     if len(xyz) and not is_kept.any():

@@ -132,7 +132,6 @@ def filter_points(
         )
     if values is not None:
         kept &= _within(values, low, high, ("low", "high"), monitor)
-    monitor.progress(1.0)
     return np.flatnonzero(~kept if invert else kept)
 
 

@@ -120,7 +120,6 @@ def report_buildings(
     if xyz is not None and len(shown):
         views = Views(xyz, classification == PointClass.BUILDING)
         parts.append(draw_views(views, [footprints.geometries[row] for row in shown], facts.captions(shown)))
-    monitor.progress(1.0)
     summary = summary_of(values)
     monitor.inform(summary)
     said = f"{summary} {doubt}".strip()

@@ -118,5 +118,4 @@ def classify_bridges(
     # Ground points on a deck are those of cars and parapets; ground that rises beside the deck stays ground.
     classes[used[ground[on_decks(points[ground], points[is_deck], LASER.foot)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
-    monitor.progress(1.0)
     return classes

@@ -132,7 +132,6 @@ def classify_ground_segments(
     changes = classes[used] != PointClass.WATER
     classes[used[is_ground & changes]] = PointClass.GROUND
     classes[used[is_deck & changes]] = PointClass.BRIDGE_DECK
-    monitor.progress(1.0)
     return classes
 
 

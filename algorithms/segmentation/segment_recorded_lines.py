@@ -196,7 +196,6 @@ def segment_recorded_lines(
     segment = _with_others(points, row, piece, regions, line_distance, tolerance)
     segment_id = np.zeros(len(xyz), np.int32)
     segment_id[used] = number_large(segment, min_points)
-    monitor.progress(1.0)
     return segment_id
 
 

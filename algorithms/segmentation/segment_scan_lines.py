@@ -157,5 +157,4 @@ def segment_scan_lines(
     segment = merged_pieces(piece_sets)
     segment_id = np.zeros(len(xyz), np.int32)
     segment_id[used] = number_large(by_first_point(segment), min_points)
-    monitor.progress(1.0)
     return segment_id

@@ -214,7 +214,6 @@ def segment_voxels(
     }
     shown = skeleton(cells, monitor.part(0.8, 1)) if thin else np.ones(len(cells), bool)
     centers = (cells[shown] + 0.5) * voxel_size + low
-    monitor.progress(1.0)
     return segment_id, LayerFeatures(list(centers), {name: values[shown] for name, values in columns.items()})
 
 

@@ -173,7 +173,6 @@ def segment_tree(
     )
     segment_id[rows] = label
     layer.geometries = [line + origin for line in layer.geometries]
-    monitor.progress(1.0)
     return segment_id, layer
 
 

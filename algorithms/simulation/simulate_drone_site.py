@@ -149,7 +149,6 @@ def simulate_drone_site(
     colors = (matched.colors[row, column] * 257).astype(np.uint16)
     classes, objects = _truth(field, xyz, row, column)
     ones = np.ones(len(xyz), np.uint8)
-    monitor.progress(1.0)
     return xyz, classes, ones, ones.copy(), *colors.T.copy(), objects, footprint_layer(scene.buildings)
 
 

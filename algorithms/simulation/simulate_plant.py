@@ -141,7 +141,6 @@ def simulate_plant(
     beam = xyz - np.array(plant.stations)[origin[kept]]
     beam /= np.linalg.norm(beam, axis=1)[:, None]
     xyz = xyz + noise * rng.standard_normal(len(xyz))[:, None] * beam
-    monitor.progress(1.0)
     return _dimensions(xyz, part, plant)
 
 

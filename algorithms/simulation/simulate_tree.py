@@ -128,7 +128,6 @@ def simulate_tree(
     foliage = _foliage(limbs, round(leaves * n_wood), rng)
     ground = rng.uniform(-_GROUND, _GROUND, (round((2 * _GROUND) ** 2 * _GROUND_DENSITY), 3)) * [1, 1, 0]
     ground[:, 2] += noise * rng.standard_normal(len(ground))
-    monitor.progress(1.0)
     ids = np.repeat(np.arange(1, len(limbs) + 1), [len(one) for one in points])
     n_other = len(foliage) + len(ground)
     classes = np.repeat([PointClass.HIGH_VEGETATION, PointClass.GROUND], [n_wood + len(foliage), len(ground)])

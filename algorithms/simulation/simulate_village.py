@@ -187,7 +187,6 @@ def simulate_village(
     wrong = _wrong_matches(village.scene.relief, round(noise_points * size**2 / 1e4), rng)
     cloud = _joined(xyz, seen, village, colors, *wrong)
     old_map = _old_map(village, map_shift, map_noise, map_changes, rng)
-    monitor.progress(1.0)
     return (*cloud, footprint_layer(village.scene.buildings, corners=True), old_map)
 
 

@@ -46,5 +46,5 @@ from .inputs_outputs import (  # noqa: F401
     feature_names,
     given_layers,
 )
-from .monitor import Cancelled, Monitor, ProgressOnly  # noqa: F401
+from .monitor import Cancelled, Monitor, Part, ProgressOnly  # noqa: F401
 from .tunables import Param, Tunable  # noqa: F401

@@ -231,7 +231,9 @@ def _checked(function: Callable, declared: Stage) -> Callable:
             bound.arguments[SAMPLING] = sampling.of(*measured_on)
         if bound.arguments.get(MONITOR) is None:
             bound.arguments[MONITOR] = Monitor()
-        return function(*bound.args, **bound.kwargs)
+        made = function(*bound.args, **bound.kwargs)
+        bound.arguments[MONITOR].progress(1.0)
+        return made
 
     return checked
 

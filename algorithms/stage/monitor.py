@@ -51,7 +51,7 @@ class Monitor:
 
     def part(self, start: float, end: float, prefix: str = "") -> Monitor:
         """Return a monitor whose 0 to 1 is ``start`` to ``end`` of this one, and whose values get a prefix here."""
-        return _Part(self, start, end, prefix)
+        return Part(self, start, end, prefix)
 
     def step(self, name: str, stage: Stage, tunables: dict[str, Any], start: float, end: float) -> Monitor:
         """Return the monitor of a step of a chain, a stage with its tunables; its values get the name as prefix."""
@@ -70,7 +70,7 @@ class ProgressOnly(Monitor):
         self.listener.progress(fraction)
 
 
-class _Part(Monitor):
+class Part(Monitor):
     """A stretch of another monitor's progress; everything else goes straight through."""
 
     def __init__(self, whole: Monitor, start: float, end: float, prefix: str) -> None:
@@ -78,22 +78,28 @@ class _Part(Monitor):
         self.values, self.warnings, self.infos = whole.values, whole.warnings, whole.infos
 
     def progress(self, fraction: float) -> None:
+        """Pass it on, as a share of the whole; may raise :class:`Cancelled`."""
         self.whole.progress(self._of_whole(fraction))
 
     def step(self, name: str, stage: Stage, tunables: dict[str, Any], start: float, end: float) -> Monitor:
+        """Return the monitor of a step, as the whole makes it."""
         return self.whole.step(self.prefix + name, stage, tunables, self._of_whole(start), self._of_whole(end))
 
     def _of_whole(self, fraction: float) -> float:
         return self.start + (self.end - self.start) * fraction
 
     def resolved(self, **values: Any) -> None:
+        """Pass values on, under their names with the prefix."""
         self.whole.resolved(**{self.prefix + name: value for name, value in values.items()})
 
     def warn(self, sentence: str) -> None:
+        """Pass a warning on."""
         self.whole.warn(sentence)
 
     def none_found(self, sentence: str) -> None:
+        """Pass it on."""
         self.whole.none_found(sentence)
 
     def inform(self, sentence: str) -> None:
+        """Pass a sentence on."""
         self.whole.inform(sentence)

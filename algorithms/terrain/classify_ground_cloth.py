@@ -130,7 +130,6 @@ def classify_ground_cloth(
     cloth.settle(iterations, monitor.part(0, 0.95))
     height = _let_down(cloth) if slope_processing else cloth.height
     is_ground = np.abs(grid.at(points, height) + points[:, 2]) <= threshold
-    monitor.progress(1.0)
     return with_ground(classification, usable[is_ground])
 
 

@@ -231,7 +231,6 @@ def classify_ground_tin(
     (True, False)
     """
     if keep_ground and (classification == PointClass.GROUND).any():
-        monitor.progress(1.0)
         return classification.astype(np.uint8)
     xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing

@@ -181,5 +181,4 @@ def classify_ground_tin_2000(
         sweep_distance = _SWEEP_DEVIATIONS * surface_roughness(surface.nodes, least)
     monitor.resolved(iteration_distance=distance, last_angle=angle)
     monitor.resolved(edge_length=edge_length, sweep_distance=sweep_distance)
-    monitor.progress(1.0)
     return with_ground(classification, usable[surface.within(sweep_distance)])

@@ -108,7 +108,6 @@ def classify_multipath(
         classes[undecided] = np.where(is_ground[undecided], PointClass.GROUND, PointClass.UNCLASSIFIED)
         classes[low] = PointClass.LOW_NOISE
     monitor.resolved(low_noise=len(low))
-    monitor.progress(1.0)
     result = classification.astype(np.uint8)
     result[usable] = classes
     return result

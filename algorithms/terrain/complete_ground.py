@@ -74,5 +74,4 @@ def complete_ground(
     is_near = np.isin(classification, _OPEN) & (np.abs(height_above_ground) <= max_distance)
     if max_distance:
         classes[is_near] = PointClass.GROUND
-    monitor.progress(1.0)
     return classes

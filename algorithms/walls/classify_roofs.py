@@ -125,7 +125,6 @@ def classify_roofs(
         # A plane whose building was only found with its bent parts is surrounded by these, from close by.
         cluster_id = join_stacked(xyz, cluster_id - 1, gap / 2) + 1
         cluster_id = split_blocks(xyz, height_above_ground, cluster_id, sampling.spacing, monitor.part(0.95, 1))
-    monitor.progress(1.0)
     result[cluster_id > 0] = PointClass.BUILDING
     if not cluster_id.any():
         monitor.none_found(

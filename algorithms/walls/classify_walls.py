@@ -163,7 +163,6 @@ def classify_walls(
         wall_of[low[upright]] = owner[upright]
     if cluster_id.any() and not wall_of.any():
         monitor.none_found("No wall was seen under any roof, so footprints can show the outlines of roofs only.")
-    monitor.progress(1.0)
     return np.where(wall_of > 0, np.uint8(PointClass.BUILDING), classification).astype(np.uint8), wall_of
 
 

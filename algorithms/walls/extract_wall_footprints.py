@@ -227,7 +227,6 @@ def extract_wall_footprints(
         if one.outline is not None:
             found = candidate_corners(one.outline, [ring for rings in parts for ring in rings], one.used is not None)
             corners += [(at + one.house.origin, {"cluster_id": one.house.number, **facts}) for at, facts in found]
-    monitor.progress(1.0)
     layers = zip((footprints, edges, corners), (_FIELDS, _EDGE_FIELDS, CORNER_FIELDS))
     made = [LayerFeatures.numbered(features, fields) for features, fields in layers]
     _tell_unseen(made[0], monitor)
