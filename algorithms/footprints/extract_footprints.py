@@ -19,9 +19,9 @@ from ..threads import made_ahead
 from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces, shared_directions
-from .roof_points import edge_weights, find_non_building_points, find_roof_points, thinned
+from .roof_points import edge_weights, find_non_building_points, find_roof_points
 from .row_houses import ROWS, Houses, split_row
-from .soft_shares import APART, LEAST_SPACING, Shares, find_shares
+from .soft_shares import APART, LEAST_SPACING, Shares, even_weights, find_shares
 
 # Tolerance (spacings) of outlines: samples along an edge lie within one spacing of it, and corners are rounded.
 _TOLERANCE_SPACINGS = 1.75
@@ -298,12 +298,10 @@ def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list
 
 def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidence:
     """Return the shares, pieces and rings of the buildings of a part."""
-    top = thinned(measures.local(part.roof), part.label, how.spacing)
-    other = thinned(measures.local(part.beside), np.zeros(len(part.beside), np.int64), how.spacing)
-    roof, beside = measures.local(part.roof[top]), measures.plan(part.beside[other])
+    roof, beside = measures.local(part.roof), measures.plan(part.beside)
     walls = np.setdiff1d(part.members, part.roof)
-    weight = edge_weights(roof, measures.local(walls), how.spacing)
-    shares = find_shares(roof[:, :2], weight, part.label[top], beside, how.spacing)
+    weight = even_weights(roof[:, :2], how.spacing) * edge_weights(roof, measures.local(walls), how.spacing)
+    shares = find_shares(roof[:, :2], weight, part.label, beside, even_weights(beside, how.spacing), how.spacing)
     pieces = [
         piece
         for number, own in shares.items()

@@ -73,7 +73,9 @@ def pieces_alone(roof: np.ndarray, spacing: float, least_area: float) -> tuple[S
 
     ``least_area`` (m²) is that of its pieces and holes.
     """
-    shares = find_shares(roof, np.ones(len(roof)), np.ones(len(roof), np.int64), np.zeros((0, 2)), spacing)[1]
+    shares = find_shares(
+        roof, np.ones(len(roof)), np.ones(len(roof), np.int64), np.zeros((0, 2)), np.zeros(0), spacing
+    )[1]
     pieces = find_pieces(1, shares, spacing, least_area, least_area)
     rings = [ring for piece in pieces for ring in piece.rings]
     weights = np.sum([direction_weights(ring) for ring in rings], axis=0)

@@ -26,11 +26,11 @@ _BELOW = 1.0
 # one point to the next, which is the least height above attached points.
 _UPRIGHT = 3.0
 
-# Side (spacings) of the cells of which one point is taken for all: four fifths of evenly scattered points remain.
-_THINNED = 0.71
+# Side (spacings) of the cells in which walls end a roof: half a square spacing.
+_CELL = 0.71
 
-# Weight of the highest point of a cell with points on a wall. Half of such a cell is roof, and nearly all of them have
-# a highest point, while two fifths of the cells of a roof without walls have one.
+# Weight of roof points in a cell with points on a wall. Half of such a cell is roof, and nearly all of them have a
+# roof point, while two fifths of the cells of a roof without walls have one.
 _AT_WALL = 0.43
 
 # Radius (spacings) in which roof points are counted to decide whether a point lies under a roof: 12 on the average.
@@ -86,26 +86,12 @@ def _numbers(grid: Grid, xyz: np.ndarray, cluster: np.ndarray) -> np.ndarray:
     return grid.number(xyz) + distinct(cluster)[1].astype(np.int64) * (grid.rows * grid.columns)
 
 
-def thinned(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the rows (k,), ascending, of the highest points of each cluster in each cell of half a square spacing.
-
-    Walls, and strips that overlap, have many points in little area: one for each cell shows where roofs are as evenly
-    as a roof alone does. Cells begin at multiples of their size.
-    """
-    if not len(xyz):
-        return np.zeros(0, np.int64)
-    return np.sort(topmost(xyz[:, 2], _numbers(fixed_grid_over(xyz, spacing * _THINNED), xyz, cluster)))
-
-
-def edge_weights(top: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the weights (n,), 0 to 1, of the highest points of cells: less where a wall below ends the roof.
-
-    ``top`` (n, 3) are points that :func:`thinned` has kept, ``walls`` (m, 3) points on walls, m.
-    """
-    if not len(walls) or not len(top):
-        return np.ones(len(top))
-    grid = fixed_grid_over(np.concatenate([top, walls]), spacing * _THINNED)
-    return np.where(find_cells(np.unique(grid.number(walls)), grid.number(top))[1], _AT_WALL, 1.0)
+def edge_weights(roof: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the weights (n,), 0 to 1, of points of roofs (n, 3), m: less where a wall (m, 3) below ends the roof."""
+    if not len(walls) or not len(roof):
+        return np.ones(len(roof))
+    grid = fixed_grid_over(np.concatenate([roof, walls]), spacing * _CELL)
+    return np.where(find_cells(np.unique(grid.number(walls)), grid.number(roof))[1], _AT_WALL, 1.0)
 
 
 def find_non_building_points(

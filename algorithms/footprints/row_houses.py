@@ -40,9 +40,8 @@ class RowRules:
     wall: float = rule(
         0.15,
         "per spacing",
-        "what a length of wall costs, where one clearly seen pays 1: noise of fewer points pays more",
+        "what a wall costs, where one clearly seen all along pays 1: noise of fewer points pays more",
     )
-    whole: float = rule(8.0, "m", "physics: a wall that is clearly seen for as long is one wall; houses are as deep")
     row: float = rule(0.9, "walls", "what a row costs, and the most that one wall pays: two roofs may be one house")
     unlike: float = rule(0.1, "walls", "what a house e times as wide or narrow as the others of its row costs")
     narrowest: float = rule(3.5, "m", "physics: least width and depth of a house")
@@ -144,7 +143,7 @@ def _directions(
     turn = np.angle((weight * np.exp(4j * np.arctan2(north, east))).sum()) / 4
     found = angles.tolist()
     # Lines that part by less than a node along a wall are the same.
-    if (np.abs(np.angle(np.exp(4j * (angles - turn)))) > 4 * LEAST_SPACING / ROWS.whole).all():
+    if (np.abs(np.angle(np.exp(4j * (angles - turn)))) > 4 * LEAST_SPACING / ROWS.deepest).all():
         found.append(float(turn))
     return found
 
@@ -239,8 +238,8 @@ class _View:
         return runs.sums(is_high) * self.step, runs.sums(is_high * near) * self.step
 
     def _pays(self, runs: _Runs, counted: np.ndarray, seen: np.ndarray) -> np.ndarray:
-        """Return what a wall along each run pays, in steps: its evidence less its cost, both by its length."""
-        pays = (seen - ROWS.wall * self.spacing * counted) / np.clip(counted, ROWS.narrowest, ROWS.whole)
+        """Return what a wall along each run pays, in steps: the share of it that is seen, less its cost."""
+        pays = seen / np.maximum(counted, ROWS.narrowest) - ROWS.wall * self.spacing
         # The houses beside a wall that does not pay by itself would be alike, but nothing shows it.
         is_wall = (counted >= ROWS.narrowest) & (counted <= ROWS.deepest) & (pays > 0)
         return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), -np.inf)

@@ -9,7 +9,7 @@ from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.benchmarks.outlines import in_blocks
 from lidar_buildings.tests.real.clouds import detected, path_of
 
-DIMENSIONS = ("classification", "cluster_id", "height_above_ground")
+DIMENSIONS = ("classification", "cluster_id", "height_above_ground", "reason")
 
 
 @pytest.mark.parametrize(

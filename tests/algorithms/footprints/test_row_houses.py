@@ -302,7 +302,7 @@ def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
 @pytest.mark.parametrize(
     ("depth", "seen", "low", "share"),
     [
-        # A wall is from 3.5 to 22 m long without low parts, and pays by the length that is seen.
+        # A wall is from 3.5 to 22 m long without low parts, and pays by the share of it that is seen.
         (8.0, 8.0, 0.0, 1.0),
         (3.0, 3.0, 0.0, None),
         (21.0, 21.0, 0.0, 1.0),
@@ -321,7 +321,7 @@ def test_what_a_wall_pays(depth, seen, low, share):
     runs = rows._Runs.of(inside)
     pays = view._pays(runs, *view._sums(runs, inside))[40] / 10_000
     # A step four times as high as the least one is seen by three quarters; ends blur over a meter.
-    expected = (0.75 * share - 0.3 * rows.ROWS.wall) * (depth - low) / 8 if share else 0
+    expected = 0.75 * share - 0.3 * rows.ROWS.wall if share else 0
     assert pays == pytest.approx(min(expected, rows.ROWS.row), rel=0.15) if share else pays < -1
 
 
