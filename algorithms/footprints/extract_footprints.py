@@ -300,8 +300,9 @@ def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidenc
     """Return the shares, pieces and rings of the buildings of a part."""
     roof, beside = measures.local(part.roof), measures.plan(part.beside)
     walls = np.setdiff1d(part.members, part.roof)
-    weight = even_weights(roof[:, :2], how.spacing) * edge_weights(roof, measures.local(walls), how.spacing)
-    shares = find_shares(roof[:, :2], weight, part.label, beside, even_weights(beside, how.spacing), how.spacing)
+    even, even_beside = np.split(even_weights(np.concatenate([roof[:, :2], beside]), how.spacing), [len(roof)])
+    weight = even * edge_weights(roof, measures.local(walls), how.spacing)
+    shares = find_shares(roof[:, :2], weight, part.label, beside, even_beside, how.spacing)
     pieces = [
         piece
         for number, own in shares.items()

@@ -22,6 +22,10 @@ _NEAR = 0.9
 # Standard deviation (spacings) of the surroundings in which a roof's own density is measured: some hundred points.
 _WIDE = 3.0
 
+# Standard deviation (spacings) of the surroundings in which points are counted to weigh them. From 0.6 to 1.1 outlines
+# are as near to maps and as stable.
+_EVEN = 1.0
+
 # Weights end at this many standard deviations, where a hundredth of the greatest is left.
 _TRUNCATE = 3.0
 
@@ -138,7 +142,7 @@ def even_weights(plan: np.ndarray, spacing: float) -> np.ndarray:
         return np.zeros(0)
     lattice = Lattice.around(plan, spacing)
     nodes = lattice.nodes(plan)[:, ::-1].T
-    return 1 / np.maximum(ndimage.map_coordinates(_density(lattice, plan, _NEAR), nodes, order=1), 1.0)
+    return 1 / np.maximum(ndimage.map_coordinates(_density(lattice, plan, _EVEN), nodes, order=1), 1.0)
 
 
 def find_shares(

@@ -26,7 +26,7 @@ _ADVANCE = 0.5
 # Turn (°) below which a corner is flat.
 _FLAT = 20.0
 
-# Turn (°) above which a corner is sharp.
+# Turn (°) above which a corner is sharp. It is obtuse if it turns by as much less than a right angle.
 _SHARP = 110.0
 
 # Difference (°) up to which two directions are the same or opposite: rounding leaves it.
@@ -51,6 +51,9 @@ class Prices:
 
     corner: float  #: Price of a right-angled corner, m³: that of leaving out a bay of two spacings by four
     flat: float = 1.5  #: Corner that turns by less than 20°, which noise makes more easily than a sharper one
+    #: Corner that turns by 20° to 70°. With 1.0, a corner of a house that is cut off over 7 m is drawn as a notch at
+    #: 2 points per m² in 36 of 40 draws, with 0.8 in 11.
+    obtuse: float = 0.8
     step: float = 2.0  #: Step or turn by 180°, both of which are drawn with two corners
     #: Corner that turns by 170° or more. Corners from 110° on have a price between that of a right angle and this.
     sharp: float = 4.0
@@ -105,7 +108,7 @@ def draw_ring(samples: np.ndarray, directions: np.ndarray, prices: Prices) -> li
     # A ring with curved walls saves the difference of the prices for each edge along neither main direction. To cost
     # less it needs more of them than this, and each has a corner.
     n_edges = prices.curved / (prices.other - prices.other_curved)
-    if cost > (prices.curved + n_edges * (1 + prices.other_curved)) * prices.corner:
+    if cost > (prices.curved + n_edges * (prices.obtuse + prices.other_curved)) * prices.corner:
         curved_cost, curved = _drawn(samples, _Ways.of(directions, prices, prices.other_curved))
         if curved_cost + prices.curved * prices.corner < cost:
             return curved
@@ -160,7 +163,7 @@ def _turn_prices(turned: np.ndarray, prices: Prices) -> np.ndarray:
     size = np.abs(turned)
     # In proportion, from the price at 90° to that at 170°.
     sharp = 1 + (prices.sharp - 1) * np.clip((size - 90) / 80, 0.0, 1.0)
-    cost = np.where(size < _FLAT, prices.flat, np.where(size > _SHARP, sharp, 1.0))
+    cost = np.select([size < _FLAT, size <= 180 - _SHARP, size > _SHARP], [prices.flat, prices.obtuse, sharp], 1.0)
     return np.where((size < _SAME) | (size > 180 - _SAME), prices.step, cost)
 
 

@@ -69,9 +69,9 @@ def test_how_many_ends_are_worked_on_at_once_changes_nothing(directions, monkeyp
 
 
 def test_long_curved_walls_have_no_main_directions():
-    """A hall of 20 m between half circles of 50 m: the curved walls cost less than a price for each of their edges."""
+    """A hall of 20 m between half circles of 40 m: the curved walls cost less than a price for each of their edges."""
     angle = np.linspace(-np.pi / 2, np.pi / 2, 400)
-    arc = 50 * np.column_stack([np.cos(angle), np.sin(angle)]) + [10, 0]
+    arc = 40 * np.column_stack([np.cos(angle), np.sin(angle)]) + [10, 0]
     prices, along = Prices(10 * SPACING**3), np.zeros(1)
     free = [
         sum(not edge.is_main for edge in draw_ring(sampled(np.concatenate([arc, -arc])), along, one))
