@@ -136,8 +136,8 @@ def classify_buildings(
 
     Notes
     -----
-    The entropies are those of the paper (equations 5 to 11), in the smallest neighborhood in which neither noise nor
-    scan lines blur a plane. Neighbors are clustered points. 'Classify buildings (as published 2019)' is the method of
+    Entropies follow equations 5 to 11 of the paper, in the smallest neighborhood in which neither noise nor scan lines
+    blur a plane. Only clustered points are neighbors. 'Classify buildings (as published 2019)' is the method of
     the paper; everything below is this project's.
 
     Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and
@@ -256,7 +256,7 @@ def _decided_in_scan(
 def _decided_in_images(
     given: _Given, surface_share: np.ndarray, colors: tuple[Optional[np.ndarray], ...], monitor: Monitor
 ) -> Decisions:
-    """Return what :func:`.decide_in_images` does, with the greenness of the scene."""
+    """Decide on the clusters of matched images by :func:`.decide_in_images`, with the greenness of the scene."""
     is_green, green_from = green_clusters(colors, given.evidence, surface_share > 0.5)
     monitor.resolved(matched_images=True, plant_greenness=green_from)
     return decide_in_images(surface_share, is_green, given.evidence, given.min_share)

@@ -226,7 +226,7 @@ class _Roofs:
 
 
 def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
-    """Return where buildings are in a laser scan: in cells with roof points, gaps closed where no ground shows."""
+    """Return the area of buildings in a laser scan: cells with roof points, and gaps between them without ground."""
     cell_size = column_size(limits.density)
     refuse_sparse(roofs.xyz, cell_size)
     margin = int(np.ceil(limits.gap / cell_size)) + 2
@@ -244,7 +244,7 @@ def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
 
 
 def _coverage_in_images(roofs: _Roofs, limits: _Limits) -> Coverage:
-    """Return where buildings are in a cloud of matched images: to half the height of the rounded edges of roofs."""
+    """Return the area of buildings in a cloud of matched images, whose rounded edges end at half the roof's height."""
     surface = TopSurface(roofs.xyz, roofs.height, ~roofs.is_noise, limits.density)
     cell = surface.cell
     core = roofs.is_roof

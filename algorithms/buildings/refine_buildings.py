@@ -265,7 +265,7 @@ class _Scene:
     def changes(self, probability: np.ndarray, density: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the rows of points that become building, and of those that cease; the building nearest to the former.
 
-        ``probability`` (n,) is that of building, ``density`` (points/m²) that of the points.
+        ``probability`` (n,) is the probability of building, ``density`` the density of points (points/m²).
         """
         size = column_size(density)
         refuse_sparse(self.xyz, size)

@@ -255,13 +255,13 @@ def _turned(new: np.ndarray, old: np.ndarray) -> float:
 
 
 def _is_other(new: list, old: list, scale: float) -> bool:
-    """Return whether a polygon was lost, with or without a hole, or its walls would be moved far for its area."""
+    """Return whether a polygon or a hole was lost, or its walls would have to move too far to keep its area."""
     far = _MOST_MOVED * scale * sum(map(perimeter, old))
     return len(new) != len(old) or abs(polygon_area(new) - polygon_area(old)) > far
 
 
 def _shares(rings: list, spacing: float) -> Shares:
-    """Return where a polygon is: all of the nodes in it."""
+    """Return the shares of a polygon: 1 at the nodes within it."""
     lattice = Lattice.around(rings[0], spacing)
     share = are_within(lattice.positions, sides_of_rings(rings)).reshape(lattice.shape).astype(np.float32)
     return Shares(lattice, share, 1 - share)

@@ -21,7 +21,7 @@ from .soft_shares import LEAST_SPACING, NODES, Lattice, spread_out
 
 @dataclass(frozen=True)
 class RowRules:
-    """What shows a party wall, and what walls and houses of a row cost."""
+    """Evidence of party walls, and costs of walls and houses of a row."""
 
     step: float = rule(0.6, "point spacings", "step of the grid of heights, no finer than the points")
     along: float = rule(4.0, "point spacings", "heights are averaged over it along a line: enough points for a plane")
@@ -198,7 +198,7 @@ class _Row:
 
 @dataclass(frozen=True)
 class _View:
-    """What shows walls along the first axis of a grid, at its nodes (rows, columns)."""
+    """Evidence of walls along the first axis of a grid, at its nodes (rows, columns)."""
 
     spacing: float  #: Mean distance between neighboring points, m
     step: float  #: Distance of nodes, m
@@ -214,7 +214,7 @@ class _View:
         return max(1, int(self.spacing / self.step + 0.5))
 
     def best_row(self, is_own: np.ndarray) -> _Row:
-        """Return the row that saves most in the part of a building at some nodes of the lattice, 0 if none does."""
+        """Return the row with the greatest saving in a part of a building (nodes of the lattice); 0 if none pays."""
         inside = ndimage.binary_closing(is_own.ravel()[self.of_grid], iterations=self.closed)
         runs = _Runs.of(inside)
         sums = self._sums(runs, inside)
@@ -230,7 +230,7 @@ class _View:
         return _Row(saved, self.in_plan(ends, places), label.reshape(is_own.shape))
 
     def _sums(self, runs: _Runs, inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return how long (m) roofs that are not low are along each run, and how much (m) of a wall is seen there."""
+        """Compute the length (m) of roofs that are not low along each run, and the length of wall (m) seen there."""
         known = self.beside[inside & np.isfinite(self.beside)]
         is_high = self.beside >= (ROWS.least_share * np.median(known) if len(known) else 0.0)
         # A wall that is not quite along the columns is seen in one beside.
@@ -238,14 +238,14 @@ class _View:
         return runs.sums(is_high) * self.step, runs.sums(is_high * near) * self.step
 
     def _pays(self, runs: _Runs, counted: np.ndarray, seen: np.ndarray) -> np.ndarray:
-        """Return what a wall along each run pays, in steps: the share of it that is seen, less its cost."""
+        """Compute the value of a wall along each run, in steps: the share of it that is seen, less its cost."""
         pays = seen / np.maximum(counted, ROWS.narrowest) - ROWS.wall * self.spacing
         # The houses beside a wall that does not pay by itself would be alike, but nothing shows it.
         is_wall = (counted >= ROWS.narrowest) & (counted <= ROWS.deepest) & (pays > 0)
         return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), -np.inf)
 
     def _places(self, seen: np.ndarray, walls: np.ndarray) -> np.ndarray:
-        """Return where (columns of the chain) walls are: in the middle of the evidence around them, by mean shift."""
+        """Move walls (columns of the chain) to the middle of the evidence around them, by mean shift."""
         column, place = np.arange(len(seen)), walls.astype(float)
         for _ in range(_SHIFTS):
             near = seen * np.clip(1 - ((column - place[:, None]) * self.step / ROWS.far) ** 2, 0.0, None)
@@ -311,7 +311,7 @@ class _Runs:
 
 
 def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[float, np.ndarray]:
-    """Return what the best walls of a chain of runs save (steps), and before which runs they stand, ascending.
+    """Choose the walls of a chain of runs with the greatest saving: this (steps), and the runs behind them, ascending.
 
     Houses are ``ROWS.narrowest`` m wide at least and have ``ROWS.least_area`` m². One e times as wide as the width that
     suits the row best costs ``ROWS.unlike`` walls.
@@ -474,7 +474,7 @@ def _fitted(across: list, count: int) -> tuple[np.ndarray, ...]:
 
 
 def _above(sums: _Sums, left: _Side, right: _Side, step: float) -> np.ndarray:
-    """Return how high (m) the roof is at each sample, or one beside it, above the planes of both sides."""
+    """Compute the height (m) of the roof above the planes of both sides, at each sample or an adjacent one."""
     level = sums.mean() - (left.slope + right.slope) / 2 * sums.y / np.maximum(sums.n, 1e-9)
     columns, above = np.arange(level.shape[1]), np.full(level.shape, -np.inf)
     for at in (-1, 0, 1):
@@ -486,7 +486,7 @@ def _above(sums: _Sums, left: _Side, right: _Side, step: float) -> np.ndarray:
 
 
 def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: float) -> np.ndarray:
-    """Return where a step (m) to the right is still there farther from it, or nothing is seen of that.
+    """Return the mask of steps (m) to the right that continue farther away, or are not seen there.
 
     It has to be there from every line that may be the same wall: the line itself may be that far from a dormer's side.
     """

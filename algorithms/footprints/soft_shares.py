@@ -135,8 +135,8 @@ class Shares:
 def even_weights(plan: np.ndarray, spacing: float) -> np.ndarray:
     """Return weights (n,), 0 to 1, of points (n, 2), m: less where they are denser than one per square spacing.
 
-    Walls, and strips that overlap, have many points in little area. Weighed so, they show as evenly as a roof alone
-    where roofs are; unlike a choice of one point per cell, weights hardly change when points move a little.
+    Walls and overlapping strips have many points in little area. The weights even the density out. Unlike a choice of
+    one point per cell, they hardly change when points move a little.
     """
     if not len(plan):
         return np.zeros(0)

@@ -259,7 +259,7 @@ def _borders(outlines: list, spacing: float, monitor: Monitor) -> list[tuple[np.
 
 
 def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], tolerance: float) -> dict[str, Any]:
-    """Return what the points say of the building on a footprint, by the fields."""
+    """Measure the building on a footprint: its attributes by the names of the fields."""
     near, are_classified = rows_near(points.xyz, rings), PointClass.BUILDING in points.roofs
     within = near[inside_rings(points.xyz[near, :2], rings)]
     kind = points.classification[within]
@@ -285,7 +285,7 @@ def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], 
 
 
 def _state(n_points: int, has_roof: bool, covered: float, trees: float) -> str:
-    """Return how well a building was seen, from the points over it and the shares of its area that have some."""
+    """Classify how well a building was seen, by its points and the shares of its area with roof and vegetation."""
     if not n_points:
         return EMPTY
     if has_roof and covered >= CHECKS.covered:
@@ -294,7 +294,7 @@ def _state(n_points: int, has_roof: bool, covered: float, trees: float) -> str:
 
 
 def _are_plants(xyz: np.ndarray, is_on: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points (n, 3), m, lie clearly above those on planes (n,), bool, or beside these; all without any.
+    """Return the mask of points (n, 3), m, clearly above or beside the points on planes (n,), bool; all without planes.
 
     The others off planes are walls, chimneys and edges.
     """
@@ -312,7 +312,7 @@ def _roof_facts(
     border: tuple[np.ndarray, np.ndarray],
     terrain: float,
 ) -> dict[str, Any]:
-    """Return what the points of a building, rows of all, say of its roof; ``terrain`` is the height of this, m."""
+    """Measure the roof of a building by its points (rows of all); ``terrain`` is the elevation of the terrain, m."""
     xyz, spacing = points.xyz[building], points.spacing
     is_roof = _are_roof(xyz, planes, spacing)
     plan, z = xyz[is_roof, :2], xyz[is_roof, 2]
@@ -328,7 +328,7 @@ def _roof_facts(
 
 
 def _are_roof(xyz: np.ndarray, planes: RoofPlanes, spacing: float) -> np.ndarray:
-    """Return which points (n, 3), m, of a building are its roof: those on planes most of whose points are on top."""
+    """Return the mask of the roof's points (n, 3), m: on planes with most of their points on top."""
     near = spatial.cKDTree(xyz[:, :2]).query(xyz[:, :2], min(_BESIDE, len(xyz)))[1]
     is_under, is_on = xyz[near, 2].max(axis=1) > xyz[:, 2] + RULES.below, planes.label >= 0
     if is_on.mean() < _ON_PLANES:
