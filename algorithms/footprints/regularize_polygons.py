@@ -176,10 +176,10 @@ def _drawn(polygons: list, scale: float, monitor: Monitor) -> list:
         directions = dict(zip(layer, shared_directions([samples[row] for row in layer])))
         for block in blocks_of([Piece(row, samples[row]) for row in layer], step):
             rows = [piece.building for piece in block]
-            for row, rings in zip(rows, _block({row: polygons[row] for row in rows}, directions, scale)):
+            part = monitor.part(done / len(polygons), (done + len(rows)) / len(polygons))
+            for row, rings in zip(rows, _block({row: polygons[row] for row in rows}, directions, scale, part)):
                 made[row] = rings
             done += len(rows)
-            monitor.progress(done / len(polygons))
     return made
 
 
@@ -199,13 +199,14 @@ def _layers(samples: list) -> list[list[int]]:
     return [sorted(layer) for layer in layers]
 
 
-def _block(polygons: dict[int, list], directions: dict[int, np.ndarray], scale: float) -> list:
+def _block(polygons: dict[int, list], directions: dict[int, np.ndarray], scale: float, monitor: Monitor) -> list:
     """Return the polygons of a block drawn at a scale (m) or a finer one where they need it, as they are if none helps.
 
     Polygons and main directions, °, go by their numbers.
     """
     finer = dict.fromkeys(polygons, 1.0)
-    for _ in range(_TRIALS):
+    for trial in range(_TRIALS):
+        monitor.progress(trial / _TRIALS)
         drawn, bad = _tried(polygons, directions, scale, finer)
         if not bad:
             return drawn
