@@ -28,6 +28,7 @@ from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
 from .outputs import target_path
 from .surveys import VPC, WGS84, check_vpc, write_survey
+from .web import check_sizes
 
 SIDE, COMPRESSED, TILES = "SIDE", "COMPRESSED", "TILES"
 
@@ -66,6 +67,7 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.given, self.files = given, files_of_survey(given)
         self.plane = crs_of_survey(given).plane
         self.extent = extent_box(self, self.plane, parameters, context)
+        check_sizes(given, self.extent)
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the survey and of its virtual point cloud."""

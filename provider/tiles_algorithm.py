@@ -52,6 +52,8 @@ from .inputs import (
     extent_box,
     extent_parameter,
     given_crs,
+    given_spacing,
+    spacing_parameter,
     with_help,
     with_setting,
 )
@@ -66,6 +68,7 @@ from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .text_files import write_text
+from .web import check_sizes, tell_sizes
 
 BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED, LOAD = (
     "BLOCK_SIDE",
@@ -107,6 +110,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         for input_layer in self.tiled.pipeline.input_layers.values():
             self.addParameter(input_layer_parameter(input_layer))
         self.addParameter(extent_parameter())
+        self.addParameter(spacing_parameter())
         self.addParameter(with_setting(crs_parameter(), SETTINGS))
         for definition in _work_parameters():
             self.addParameter(definition)
@@ -126,8 +130,11 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.files = files_of_survey(self.paths)
         self.tunables = pipeline_tunables(self, self.tiled.pipeline, parameters, context)
         self.crs = given_crs(self, parameters, context)
-        self.plane = crs_of_survey(self.paths, crs_reader(self.crs)).plane
+        crs = crs_of_survey(self.paths, crs_reader(self.crs))
+        self.plane, spacing = crs.plane, given_spacing(self, parameters, context)
         self.extent = extent_box(self, self.plane, parameters, context)
+        self.spacing = spacing / crs.factors if spacing else None
+        check_sizes(self.paths, self.extent, self.spacing)
         self.workers = self._workers(parameters, context)
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         given = input_layer_files(self, self.tiled.pipeline.input_layers.values(), parameters, context)
@@ -209,6 +216,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor, results: dict
     ) -> TilesOutcome:
         """Run the survey, and write the rasters and text files that are wanted, which are added to the results."""
+        tell_sizes(self.paths, self.extent, self.spacing, monitor)
         side, wanted = parameters.get(BLOCK_SIDE), self._wanted(parameters)
         declared = {made.key: made.declared for made in self.made if made.key in wanted}
 
@@ -239,6 +247,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 compressed=self.parameterAsBool(parameters, COMPRESSED, context),
                 read=crs_reader(self.crs),
                 extent=self.extent,
+                spacing=self.spacing,
                 wanted=wanted,
                 find_layers=find_layers,
                 take_raster=take_raster if self.tiled.rasters else None,

@@ -126,9 +126,9 @@ def size_on_web(
 ) -> Optional[Size]:
     """Return how much of some clouds is read from the web for a box and a spacing; None where nothing of them is there.
 
-    It costs a few requests, also of a large cloud with an octree.
+    It costs a few requests, also of a large cloud with an octree. Files in folders are left out.
     """
-    found = [one for path in paths for one in sizes_within(path, box, spacing)]
+    found = [one for path in paths if not path.is_dir() for one in sizes_within(path, box, spacing)]
     if not found:
         return None
     first = cast(WebFile, found[0][0])

@@ -227,16 +227,20 @@ def _opened(
 ) -> tuple[list[Path], list[Header]]:
     """Return a file, or all its tiles that have points and are to be opened for a box, and their headers."""
     with readable(path):
-        files, headers = open_named(touching(named_files_of(path), box), monitor, box)
-    return files, [replace(header, spacing=spacing) for header in headers]
+        return open_named(touching(named_files_of(path), box), monitor, box, spacing)
 
 
 def open_named(
-    named: dict[Path, Named], monitor: Optional[Monitor] = None, box: Optional[np.ndarray] = None
+    named: dict[Path, Named],
+    monitor: Optional[Monitor] = None,
+    box: Optional[np.ndarray] = None,
+    spacing: Optional[np.ndarray] = None,
 ) -> tuple[list[Path], list[Header]]:
-    """Return those of some files that have points, and their headers, with the CRS of each and a box as reach."""
+    """Return those of some files that have points, and their headers, with CRS of each, box as reach and spacing."""
     files, headers = open_headers(list(named), monitor)
-    return files, [replace(header, named=named[file].crs, reach=box) for file, header in zip(files, headers)]
+    return files, [
+        replace(header, named=named[file].crs, reach=box, spacing=spacing) for file, header in zip(files, headers)
+    ]
 
 
 def touching(named: dict[Path, Named], box: Optional[np.ndarray]) -> dict[Path, Named]:

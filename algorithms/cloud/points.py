@@ -261,11 +261,14 @@ def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor)
 
 def thinned(records: np.ndarray, header: Header) -> np.ndarray:
     """Return the lowest of records (n,) in each cube of the header's spacing, in their order; all without one."""
-    if header.spacing is None or not len(records):
-        return records
+    return records if header.spacing is None else records.take(lowest_rows(records, header))
+
+
+def lowest_rows(records: np.ndarray, header: Header) -> np.ndarray:
+    """Return the rows (m,), ascending, of the lowest of records (n,) in each cube of the header's spacing."""
     scale, offset = header.scale / header.spacing, header.offset / header.spacing
     cubes = [records[axis] * scale[i] + offset[i] for i, axis in enumerate("XYZ")]
-    return records.take(one_per_voxel(np.column_stack(cubes), 1.0))
+    return one_per_voxel(np.column_stack(cubes), 1.0)
 
 
 def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:

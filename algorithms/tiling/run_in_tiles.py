@@ -92,7 +92,7 @@ def run_in_tiles(
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
     given = [file_at(path) for path in paths]
-    survey = open_survey(given, options.read, monitor, options.extent)
+    survey = open_survey(given, options.read, monitor, options.extent, options.spacing)
     if options.compressed:
         writing_backend(survey.header.layout.point_format)
     with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder, monitor.warn) as work:
@@ -218,8 +218,10 @@ class _Run:
             )
 
     def _opened(self, paths: list[Path]) -> Survey:
-        """Return files as a survey of the same extent."""
-        return open_survey(paths, lambda _: self.survey.crs, extent=self.survey.extent)
+        """Return files as a survey of the same extent and spacing."""
+        return open_survey(
+            paths, lambda _: self.survey.crs, extent=self.survey.extent, spacing=self.survey.header.spacing
+        )
 
     def _key(self, sources: Iterable[Source], *facts: Any) -> str:
         """Return a name for the result of files in the state at the start, of facts, tunables and this version."""
@@ -262,7 +264,7 @@ class _Run:
             block.side,
             halo,
             {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()},
-            str(self.survey.extent),
+            str((self.survey.extent, self.survey.header.spacing)),
             str(self.survey.crs),
         )
         part = replace(self.survey, sources=tuple(self.survey.sources[one] for one in near))

@@ -31,27 +31,24 @@ _EXTENT = Setting(
     "Extent (empty = the whole cloud)",
     "Only points within are read: to try parameters on a part of the cloud first. Empty: all points.",
 )
+_SPACING = Setting(
+    "SPACING",
+    "Spacing (m, empty = all points)",
+    "Of each cube of this side only the lowest point is used, where no full density is needed: terrain of "
+    "coarse cells, or a first look at a large cloud. Of COPC and Entwine point tiles only the coarse levels "
+    "are read, which takes much less time and memory. Empty: all points.",
+)
 _COMPRESSED = Setting("COMPRESSED", "Write LAZ", "Tiles are compressed (.laz); otherwise they are .las files.")
 
 # Of a cloud that is read as a whole.
-READ_SETTINGS = by_name(
-    (
-        _EXTENT,
-        Setting(
-            "SPACING",
-            "Spacing (m, empty = all points)",
-            "Of each cube of this side only the lowest point is used, where no full density is needed: terrain of "
-            "coarse cells, or a first look at a large cloud. Of COPC and Entwine point tiles only the coarse levels "
-            "are read, which takes much less time and memory. Empty: all points.",
-        ),
-    )
-)
+READ_SETTINGS = by_name((_EXTENT, _SPACING))
 
 # Of a composite in tiles.
 SETTINGS = by_name(
     (
         _INPUT,
         _EXTENT,
+        _SPACING,
         Setting(
             "CRS",
             "Coordinate reference system",

@@ -17,7 +17,7 @@ from ..cloud.files import NOWHERE, named_files_of, open_named, readable, state_o
 from ..cloud.header import OF_OLD_POINTS, Header
 from ..cloud.outputs import STAC, check_not_read, kind_of, made_folder, os_errors_as_messages
 from ..cloud.point_records import fill_merged
-from ..cloud.points import check_points, chunks_near, is_within, read_chunks
+from ..cloud.points import check_points, chunks_near, is_within, lowest_rows, read_chunks
 from ..cloud.vpc import Named, merged_header
 from ..cloud.web_file import file_at
 from ..stage import Monitor
@@ -27,6 +27,9 @@ SHOWN = "shown"
 
 # Dimensions by which two records are recognized as the same measurement.
 _KEYS = ("gps_time", "return_number", "number_of_returns", "point_source_id", "intensity")
+
+# Most points of a column of cubes of a spacing, on average: the ground, and a roof, crown or wall above it.
+_PER_COLUMN = 2.0
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class Survey:
     """Files that are tiles of one cloud."""
 
     sources: tuple[Source, ...]  #: The files
-    header: Header  #: The header of all points as one cloud: finest scale, all dimensions
+    header: Header  #: The header of all points as one cloud: finest scale, all dimensions; with its spacing
     crs: Crs  #: Coordinate reference system, with meters per unit of the coordinates
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))  #: What local coordinates are relative to, m
     #: (2, 2): only points within belong to the survey, edges included; least and greatest easting and northing in
@@ -83,15 +86,27 @@ class Survey:
         return sum(source.header.count for source in self.sources)
 
     @property
+    def is_whole(self) -> bool:
+        """Whether every point of its files belongs to it."""
+        return self.extent is None and self.header.spacing is None
+
+    @property
     def expected(self) -> float:
-        """Number of points, those of a file that reaches beyond the extent by the share of its area within."""
-        if self.extent is None:
-            return float(len(self))
+        """Number of points, those of a file that reaches beyond the extent by the share of its area within.
+
+        With a spacing there are no more than _PER_COLUMN in each column of cubes.
+        """
         wholes = [_box(source.header, self.crs) for source in self.sources]
-        shares = [
-            np.prod((source.box[1] - source.box[0]) / (one[1] - one[0])) for source, one in zip(self.sources, wholes)
-        ]
-        return float(sum(source.header.count * share for source, share in zip(self.sources, shares)))
+        areas, of_wholes = (np.array([np.prod(np.ptp(one, axis=0)) for one in boxes]) for boxes in (self.boxes, wholes))
+        counts = [source.header.count for source in self.sources] * areas / of_wholes
+        if self.header.spacing is not None:
+            counts = np.minimum(counts, _PER_COLUMN * areas / np.prod(self.header.spacing[:2] * self.crs.horizontal))
+        return float(counts.sum())
+
+    def _of_cubes(self, box: np.ndarray) -> np.ndarray:
+        """Return a box (2, 2), m, with all of the cubes of the spacing on its edges."""
+        side = 0.0 if self.header.spacing is None else self.header.spacing[:2] * self.crs.horizontal
+        return box + np.outer([-1, 1], [1, 1]) * side
 
     @property
     def box(self) -> np.ndarray:
@@ -116,26 +131,31 @@ class Survey:
         return np.ones(len(records), bool) if self.extent is None else is_within(records, header, self.extent)
 
     def near(self, box: np.ndarray) -> list[int]:
-        """Return the positions of the files that may have points in a box (2, 2), m."""
-        return np.flatnonzero(boxes_meet(self.boxes, box)).tolist()
+        """Return the positions of the files that may have points in a box (2, 2), m, or in cubes on its edges."""
+        return np.flatnonzero(boxes_meet(self.boxes, self._of_cubes(box))).tolist()
 
     def window(self, box: np.ndarray, monitor: Optional[Monitor] = None) -> Optional[Window]:
         """Return the points in a box (2, 2), m: its lower edges belong to it, its upper ones don't; None if none.
 
-        Memory: the records of the window, and one portion of a file at a time.
+        With a spacing, cubes on the edges have one point as well, of those within and beyond. Memory: the records of
+        the window, and one portion of a file at a time.
         """
         monitor = monitor or Monitor()
         numbers = self.near(box)
         found = []
         for done, number in enumerate(numbers):
             part = monitor.part(done / len(numbers), (done + 1) / len(numbers))
-            found += [(number, *one) for one in self._records(self.sources[number], box, part)]
+            found += [(number, *one) for one in self._records(self.sources[number], self._of_cubes(box), part)]
         if not found:
             return None
         records = np.concatenate([records for _, _, records in found])
         source = np.repeat(np.array([number for number, _, _ in found], np.int32), [len(one[1]) for one in found])
         position = np.concatenate([position for _, position, _ in found])
-        return self._in_order(records, source, position)
+        if self.header.spacing is not None:
+            kept = lowest_rows(records, self.header)
+            kept = kept[self._inside(records[kept], self.header, box)]
+            records, source, position = records[kept], source[kept], position[kept]
+        return self._in_order(records, source, position) if len(records) else None
 
     def sound_part(self, box: np.ndarray, monitor: Monitor) -> Survey:
         """Return the survey without the files whose points in a box (2, 2), m, can't be read; warn of each."""
@@ -184,19 +204,22 @@ class Survey:
     def _records(self, source: Source, box: np.ndarray, monitor: Monitor) -> Iterable[tuple[np.ndarray, np.ndarray]]:
         """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
         header = source.header
-        scale, offset = (values * self.crs.horizontal for values in (header.scale, header.offset))
         with readable(source.path):
             for start, chunk in chunks_near(source.path, header, box / self.crs.horizontal, monitor):
-                inside = self.holds(chunk, header)
-                for i, axis in enumerate("XY"):
-                    coordinate = chunk[axis] * scale[i] + offset[i]
-                    inside &= (coordinate >= box[0, i]) & (coordinate < box[1, i])
-                rows = np.flatnonzero(inside)
+                rows = np.flatnonzero(self.holds(chunk, header) & self._inside(chunk, header, box))
+                if header.spacing is not None:
+                    rows = rows[lowest_rows(chunk[rows], header)]
                 if len(rows):
                     records = np.zeros(len(rows), self.header.layout.dtype)
                     fill_merged(records, chunk[rows], header, self.header)
                     yield start + rows, records
         source.check_state()
+
+    def _inside(self, records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarray:
+        """Return which records (n,) with this header lie in a box (2, 2), m, its upper edges not in it."""
+        scale, offset = (values * self.crs.horizontal for values in (header.scale, header.offset))
+        found = np.column_stack([records[axis] * scale[i] + offset[i] for i, axis in enumerate("XY")])
+        return ((found >= box[0]) & (found < box[1])).all(axis=1)
 
     def _in_order(self, records: np.ndarray, source: np.ndarray, position: np.ndarray) -> Window:
         """Sort records by their measurements, and keep each measurement once."""
@@ -235,6 +258,7 @@ def open_survey(
     read: CrsReader = read_crs,
     monitor: Optional[Monitor] = None,
     extent: Optional[np.ndarray] = None,
+    spacing: Optional[np.ndarray] = None,
 ) -> Survey:
     """Return the survey that files, virtual point clouds and folders of files make.
 
@@ -248,6 +272,8 @@ def open_survey(
         Receives warnings about what can't be merged.
     extent : ndarray of shape (2, 2), optional
         As :attr:`Survey.extent`; files that lie wholly outside are no part of the survey.
+    spacing : ndarray of shape (3,), optional
+        As for :func:`.read_cloud`.
 
     Raises
     ------
@@ -258,7 +284,7 @@ def open_survey(
     monitor = monitor or Monitor()
     named = touching(_named_files(paths), extent)
     states = {file: state_of(file) for file in named}
-    files, headers = open_named(named, monitor, extent)
+    files, headers = open_named(named, monitor, extent, spacing)
     for file, header in zip(files, headers):
         check_points(file, header)
     header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]

@@ -66,10 +66,10 @@ class TileWriter:
             in_files += count
             if count != tile.points:
                 outcome.failures.append(f"{tile.path.name} has {count:,} points of the {tile.points:,} written to it.")
-        if survey.extent is not None:
+        if not survey.is_whole:
             outcome.points = in_files
         accounted = in_files + sum(tile.left_out for tile in written)
-        if survey.extent is None and not outcome.failures and accounted != len(survey):
+        if survey.is_whole and not outcome.failures and accounted != len(survey):
             outcome.failures.append(
                 f"The tiles account for {accounted:,} of the {len(survey):,} points read; do not use them."
             )
@@ -94,7 +94,7 @@ class TileWriter:
             if source.path in self.by_index:
                 tasks += self._pieces(number, stem, [(*done[at], becomes[at]) for at in near])
                 worked_on = sum(len(rows_of(done[at][1], number)) for at in near)
-                if worked_on < source.header.count and survey.extent is None and not is_lost:
+                if worked_on < source.header.count and survey.is_whole and not is_lost:
                     outcome.failures.append(points_outside(source.path, source.header.count - worked_on))
             elif is_lost:
                 outcome.failures.append(f"{source.path.name} is not written, as a block of it failed.")

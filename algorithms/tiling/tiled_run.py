@@ -45,6 +45,8 @@ class TilesOptions:
     #: Least and greatest easting and northing (2, 2), in coordinates of the files: only points within are worked on,
     #: and written, edges included
     extent: Optional[np.ndarray] = None
+    #: Sides of cubes (3,), in units of the files, of which only the lowest point is worked on and written; None is all
+    spacing: Optional[np.ndarray] = None
     #: As for :func:`.read_cloud`
     read: CrsReader = read_crs
     #: Names of the outputs besides the tiles that are made; None is all of them

@@ -13,7 +13,7 @@ from ..cloud.crs import Crs
 from ..cloud.dimensions import DIMENSIONS
 from ..cloud.files import read_cloud, readable, write_cloud
 from ..cloud.header import OF_OLD_POINTS
-from ..cloud.points import chunks_near, open_header
+from ..cloud.points import EVERYWHERE, chunks_near, open_header
 from ..stage import Monitor
 from .block_result import BlockResult
 from .blocks import REFERRING, StoppableMonitor
@@ -68,7 +68,8 @@ def write_tile(task: TileTask) -> Tile:
     ValueError
         If a file can't be read or written, or has changed since the run began.
     """
-    position = None if task.extent is None and task.piece is None else _positions(task)
+    is_whole = task.extent is None and task.piece is None and task.source.header.spacing is None
+    position = None if is_whole else _positions(task)
     if position is not None and not len(position):
         return Tile(None, 0, 0)
     monitor = StoppableMonitor(task.stop)
@@ -123,15 +124,16 @@ def _results_of_blocks(
 
 
 def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor) -> Cloud:
-    """Return the points of a file that a tile is made of, in its order; of a piece those at ``position`` (n,)."""
-    path = task.source.path
-    if task.piece is None or position is None:
+    """Return the points of a file that a tile is made of, in its order; of a part those at ``position`` (n,)."""
+    path, spacing = task.source.path, task.source.header.spacing
+    if position is None or (task.piece is None and spacing is None):
         # A worker has nothing to look systems up in.
         return read_cloud(path, monitor, lambda _: task.crs, task.extent)
-    header = replace(open_header(path), reach=task.extent)
+    header = replace(open_header(path), reach=task.extent, spacing=spacing)
+    box = task.extent if task.piece is None else task.piece / task.crs.horizontal
     found = [np.empty(0, header.layout.dtype)]
     with readable(path):
-        for start, records in chunks_near(path, header, task.piece / task.crs.horizontal, monitor):
+        for start, records in chunks_near(path, header, EVERYWHERE if box is None else box, monitor):
             first, end = np.searchsorted(position, [start, start + len(records)])
             found.append(records[position[first:end] - start])
     header = replace(header.without(*OF_OLD_POINTS), count=len(position))

@@ -304,6 +304,28 @@ def test_the_limit_is_for_all_tiles_together(provider, context, server, folder, 
         WEB_LIMIT.set(WEB_LIMIT.default)
 
 
+@pytest.mark.parametrize("id_", ["cutintotiles", "detectbuildingsintiles"])
+def test_the_limit_is_for_surveys_in_tiles_as_well(provider, context, server, out, monkeypatch, id_):
+    monkeypatch.setattr(web, "is_over_limit", lambda size: size.bytes > 1e6)
+    given = {"INPUT": [server.address("a.copc.laz")], "OUTPUT": str(out / "tiles")}
+    accepted, why = provider.algorithm(id_).checkParameterValues(given, context)
+    assert not accepted
+    assert "with 200,000 points, more than the" in why
+    assert provider.algorithm(id_).checkParameterValues({**given, "EXTENT": VIEW}, context)[0]
+    assert server.sent < 150_000
+
+
+def test_a_spacing_in_tiles_reads_coarse_levels_and_gives_the_points_of_one_run(
+    provider, context, log, server, folder, out
+):
+    given = {"INPUT": [server.address("a.copc.laz")], "EXTENT": VIEW, "SPACING": 12.0, "BLOCK_SIDE": 100.0}
+    made = run("detectbuildingsintiles", {**given, "PROCESSES": 1, "OUTPUT": str(out / "tiles")}, context, log)
+    found, wanted = read_cloud(made["VPC"]), read_cloud(folder / "a.copc.laz", box=BOX, spacing=np.full(3, 12.0))
+    np.testing.assert_array_equal(*(np.sort(one.to_map(one.get("xyz")), axis=0) for one in (found, wanted)))
+    assert made["POINTS"] == len(wanted)
+    assert "are read from 127.0.0.1" in " ".join(log.infos)
+
+
 def test_what_was_read_is_kept_in_the_folder_of_the_options(provider, context, server, out):
     given = {"INPUT": server.address("a.copc.laz"), "EXTENT": VIEW, "OUTPUT": "TEMPORARY_OUTPUT"}
     sent = []

@@ -357,3 +357,23 @@ def test_what_a_killed_cut_left_is_removed_by_the_next_one(tmp_path, monkeypatch
     monkeypatch.setattr(outputs, "_UNLOCKED", 0.0)
     tiles = cut_into_tiles(open_survey([path]), 10.0, folder, "tile", False, Monitor())
     assert sorted(folder.iterdir()) == sorted(tiles)
+
+
+@pytest.mark.parametrize("kind", [".las", ".copc.laz"])
+def test_a_spacing_gives_the_points_of_one_run_whatever_the_blocks(tmp_path, kind):
+    """Cubes that lie on the edges of blocks have one point as well, and tiles have no others."""
+    path, spacing = tile(tmp_path / f"a{kind}", (0, 0), side=100.0, n=80_000), np.array([1.3, 1.3, 1.3])
+    wanted = read_cloud(path, spacing=spacing)
+    outcome = run([path], tmp_path / "out", spacing=spacing, block_side=37.0)
+    assert not outcome.failures
+    assert outcome.points == len(wanted) < 10_000
+    found = [read_cloud(one) for one in outcome.tiles]
+    times = np.concatenate([one.get("gps_time") for one in found])
+    np.testing.assert_array_equal(np.sort(times), np.sort(wanted.get("gps_time")))
+    whole, extent = found[0], np.array([[20.0, 30.0], [60.0, 80.0]]) + [600_000, 5_000_000]
+    outcome = run([path], tmp_path / "part", spacing=spacing, extent=extent, largest_file=10_000)
+    times = np.concatenate([read_cloud(one).get("gps_time") for one in outcome.tiles])
+    wanted = read_cloud(path, box=extent, spacing=spacing)
+    np.testing.assert_array_equal(np.sort(times), np.sort(wanted.get("gps_time")))
+    assert len(outcome.tiles) > 1
+    assert len(whole) > len(wanted)
