@@ -247,7 +247,7 @@ def _raster_text(raster: Raster, name: str) -> str:
 
 def _file_text(file: TextFile, name: str) -> str:
     formats = "; ".join(f"{called} ({', '.join(endings)})" for called, endings in file.formats.items())
-    return f"<b>{name}</b>: {html.escape(file.title)}, a text file: {html.escape(formats)}."
+    return f"<b>{name}</b>: {html.escape(file.title)}, a file: {html.escape(formats)}."
 
 
 def _layer_text(layer: Layer, name: str) -> str:
@@ -278,7 +278,8 @@ def input_layer_text(input_layer: InputLayer) -> str:
     """Return what a vector layer that is read is for, as HTML."""
     needed = "; may be left empty" if input_layer.optional else ""
     name, title = input_layer.name.upper(), html.escape(input_layer.title)
-    return f"<b>{name}</b>: {title}, a layer of {input_layer.objects}{needed}. {inline(input_layer.help)}"
+    kind = f"a file ({', '.join(input_layer.endings)})" if input_layer.read else f"a layer of {input_layer.objects}"
+    return f"<b>{name}</b>: {title}, {kind}{needed}. {inline(input_layer.help)}"
 
 
 def _disk_names(names) -> str:

@@ -67,6 +67,7 @@ _MODULES = (
     "models3d.reconstruct_roofs",
     "models3d.reconstruct_block",
     "models3d.export_for_roofer",
+    "export.export_models",
     "quality.report_buildings",
     "quality.assess_buildings",
     "quality.assess_classes",

@@ -17,19 +17,22 @@ from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeatureSource,
+    QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
     QgsProviderRegistry,
     QgsRectangle,
     QgsVariantUtils,
+    QgsVectorLayer,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime
 
 from ..algorithms.cloud.files import read_extent
-from ..algorithms.stage import InputLayer, LayerFeatures, Monitor
+from ..algorithms.stage import InputLayer, Layer, LayerFeatures, Monitor
 from .crs import crs_of, crs_of_layer
 from .places import Place, refuse_degrees
-from .vectors import SOURCE_TYPES, WKB
+from .vectors import SOURCE_TYPES, WKB, fields_of, qgis_features
 
 # How many different vertices a ring, a line and a point have at least.
 _FEWEST = {"Polygon": 3, "LineString": 2, "Point": 1}
@@ -50,14 +53,15 @@ def input_layer_name(input_layer: InputLayer) -> str:
     return input_layer.name.upper()
 
 
-def input_layer_parameter(input_layer: InputLayer) -> QgsProcessingParameterFeatureSource:
-    """Return the Processing parameter of a source."""
-    definition = QgsProcessingParameterFeatureSource(
-        input_layer_name(input_layer),
-        input_layer.title,
-        [SOURCE_TYPES[input_layer.geometry]],
-        optional=input_layer.optional,
-    )
+def input_layer_parameter(input_layer: InputLayer) -> QgsProcessingParameterDefinition:
+    """Return the Processing parameter of a source, or of the file that takes its place."""
+    name, title, optional = input_layer_name(input_layer), input_layer.title, input_layer.optional
+    if input_layer.read is None:
+        kinds = [SOURCE_TYPES[input_layer.geometry]]
+        definition = QgsProcessingParameterFeatureSource(name, title, kinds, optional=optional)
+    else:
+        endings = f"{title} (*{' *'.join(input_layer.endings)})"
+        definition = QgsProcessingParameterFile(name, title, optional=optional, fileFilter=endings)
     definition.setHelp(input_layer.help)
     return definition
 
@@ -78,6 +82,8 @@ def find_input_layer(
         if input_layer.optional:
             return None
         raise ValueError(f"{input_layer.title} ({name}) is missing; choose a layer of {input_layer.objects}.")
+    if input_layer.read is not None:
+        return _read_file(algorithm, input_layer, Path(str(value)), context)
     found = algorithm.parameterAsSource(parameters, name, context)
     if found is None:
         raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; nothing was found at {value}.")
@@ -92,6 +98,29 @@ def find_input_layer(
     return found
 
 
+def _read_file(
+    algorithm: QgsProcessingAlgorithm, input_layer: InputLayer, path: Path, context: QgsProcessingContext
+) -> QgsProcessingFeatureSource:
+    """Return a layer in memory with the features of a file."""
+    name = input_layer_name(input_layer)
+    if not path.is_file():
+        raise ValueError(f"{input_layer.title} ({name}): there is no file {path}; choose another.")
+    try:
+        features, code = input_layer.read(path.read_text(encoding="utf-8", errors="replace"))
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from error
+    declared = Layer(input_layer.name, input_layer.title, input_layer.geometry, ())
+    layer = QgsVectorLayer(f"{input_layer.geometry}Z", path.stem, "memory")
+    layer.setCrs(crs_of(code))
+    layer.dataProvider().addAttributes(fields_of(declared, features))
+    layer.updateFields()
+    layer.dataProvider().addFeatures(list(qgis_features(declared, features, np.asarray)))
+    layer.updateExtents()
+    source = algorithm.parameterAsSource({name: layer}, name, context)
+    source.layer = layer  # which lasts as long as its source
+    return source
+
+
 def input_layer_files(
     algorithm: QgsProcessingAlgorithm,
     input_layers: Iterable[InputLayer],
@@ -101,6 +130,9 @@ def input_layer_files(
     """Return the files of the layers that an algorithm reads, if they have one; refuse as :func:`find_input_layer`."""
     files = []
     for input_layer in input_layers:
+        if input_layer.read is not None:
+            files.append(Path(str(parameters.get(input_layer_name(input_layer)) or "")))
+            continue
         if find_input_layer(algorithm, input_layer, parameters, context) is None:
             continue
         layer = algorithm.parameterAsVectorLayer(parameters, input_layer_name(input_layer), context)

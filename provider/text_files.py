@@ -1,4 +1,4 @@
-"""Text files that algorithms write, such as CityJSON."""
+"""Files that algorithms write, such as CityJSON and GLB."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def file_parameter(file: TextFile) -> QgsProcessingParameterFileDestination:
     filters = ";;".join(f"{called} (*{' *'.join(endings)})" for called, endings in file.formats.items())
     definition = QgsProcessingParameterFileDestination(file.name.upper(), file.title, filters, optional=True)
     formats = " / ".join(file.formats)
-    return with_help(definition, f"A text file: {formats}, as its name ends.")
+    return with_help(definition, f"A file: {formats}, as its name ends.")
 
 
 def write_text(
@@ -41,5 +41,5 @@ def write_text(
         for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
             if number % BETWEEN_CHECKS == 0:
                 monitor.progress(0.0)
-            stream.write(piece.encode())
+            stream.write(piece.encode() if isinstance(piece, str) else piece)
     return {name: target}

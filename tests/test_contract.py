@@ -101,6 +101,7 @@ STAGE_IDS = {
     "reconstructblock",
     "computebuildingheights",
     "exportforroofer",
+    "exportmodels",
     "regularizepolygons",
     "assessbuildings",
     "reportbuildings",
@@ -187,7 +188,7 @@ USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
 # Estimated again in each round: the log has the value of the last, and one value for all rounds is another surface.
 ESTIMATED_IN_ROUNDS = {("classify_ground_tin_2000", "iteration_distance")}
 # Read layers whose geometries have heights (m): those of roofs.
-READS_HEIGHTS = {"assess_models": 6.0}
+READS_HEIGHTS = {"assess_models": 6.0, "export_models": 6.0}
 
 # Input layers with upright polygons: part of the southern wall of a house, by shares of its length, and heights (m).
 UPRIGHT = {
@@ -413,7 +414,7 @@ def text_of(content: FileContent) -> str:
     stages = [stage for stage in ALL.values() if stage.files]
     called = [called for stage in stages for file in stage.files for called in file.formats]
     frame = MapFrame(np.asarray, "EPSG:25832")
-    return "".join("".join(content.pieces(one, frame)) for one in dict.fromkeys(called))
+    return "".join(str(piece) for one in dict.fromkeys(called) for piece in content.pieces(one, frame))
 
 
 def assert_same(made: StageResults, expected: StageResults) -> None:
@@ -539,7 +540,9 @@ def test_dimensions_are_those_of_the_table(stage):
         plain = name[len(REFERENCE_PREFIX) :] if name.startswith(REFERENCE_PREFIX) else name
         assert plain in DIMENSIONS or plain == VALUES
     assert set(stage.writes) | set(stage.creates) <= set(DIMENSIONS)
-    assert stage.makes_cloud or stage.layers or stage.rasters or stage.measures, "the stage makes nothing"
+    assert stage.makes_cloud or any((stage.layers, stage.rasters, stage.measures, stage.files)), (
+        "the stage makes nothing"
+    )
 
 
 @each_stage

@@ -37,6 +37,7 @@ ROOMS = (
     "walls",
     "facades",
     "models3d",
+    "export",
     "quality",
     "simulation",
     "top",

@@ -22,7 +22,7 @@ FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".js
 # Vertices are whole numbers of this (map units), as solids have them: faces stay plane.
 _SCALE = 10.0**-DECIMALS
 
-_SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface", WINDOW: "Window", DOOR: "Door"}
+SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface", WINDOW: "Window", DOOR: "Door"}
 
 # Decimals of attributes.
 _DIGITS = 3
@@ -174,7 +174,7 @@ def _shell(one: NamedModel, solid: Solid, vertices: _Vertices, is_best: bool) ->
             else {}
         )
         facts.pop("building", None)
-        surfaces.append({"type": _SURFACES[kind], **facts})
+        surfaces.append({"type": SURFACES[kind], **facts})
     for face, wall in _walls_of_openings(solid).items():
         surfaces[face]["parent"] = wall
         surfaces[wall].setdefault("children", []).append(face)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Callable, Optional, Protocol
+from typing import Any, Callable, Optional, Protocol, Union
 
 import numpy as np
 
@@ -75,7 +75,8 @@ class InputLayer:
     ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`LayerFeatures` with
     all attributes of the layer, or None where an ``optional`` one is not given. Parts of a
     multipart geometry come one by one, each with the attributes of the whole. ``upright`` polygons have no area in
-    plan: their rings come as they are.
+    plan: their rings come as they are. A file with one of ``endings``, of a format that QGIS does not read, takes the
+    place of a layer: ``read`` turns its text into features in map units and the code of their CRS.
     """
 
     name: str
@@ -84,6 +85,8 @@ class InputLayer:
     help: str
     optional: bool = False
     upright: bool = False
+    endings: tuple[str, ...] = ()
+    read: Optional[Callable[[str], tuple[LayerFeatures, str]]] = None
 
     @property
     def objects(self) -> str:
@@ -253,22 +256,27 @@ class FileItem(Protocol):
         """Return the item of plain values, under a name."""
 
 
+# A part of a file.
+Piece = Union[str, bytes]
+
+
 @dataclass(frozen=True)
 class TextFile:
-    """A text file that a stage makes, in the format of its extension.
+    """A file that a stage makes, in the format of its extension.
 
     ``name`` becomes the output's name (``CITYJSON``); ``formats`` gives the file extensions of each format by
-    its name, the preferred one first. ``write`` returns the text, in parts, of any number of items in
-    a format and for a map; it goes through the items as often as it likes, and keeps none. ``item`` is what they are,
-    a class of :class:`FileItem`, and ``of`` the layer, made by the stage or given to it, whose ``id`` is their name.
+    its name, the preferred one first. ``write`` returns the text or bytes, in parts, of any number of items in
+    a format and for a map; it goes through the items as often as it likes, and keeps none. Where runs in tiles make it,
+    ``item`` is what they are, a class of :class:`FileItem`, and ``of`` the layer, made by the stage or given to it,
+    whose ``id`` is their name.
     """
 
     name: str
     title: str
     formats: Mapping[str, tuple[str, ...]]
-    write: Callable[[Collection[Any], str, MapFrame], Iterator[str]]
-    item: type[FileItem]
-    of: str
+    write: Callable[[Collection[Any], str, MapFrame], Iterator[Piece]]
+    item: type[FileItem] = FileItem  # type: ignore[type-abstract]
+    of: str = ""
 
     def format_of(self, file_name: str) -> str:
         """Return the format by a file's extension.
@@ -290,10 +298,10 @@ class FileContent:
     """The content of a :class:`TextFile`: its items, and what writes them."""
 
     items: Collection[Any]
-    write: Callable[[Collection[Any], str, MapFrame], Iterator[str]]
+    write: Callable[[Collection[Any], str, MapFrame], Iterator[Piece]]
 
-    def pieces(self, format_name: str, frame: MapFrame) -> Iterator[str]:
-        """Return the text, in parts, in a format and for a map."""
+    def pieces(self, format_name: str, frame: MapFrame) -> Iterator[Piece]:
+        """Return the text or bytes, in parts, in a format and for a map."""
         return self.write(self.items, format_name, frame)
 
 

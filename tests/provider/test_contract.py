@@ -13,6 +13,7 @@ from qgis.core import (
     QgsProcessingParameterBoolean,
     QgsProcessingParameterEnum,
     QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
@@ -86,6 +87,7 @@ IDS = {
     "reconstructblock",
     "computebuildingheights",
     "exportforroofer",
+    "exportmodels",
     "regularizepolygons",
     "simulatetown",
     "simulateflight",
@@ -235,8 +237,11 @@ def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm)
     own = "INPUTS" if stage.merges else "INPUT"
     assert clouds == [own] * stage.reads_cloud + ["REFERENCE"] * stage.reads_reference
     layers = [d for d in algorithm.parameterDefinitions() if isinstance(d, QgsProcessingParameterFeatureSource)]
-    assert [layer.name() for layer in layers] == [input_layer.name.upper() for input_layer in stage.input_layers]
-    for layer, input_layer in zip(layers, stage.input_layers):
+    declared = [input_layer for input_layer in stage.input_layers if input_layer.read is None]
+    assert [layer.name() for layer in layers] == [input_layer.name.upper() for input_layer in declared]
+    files = [d.name() for d in algorithm.parameterDefinitions() if isinstance(d, QgsProcessingParameterFile)]
+    assert files == [input_layer.name.upper() for input_layer in stage.input_layers if input_layer not in declared]
+    for layer, input_layer in zip(layers, declared):
         assert layer.dataTypes() == [SOURCE_TYPES[input_layer.geometry].value]
         assert bool(layer.flags() & Qgis.ProcessingParameterFlag.Optional) == input_layer.optional
     destinations = [definition.name() for definition in algorithm.destinationParameterDefinitions()]

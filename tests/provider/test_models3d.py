@@ -15,6 +15,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.provider.paths import STYLES
 from lidar_buildings.tests.blocks import seen_from
+from lidar_buildings.tests.glb_reader import Glb
 from lidar_buildings.tests.provider.helpers import run, vector
 from lidar_buildings.tests.roof_shapes import SHAPES
 from lidar_buildings.tests.solid_validity import assert_valid_cityjson, assert_valid_sequence
@@ -62,6 +63,29 @@ def test_coordinates_in_a_file_are_those_of_the_map(house, context, log, out):
     places = np.array(whole["vertices"]) * whole["transform"]["scale"] + whole["transform"]["translate"]
     assert places.min(axis=0) == pytest.approx([*ORIGIN, 0.0], abs=0.02)
     assert "OBJ" not in made
+
+
+def test_layers_and_cityjson_are_exported_alike(house, provider, context, log, out):
+    wanted = {name: str(out / f"{name}.gpkg") for name in ("BUILDINGS", "ROOFS", "WALLS")}
+    text = str(out / "m.city.json")
+    run("reconstructroofs", {**house, **wanted, "CITYJSON": text}, context, log)
+    run("exportmodels", {**wanted, "GLB": str(out / "layers.glb")}, context, log)
+    run("exportmodels", {"CITYJSON": text, "GLB": str(out / "file.glb")}, context, log)
+    layers, file = (Glb((out / f"{name}.glb").read_bytes()).triangles()[0] for name in ("layers", "file"))
+    assert len(layers) == len(file) == 2 * 2 + 2 * 2 + 2 * 3 + 2
+    corners = [np.unique(one.reshape(-1, 3).round(3), axis=0) for one in (layers, file)]
+    assert corners[0] == pytest.approx(corners[1], abs=0.002)
+    algorithm = provider.algorithm("exportmodels").create()
+    (out / "other.json").write_text("{}")
+    for given, why in (("other.json", "other.json: The file is no sound CityJSON"), ("no.json", "there is no file")):
+        accepted, message = algorithm.checkParameterValues({"CITYJSON": str(out / given), "GLB": text[:-9]}, context)
+        assert not accepted
+        assert why in message
+    with pytest.raises(QgsProcessingException, match="There is no model to export"):
+        run("exportmodels", {"GLB": str(out / "none.glb")}, context, log)
+    same = (out / "m.city.json").rename(out / "same.glb")
+    with pytest.raises(QgsProcessingException, match="is also an input"):
+        run("exportmodels", {"CITYJSON": str(same), "GLB": str(same)}, context, log)
 
 
 def test_a_name_without_a_format_is_refused(house, provider, context, out):

@@ -1,0 +1,1 @@
+"""Models of buildings in formats for other programs."""

@@ -1,0 +1,100 @@
+"""Models of buildings for other programs: GLB."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+import numpy as np
+
+from ..models3d.set_openings import WINDOW
+from ..models3d.solids import GROUND, ROOF, WALL
+from ..stage import InputLayer, MapFrame, TextFile, stage
+from .cityjson_faces import ENDINGS, read_cityjson
+from .exported_models import ExportedModel, exported_models
+from .gltf import glb
+
+
+def glb_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) -> Iterator[bytes]:
+    """Yield a GLB file with the finest level of each model, in meters from a round position that it names."""
+    origin = frame.to_map(np.zeros((1, 3)))[0].tolist()
+    finest = max(level for model in models for level in model.levels)
+    yield glb(list(models), finest, np.asarray, extras={"crs": frame.crs, "origin": origin})
+
+
+def _layer(name: str, title: str, text: str) -> InputLayer:
+    return InputLayer(name, title, "Polygon", text, optional=True, upright=True)
+
+
+@stage(
+    "3D",
+    tags="3D,export,GLB,glTF,web,browser,CityJSON,metadata",
+    input_layers=(
+        _layer("buildings", "Buildings", "Grounds of the buildings, with the attributes that files keep."),
+        _layer("walls", "Walls", "Walls of the same run; an attribute 'building' says of which building."),
+        _layer("roofs", "Roofs", "Roofs of the same run."),
+        _layer("openings", "Windows and doors", "Windows and doors of the same run, where it has some."),
+        InputLayer(
+            "cityjson",
+            "CityJSON",
+            "Polygon",
+            "A CityJSON or CityJSONSeq file of any program, instead of layers; its levels of detail are kept.",
+            optional=True,
+            upright=True,
+            endings=ENDINGS,
+            read=read_cityjson,
+        ),
+    ),
+    files=(TextFile("glb", "GLB", {"GLB": (".glb",)}, glb_pieces),),
+)
+def export_models(buildings=None, walls=None, roofs=None, openings=None, cityjson=None, *, monitor=None):
+    """Write models of buildings for browsers and other programs, from the layers of a run or from CityJSON.
+
+    GLB is one file that browsers, Blender, PowerPoint and games open: meters, the axis y up, roofs, walls, grounds,
+    windows and doors in colors. Buildings and faces have their attributes as ``EXT_structural_metadata``.
+
+    Parameters
+    ----------
+    buildings, walls, roofs, openings : LayerFeatures, optional
+        Layers of "Reconstruct roofs" or "Model city block".
+    cityjson : LayerFeatures, optional
+        Faces of a CityJSON file.
+
+    Returns
+    -------
+    glb : list of ExportedModel
+        The models for a file.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to export, or no polygon has heights.
+
+    Notes
+    -----
+    Coordinates in GLB have 24 bits, so they are relative to a round position, which the file names (``asset.extras``)
+    with its coordinate reference system.
+
+    References
+    ----------
+    Khronos Group, 2021. glTF 2.0 Specification. [gltf2021]
+    Open Geospatial Consortium, 2023. 3D Tiles Specification, version 1.1. [tiles2023]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> ring = np.array([[0, 0, 3.0], [4, 0, 3], [4, 5, 3], [0, 5, 3], [0, 0, 3]])
+    >>> roof = LayerFeatures([[ring]], {"building": ["town hall"], "slope": [0.0]})
+    >>> [(model.name, len(model.best)) for model in export_models(roofs=roof)]
+    [('town hall', 1)]
+    """
+    layers = {GROUND: buildings, WALL: walls, ROOF: roofs, WINDOW: openings, "": cityjson}
+    models, left_out = exported_models(layers)
+    if not models:
+        raise ValueError(
+            f"There is no model to export ({left_out} polygons without heights); give the layers of "
+            "'Reconstruct roofs', or a CityJSON file."
+        )
+    if left_out:
+        monitor.warn(f"{left_out} polygons have no heights and are left out.")
+    monitor.inform(f"{len(models)} buildings with {sum(len(model.best) for model in models)} faces.")
+    return models

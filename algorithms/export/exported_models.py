@@ -1,0 +1,114 @@
+"""Models of buildings as faces with attributes, by level of detail, as they are exported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from ..geometry.polygons import area_vector
+from ..models3d.set_openings import DOOR, WINDOW
+from ..models3d.solids import GROUND, ROOF, WALL
+from ..stage import LayerFeatures, feature_names
+
+# Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window or door.
+BUILDING, LEVEL, KIND = "building", "lod", "kind"
+KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR)
+
+# Faces of unknown kind are walls if the vertical part of their unit normal is less than this: slopes over 80°.
+_UPRIGHT = 0.17
+
+
+@dataclass(frozen=True)
+class Face:
+    """A plane polygon of a model: closed rings (k, 3), m, the exterior first, counterclockwise seen from outside."""
+
+    kind: str
+    rings: list[np.ndarray]
+    facts: dict[str, Any]
+
+    @property
+    def corners(self) -> np.ndarray:
+        """The vertices (n, 3) of all rings, m, each once."""
+        return np.concatenate([ring[:-1] for ring in self.rings])
+
+    @property
+    def numbered_rings(self) -> list[list[int]]:
+        """The rings as numbers of the corners."""
+        ends = np.cumsum([len(ring) - 1 for ring in self.rings]).tolist()
+        return [list(range(start, end)) for start, end in zip([0, *ends], ends)]
+
+
+@dataclass(frozen=True)
+class ExportedModel:
+    """A building: its name, its attributes, and its faces by level of detail ("" where layers have one level only)."""
+
+    name: str
+    facts: dict[str, Any]
+    levels: dict[str, list[Face]]
+
+    def at(self, level: str) -> list[Face]:
+        """Return the faces of the finest level up to the given one, or else of the simplest."""
+        return self.levels[max((one for one in self.levels if one <= level), default=min(self.levels))]
+
+    @property
+    def best(self) -> list[Face]:
+        """The faces of the finest level."""
+        return self.levels[max(self.levels)]
+
+
+def exported_models(layers: dict[str, Optional[LayerFeatures]]) -> tuple[list[ExportedModel], int]:
+    """Return the models whose faces are in some layers, and the number of polygons without heights, which are left out.
+
+    Parameters
+    ----------
+    layers : dict of str to LayerFeatures
+        Polygons by the kind that they have where no attribute ``kind`` says it, "" where their slope does. An attribute
+        ``building`` names the building, or else ``id``; ``lod`` is the level of detail. Grounds have the attributes of
+        buildings.
+    """
+    found: dict[str, dict[str, list[Face]]] = {}
+    left_out = 0
+    for kind, features in layers.items():
+        for name, level, face in _faces(kind, features) if features is not None else ():
+            if face is None:
+                left_out += 1
+            else:
+                found.setdefault(name, {}).setdefault(level, []).append(face)
+    return [_model(name, levels) for name, levels in found.items()], left_out
+
+
+def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optional[Face]]]:
+    """Yield building, level and face of each polygon, None for those without heights."""
+    columns = features.kept(range(len(features)), ())
+    names = columns.pop(BUILDING, feature_names(features))
+    levels = columns.pop(LEVEL, [""] * len(names))
+    for row, polygon in enumerate(features.geometries):
+        rings = polygon
+        facts = {name: column[row] for name, column in columns.items() if column[row] is not None}
+        # Maps have attributes of that name, too.
+        own = facts.pop(KIND) if facts.get(KIND) in KINDS else kind
+        has_heights = all(ring.shape[1] == 3 and len(ring) > 3 for ring in rings)
+        if not own and has_heights:
+            own = kind_by_slope(rings[0])
+        if own == GROUND and has_heights and area_vector(rings[0])[2] > 0:
+            # Layers have it as it is seen on a map, solids as it is seen from below.
+            rings = [ring[::-1] for ring in rings]
+        yield str(names[row]), str(levels[row]), Face(own, rings, facts) if has_heights else None
+
+
+def _model(name: str, levels: dict[str, list[Face]]) -> ExportedModel:
+    """Return a building with the attributes of its ground, or of its first face where it has none."""
+    best = levels[max(levels)]
+    first = next((face for face in best if face.kind == GROUND), best[0])
+    return ExportedModel(name, first.facts, levels)
+
+
+def kind_by_slope(ring: np.ndarray) -> str:
+    """Return whether a face with this exterior (k, 3), counterclockwise from outside, is a wall, roof or ground."""
+    normal = area_vector(ring)
+    if abs(normal[2]) < _UPRIGHT * np.linalg.norm(normal):
+        return WALL
+    return ROOF if normal[2] > 0 else GROUND
