@@ -11,6 +11,7 @@ import importlib
 import importlib.util
 from collections.abc import Collection
 from types import ModuleType
+from typing import Any
 
 from .package_versions import too_old
 
@@ -46,6 +47,16 @@ def missing(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:
 def has_laz() -> bool:
     """Whether LAZ can be read and written; LAS can without."""
     return any(importlib.util.find_spec(module) is not None for module in ("lazrs", "laszip"))
+
+
+def zstandard() -> Any:
+    """Return the module that unpacks zstandard, of Python 3.14 or of the package of this name; None without either."""
+    for name in ("compression.zstd", "zstandard"):
+        try:
+            return importlib.import_module(name)
+        except ImportError:
+            continue
+    return None
 
 
 def absent(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import zstandard
 
 from lidar_buildings.algorithms.cloud.laspy_library import need_laspy
 
@@ -66,6 +67,9 @@ def _grid(name: str, offset: list) -> dict:
 
 
 def _write_node(path: Path, points: np.ndarray, offset: list, kind: str) -> None:
+    if kind == "zstandard":
+        path.with_suffix(".zst").write_bytes(zstandard.compress(points.tobytes()))
+        return
     if kind != "laszip":
         path.with_suffix(".bin").write_bytes(points.tobytes())
         return

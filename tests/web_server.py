@@ -32,6 +32,7 @@ class Server(ThreadingHTTPServer):
         self.redirect = ""  #: Where all requests are led
         self.token = ""  #: The only value of the header Authorization that is let in
         self.missing_from = None  #: Ranges from this byte on are not found
+        self.by_query = lambda path, query: path  # noqa: ARG005 - the file that a path with a query means
         self.seen: list[str] = []  #: Values of the header Authorization
 
     def address(self, name: str) -> str:
@@ -46,7 +47,8 @@ class _Handler(BaseHTTPRequestHandler):
         """Print nothing."""
 
     def do_GET(self) -> None:
-        server, path = self.server, urlsplit(self.path).path.lstrip("/")
+        server, parts = self.server, urlsplit(self.path)
+        path = server.by_query(parts.path.lstrip("/"), parts.query)
         file = server.folder / path
         first, last = (int(one) for one in self.headers["Range"].removeprefix("bytes=").split("-"))
         server.requests.append((path, first, last))

@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional, cast
 
 import numpy as np
 
+from .. import packages
 from ..stage import Monitor
 from .catalog_json import read_json
 from .crs import crs_records
@@ -20,13 +21,16 @@ from .point_formats import Layout
 from .printable import shown
 from .web_file import WebFile, fetch_files, is_on_web
 
-LASZIP, BINARY = "laszip", "binary"
+# How nodes are stored, by what their files end in: zstandard packs what binary nodes are.
+_ENDINGS = {"laszip": "laz", "binary": "bin", "zstandard": "zst"}
 # Most nodes and pages of one hierarchy: ten times those of the largest known data sets.
 _MOST_NODES, _MOST_PAGES = 5_000_000, 20_000
 # In place of a number of points: the node begins a page of its own.
 _PAGE = -1
 # Most points of a node.
 _MOST_POINTS = 2**31 - 1
+# Most bytes of the points of a node, unpacked: a thousand times those of the largest known. They are read in pieces.
+_MOST_BYTES, _PIECE = 2**30, 2**20
 _KEY = re.compile(r"\d{1,2}(?:-\d{1,12}){3}")
 # Kinds of numbers by their names in a schema, with the numbers of bytes that they may have.
 _KINDS = {"signed": ("i", (1, 2, 4, 8)), "unsigned": ("u", (1, 2, 4, 8)), "floating": ("f", (4, 8))}
@@ -73,11 +77,19 @@ class Ept:
             is_sound = False
         if not is_sound:
             raise truncated(path, "it is no description of Entwine point tiles")
-        if self.kind not in (LASZIP, BINARY):
+        if self.kind not in _ENDINGS:
             raise ValueError(
-                f"{path.name} has points of the type {shown(self.kind)}, and those of the types laszip and binary can "
-                "be read; convert it to one of these, or to COPC."
+                f"{path.name} has points of the type {shown(self.kind)}, and those of the types laszip, binary and "
+                "zstandard can be read; convert it to one of these, or to COPC."
             )
+        if self.kind == "zstandard" and packages.zstandard() is None:
+            raise ValueError(
+                f"{path.name} has points that are packed by zstandard, and the Python package zstandard is missing; "
+                "install it (pip install zstandard), or convert the points to COPC."
+            )
+        self.is_laz = self.kind == "laszip"
+        #: What shows whether a description on the web has changed; "" on this computer
+        self.version = cast(WebFile, path).version if is_on_web(path) else ""
         (self.low, self.high), self.bounds = ends
         #: Distance of the points that the root shows
         self.spacing = float((self.high - self.low)[0] / span) if span > 0 else 0.0
@@ -91,7 +103,7 @@ class Ept:
 
     def data(self, key: str) -> Path:
         """Return the file of a node."""
-        return self.file("ept-data", key, "laz" if self.kind == LASZIP else "bin")
+        return self.file("ept-data", key, _ENDINGS[self.kind])
 
     @property
     def record(self) -> np.dtype:
@@ -100,9 +112,9 @@ class Ept:
 
     def header(self, of_file: Callable[[Path], Header]) -> Header:
         """Return the header that a LAS file with all these points would have; ``of_file`` reads that of a node."""
-        if self.kind == LASZIP:
+        if self.is_laz:
             root = self.data("0-0-0-0")
-            fetch_files([root], Monitor())
+            fetch_files([root], Monitor(), self.version)
             of_root = of_file(root)
             layout, scale, offset = of_root.layout, of_root.scale, of_root.offset
         else:
@@ -210,8 +222,8 @@ class EptOctree:
         self.chunks = np.column_stack([counts * 0, counts * self._size(), counts]).astype(np.int64)
 
     def _size(self) -> float:
-        """Return the bytes of a point: of LAZ, those of the root node, as only asking for a file shows its size."""
-        if self.ept.kind == BINARY:
+        """Return the bytes of a point: packed, those of the root node, as only asking for a file shows its size."""
+        if self.ept.kind == "binary":
             return self.ept.record.itemsize
         at = (self.keys == 0).all(axis=1).argmax() if len(self.keys) else 0
         return self.ept.data("0-0-0-0").stat().st_size / self.nodes.points[at] if len(self.keys) else 0.0
@@ -223,7 +235,7 @@ class EptOctree:
         """Fetch the nodes of portions from the first on, as many as are kept; return the portion behind them."""
         last = fetched_to(self.chunks, parts, first)
         files = map(self._file, np.concatenate(parts[first:last]))
-        fetch_files(files, monitor.part(first / len(parts), last / len(parts)))
+        fetch_files(files, monitor.part(first / len(parts), last / len(parts)), self.ept.version)
         return last
 
     def read(self, some: np.ndarray) -> np.ndarray:
@@ -231,12 +243,28 @@ class EptOctree:
         return np.concatenate([self._node(self._file(row), int(self.nodes.points[row])) for row in some])
 
     def _node(self, file: Path, count: int) -> np.ndarray:
-        if self.ept.kind == LASZIP:
+        if self.ept.is_laz:
             return self.read_laz(file, count, self.header)
-        size, expected = file.stat().st_size, count * self.ept.record.itemsize
-        if size != expected:
-            raise truncated(file, f"its {count} points should take {expected} bytes, not {size}")
-        return self.ept.decode(file.read_bytes(), self.header)
+        expected = count * self.ept.record.itemsize
+        with file.open("rb") as stream:
+            raw = self._bytes(file, stream, min(expected, _MOST_BYTES))
+        if len(raw) != expected:
+            found = len(raw) if len(raw) < expected else "more"
+            raise truncated(file, f"its {count} points should take {expected} bytes, and it has {found}")
+        return self.ept.decode(raw, self.header)
+
+    def _bytes(self, file: Path, stream: Any, size: int) -> bytes:
+        """Return the bytes of the points of a node, unpacked; at most a piece more than its size should be."""
+        zstandard, found = packages.zstandard() if self.ept.kind == "zstandard" else None, bytearray()
+        errors = (zstandard.ZstdError, EOFError) if zstandard else (EOFError,)
+        try:
+            # What is asked for at once is allocated, whatever there is.
+            stream = zstandard.open(stream) if zstandard else stream
+            while len(found) <= size and (piece := stream.read(_PIECE)):
+                found += piece
+        except errors:
+            raise truncated(file, "its points can't be unpacked") from None
+        return bytes(found)
 
 
 @lru_cache(maxsize=8)
@@ -258,7 +286,7 @@ def _hierarchy(
     waiting, seen = [(0, 0, 0, 0)], {(0, 0, 0, 0)}
     while waiting:
         files = [ept.file("ept-hierarchy", "-".join(map(str, key)), "json") for key in waiting]
-        fetch_files(files, Monitor())
+        fetch_files(files, Monitor(), ept.version)
         entries = {key: count for file in files for key, count in _page(file).items()}
         if len(found) + len(entries) > _MOST_NODES or len(seen) > _MOST_PAGES:
             raise truncated(path, f"its hierarchy has more than {_MOST_NODES} nodes or {_MOST_PAGES} pages")

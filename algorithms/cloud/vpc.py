@@ -22,7 +22,7 @@ from .point_records import fill_merged, merged_layout
 from .points import open_header, points_within, read_chunks, thinned
 from .printable import shown
 from .web_addresses import is_address, is_allowed, split_address
-from .web_file import WebFile, is_on_web
+from .web_file import WebFile, fetch_files, is_on_web
 
 # Bit of the header's encoding that says how GPS time is counted.
 _GPS_TIME_BIT = 1
@@ -31,6 +31,10 @@ _DATA_ROLE = "data"
 # How a URI of a file begins, up to the path on this computer; and the slash before a drive of Windows in it.
 _FILE = re.compile("^file:(?://(?:localhost)?(?=/))?", re.IGNORECASE)
 _BEFORE_DRIVE = re.compile("^/(?=[A-Za-z]:/)")
+# Most files that STAC items come in, and most items: ten times those of the largest survey that is run as one.
+_MOST_PAGES, _MOST_ITEMS = 500, 50_000
+# Links of a page or a collection that lead to more items.
+_LEADS = ("next", "items", "item")
 # STAC extensions that define the properties "pc:…" and "proj:…".
 _EXTENSIONS = (
     "https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json",
@@ -54,28 +58,72 @@ class Named(NamedTuple):
 def tiles_of(path: Path) -> dict[Path, Named]:
     """Return the tiles that a virtual point cloud or other STAC items name, in their order, with CRS and box of each.
 
+    Items may come in pages, each of which leads to the next one, and a collection may lead to its items.
+
     Raises
     ------
     ValueError
-        If the file has no such items, is far too large, is one page of several, or names no tiles; or if one of them is
-        missing, or its host not allowed.
+        If a file has no such items or is far too large, if tiles are missing or on hosts that are not allowed, or if
+        there are too many pages or items.
     """
-    content = read_json(path)
+    tiles: dict[Path, tuple[Path, Named]] = {}
+    waiting, seen, n_items = [path], {path}, 0
+    while waiting:
+        fetch_files(waiting, Monitor())
+        following: dict[Path, None] = {}
+        for page in waiting:
+            hrefs, leads = _content_of(page)
+            n_items += len(hrefs)
+            # A tile that is named twice is read once, whichever way it is named.
+            named = ((_tile(page, href), said) for href, said in hrefs.items())
+            tiles.update({tile.resolve(): (tile, said) for tile, said in named})
+            following.update(dict.fromkeys(_page(page, link) for link in leads))
+        waiting = [page for page in following if page not in seen]
+        seen.update(waiting)
+        if len(seen) > _MOST_PAGES or n_items > _MOST_ITEMS:
+            raise ValueError(
+                f"{path.name} leads to more than {_MOST_PAGES} pages or {_MOST_ITEMS:,} items; ask for those of an "
+                "extent (bbox=…)."
+            )
+    if not tiles:
+        raise ValueError(f"{path.name} names no tiles; build it again.")
+    return dict(tiles.values())
+
+
+def _content_of(page: Path) -> tuple[dict[str, Named], list[dict]]:
+    """Return the tiles that a page names, what it says of each, and its links to others."""
+    content = read_json(page)
     try:
-        items = content.get("features", [content])
-        hrefs = {href: _named(one.get("properties")) for one in items for href in _hrefs(one["assets"])}
-        has_more = any(link.get("rel") == "next" for link in content.get("links") or ())
+        leads = [link for link in content.get("links") or () if link.get("rel") in _LEADS]
+        # What leads to its items has none of its own.
+        items = content.get("features", [] if leads else [content])
+        return {href: _named(one.get("properties")) for one in items for href in _hrefs(one["assets"])}, leads
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ValueError(
-            f"{path.name} is not a virtual point cloud: it is no STAC item or feature collection with assets."
+            f"{page.name} is not a virtual point cloud: it is no STAC item or feature collection with assets."
         ) from None
-    if has_more:
-        raise ValueError(f"{path.name} is one page of several; ask for all items at once (limit=…).")
-    if not hrefs:
-        raise ValueError(f"{path.name} names no tiles; build it again.")
-    # A tile that is named twice is read once, whichever way it is named.
-    tiles = {tile.resolve(): (tile, named) for tile, named in ((_tile(path, one), hrefs[one]) for one in hrefs)}
-    return dict(tiles.values())
+
+
+def _page(page: Path, link: dict) -> Path:
+    """Return the page that a link leads to.
+
+    Raises
+    ------
+    ValueError
+        If it must be asked for otherwise than by its address, or lies on a host that is neither the page's nor allowed.
+    """
+    href = str(link.get("href"))
+    if link.get("method", "GET") == "GET":
+        if is_on_web(page):
+            leads = cast(WebFile, page).beside(href)
+            if leads.host == cast(WebFile, page).host or is_allowed(leads.address):
+                return cast(Path, leads)
+        elif is_address(href) and is_allowed(href):
+            return cast(Path, WebFile(href))
+    raise ValueError(
+        f"{page.name} is one page of several, and the next one, {shown(href)}, is not read; ask for all at once "
+        "(limit=…), or allow its host in the options of Processing ('Hosts that files may name point clouds of')."
+    )
 
 
 def _named(properties: Any) -> Named:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Optional
@@ -45,7 +46,7 @@ class KeptRanges:
 
     def read(self) -> Iterator[tuple[int, bytes]]:
         """Yield position and bytes of each range, the one written last at the end."""
-        for _, _, file in _oldest_first(self.folder, self.name) if self.folder else ():
+        for _, _, file in _oldest_first(_listed(self.folder).get(self.name, ())) if self.folder else ():
             _, start, size = file.name.split(".")[0].split("-")
             # Another process may remove it meanwhile.
             with suppress(FileNotFoundError):
@@ -54,7 +55,7 @@ class KeptRanges:
                     yield int(start), data
 
     def keep(self, start: int, data: bytes) -> None:
-        """Keep a range, and remove the oldest ones of all files beyond the bound.
+        """Keep a range.
 
         Raises
         ------
@@ -68,20 +69,38 @@ class KeptRanges:
             self.folder.mkdir(0o700, parents=True, exist_ok=True)
         with replacing(target) as stream:
             stream.write(data)
-        files = _oldest_first(self.folder, "")
-        excess = sum(size for _, size, _ in files) - _MOST
-        while excess > 0 and files:
-            _, size, file = files.pop(0)
-            # Windows removes no file that another process reads: it goes the next time.
-            with suppress(PermissionError):
-                file.unlink(missing_ok=True)
-            excess -= size
 
 
-def _oldest_first(folder: Path, name: str) -> list[tuple[int, int, Path]]:
-    """Return when each range in a folder whose name begins so was written (ns), its bytes and its file."""
+def remove_oldest() -> None:
+    """Remove the oldest ranges of all files in the folder, beyond the bound."""
+    files = _oldest_first(Path(_folder[0]).expanduser().glob(f"*-*-*{_ENDING}")) if _folder[0] else []
+    excess = sum(size for _, size, _ in files) - _MOST
+    while excess > 0 and files:
+        _, size, file = files.pop(0)
+        # Windows removes no file that another process reads: it goes the next time.
+        with suppress(PermissionError):
+            file.unlink(missing_ok=True)
+        excess -= size
+
+
+def _listed(folder: Path) -> dict[str, list[Path]]:
+    """Return the ranges in a folder by the names of :class:`KeptRanges`."""
+    return _listed_once(folder, folder.stat().st_mtime_ns) if folder.is_dir() else {}
+
+
+@lru_cache(maxsize=1)
+def _listed_once(folder: Path, changed: int) -> dict[str, list[Path]]:  # noqa: ARG001
+    """Return the ranges by names; the folder is listed again when it has ``changed`` (ns), not for each of many."""
+    found: dict[str, list[Path]] = {}
+    for file in folder.glob(f"*-*-*{_ENDING}"):
+        found.setdefault(file.name.partition("-")[0], []).append(file)
+    return found
+
+
+def _oldest_first(files: Iterable[Path]) -> list[tuple[int, int, Path]]:
+    """Return when each range was written (ns), its bytes and its file."""
     found = []
-    for file in folder.glob(f"{name}*-*-*{_ENDING}"):
+    for file in files:
         with suppress(FileNotFoundError):
             state = file.stat()
             found.append((state.st_mtime_ns, state.st_size, file))

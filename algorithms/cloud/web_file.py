@@ -21,7 +21,7 @@ from urllib.parse import unquote, urlsplit
 from ..stage import Monitor
 from .printable import shown
 from .web_addresses import is_address, redirected, same_server, split_address, without_query
-from .web_cache import KeptRanges
+from .web_cache import KeptRanges, remove_oldest
 from .web_requests import NoAnswerError, Reply, transport
 
 # Least number of bytes that are asked for at once: the header of a COPC file and most pages of its index are shorter.
@@ -32,6 +32,8 @@ _MOST_AT_ONCE, _MOST_READ = 2**23, 2**29
 _GAP = 2**13
 # Bytes of one file, and of all together, that are kept; those fetched or used first go first.
 _KEPT = 2**28
+# In place of the size of a file that is kept as a whole.
+_WHOLE = -1
 # Seconds for which a file that nobody reads is known.
 _KNOWN_FOR = 600.0
 # Seconds before a request is sent again: each time more, as servers ask.
@@ -128,6 +130,7 @@ class _Content:
                     self._keep(at, data)
             else:
                 kept.keep(start, reply.data)
+                remove_oldest()
             self.size, self.version = total, reply.version
             self._keep(start, reply.data)
         return len(reply.data)
@@ -141,6 +144,20 @@ class _Content:
             del self._parts[oldest]
             self._starts.remove(oldest)
         self.held = held
+
+    def take_kept(self, version: str) -> bool:
+        """Take the whole content from the folder; return whether it was kept there with this version."""
+        with self.lock:
+            for _, data in KeptRanges(self.address, self.login, version, _WHOLE).read():
+                self.size, self.version = len(data), version
+                self._keep(0, data)
+            return self.size >= 0
+
+    def keep_whole(self, version: str) -> None:
+        """Keep the whole content in the folder with a version, unless it is held in parts."""
+        with self.lock:
+            if len(data := self._parts.get(0, b"")) == self.size:
+                KeptRanges(self.address, self.login, version, _WHOLE).keep(0, data)
 
     def _answer(self, start: int, stop: int, stopped: threading.Event) -> Reply:
         """Return the reply to a request that is sent until it is answered, and follows redirections."""
@@ -276,6 +293,13 @@ class WebFile:
         content.take(0, 1)
         return WebState(content.size, zlib.crc32(content.version.encode()))
 
+    @property
+    def version(self) -> str:
+        """The version that the server names, "" if it names none."""
+        content = _content(self.address, self.login)
+        content.take(0, 1)
+        return content.version
+
     def open(self, mode: str = "rb") -> WebStream:  # noqa: ARG002 - as of a path
         """Return a stream of its bytes."""
         return WebStream(_content(self.address, self.login))
@@ -365,14 +389,20 @@ class WebStream(io.RawIOBase):
         _fetch_at_once([(self._content, *one) for one in self._content.missing(ranges)], monitor)
 
 
-def fetch_files(files: Iterable[Path], monitor: Monitor) -> None:
+def fetch_files(files: Iterable[Path], monitor: Monitor, version: str = "") -> None:
     """Fetch those of some files that are on the web, several at once, and as a whole where they are small.
 
-    Servers without ranges answer this, too.
+    Servers without ranges answer this, too. A ``version`` is of the description that names the files: they are kept in
+    the folder of the user, and are not asked for while that does not change.
     """
     on_web = cast("list[WebFile]", list(filter(is_on_web, files)))
-    contents = [_content(one.address, one.login) for one in on_web]
-    _fetch_at_once([(one, 0, _MOST_AT_ONCE) for one in contents if one.size < 0], monitor)
+    contents = [one for one in (_content(one.address, one.login) for one in on_web) if one.size < 0]
+    contents = [one for one in contents if not one.take_kept(version)]
+    _fetch_at_once([(one, 0, _MOST_AT_ONCE) for one in contents], monitor)
+    for one in contents:
+        one.keep_whole(version)
+    if contents and version:
+        remove_oldest()
 
 
 def _fetch_at_once(wanted: list[tuple[_Content, int, int]], monitor: Monitor) -> None:

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud import web_addresses, web_file
+from lidar_buildings.algorithms.cloud import vpc, web_addresses, web_file
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import NOWHERE, count_points, read_cloud, read_extent, write_cloud
 from lidar_buildings.algorithms.cloud.points import open_header, size_within
@@ -151,10 +151,69 @@ def test_a_public_catalog_does_not_lead_into_the_network_of_the_user(monkeypatch
         catalog.beside("https://router.example/a.laz")
 
 
-def test_a_page_of_several_is_refused(tmp_path):
-    path = written(tmp_path, "a.json", collection(item("a.laz"), links=[{"rel": "self"}, {"rel": "next", "href": "b"}]))
-    with pytest.raises(ValueError, match=r"a\.json is one page of several; ask for all items"):
+def leads_to(href, rel="next", **others):
+    return [{"rel": "self", "href": "x"}, {"rel": rel, "href": href, **others}]
+
+
+def test_items_in_pages_are_those_of_one_file(server, folder):
+    for number in range(3):
+        links = leads_to(f"./page?token={number + 1}") if number < 2 else []
+        written(folder, f"page{number}", collection(item(f"{number}.copc.laz"), links=links))
+    server.by_query = lambda path, query: f"{path}{query.removeprefix('token=')}" if query else path
+    # The last page leads to itself and to the first one, which are read once.
+    last = collection(item("2.copc.laz"), links=[*leads_to("page?token=2"), *leads_to("page0")])
+    written(folder, "page2", last)
+    found = read_cloud(server.address("page0"), box=ACROSS)
+    np.testing.assert_array_equal(found.points, read_cloud(folder / "all.vpc", box=ACROSS).points)
+    assert sum(path.startswith("page") for path, *_ in server.requests) == 3
+
+
+@pytest.mark.parametrize("rel", ["items", "item"])
+def test_a_collection_leads_to_its_items(server, folder, rel):
+    made = collection(item("0.copc.laz"), item("1.copc.laz")) if rel == "items" else item("0.copc.laz")
+    written(folder, "items.json", made)
+    about = {"type": "Collection", "links": leads_to("items.json", rel), "assets": {"a": {"href": "a.png"}}}
+    written(folder, "collection.json", about)
+    assert len(tiles_of(WebFile(server.address("collection.json")))) == (2 if rel == "items" else 1)
+
+
+@pytest.mark.parametrize(("allowed", "is_read"), [((), False), (["example.org"], False), (["127.0.0.1"], True)])
+def test_a_page_on_disk_leads_to_hosts_that_are_allowed(server, folder, tmp_path, allowed, is_read):
+    written(folder, "next.json", collection(item("1.copc.laz")))
+    tile = tmp_path / "0.copc.laz"
+    tile.write_bytes((folder / "0.copc.laz").read_bytes())
+    path = written(tmp_path, "a.json", collection(item(tile.name), links=leads_to(server.address("next.json"))))
+    allow_hosts(allowed)
+    if is_read:
+        assert len(tiles_of(path)) == 2
+        return
+    with pytest.raises(ValueError, match=r"a\.json is one page of several, and the next one, http.* allow its host"):
         read_cloud(path)
+    assert not server.requests
+
+
+@pytest.mark.parametrize(
+    ("link", "sentence"),
+    [
+        (leads_to("https://93.184.216.34/b.json"), "the next one, https://93.184.216.34/b.json, is not read"),
+        (leads_to("file:///etc/passwd"), "leads to 'file:///etc/passwd', which is not followed"),
+        (leads_to("b.json", method="POST"), "ask for all at once"),
+    ],
+)
+def test_pages_lead_to_no_other_host(server, folder, link, sentence):
+    written(folder, "odd.json", collection(item("0.copc.laz"), links=link))
+    with pytest.raises(ValueError, match=sentence):
+        read_cloud(server.address("odd.json"))
+
+
+@pytest.mark.parametrize(("bound", "most"), [("_MOST_PAGES", 3), ("_MOST_ITEMS", 4)])
+def test_pages_without_end_are_refused(server, folder, monkeypatch, bound, most):
+    monkeypatch.setattr(vpc, bound, most)
+    for number in range(6):
+        written(folder, f"{number}.json", collection(item("0.copc.laz"), links=leads_to(f"{number + 1}.json")))
+    with pytest.raises(ValueError, match=r"0\.json leads to more than .* ask for those of an extent"):
+        read_cloud(server.address("0.json"))
+    assert len(server.requests) <= 5
 
 
 @pytest.mark.parametrize(

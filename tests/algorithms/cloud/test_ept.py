@@ -1,11 +1,14 @@
 """Entwine point tiles, on this computer and on the web: the points that were written, from few files, or a sentence."""
 
 import json
+import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import zstandard
 
-from lidar_buildings.algorithms.cloud import ept, web_file
+from lidar_buildings.algorithms.cloud import ept, web_cache, web_file
 from lidar_buildings.algorithms.cloud.cloud import Cloud
 from lidar_buildings.algorithms.cloud.files import (
     check_readable,
@@ -23,7 +26,7 @@ from lidar_buildings.tests.web_server import serving
 CORNER, SIDE, COUNT = np.array([600_000.0, 5_000_000.0]), 1000.0, 60_000
 VIEW = np.array([[100.0, 100.0], [200.0, 200.0]]) + CORNER
 POINTS = made_points(COUNT, CORNER, SIDE)
-KINDS = ["laszip", "binary"]
+KINDS = ["laszip", "binary", "zstandard"]
 
 
 @pytest.fixture(scope="module")
@@ -141,7 +144,7 @@ def test_windows_of_a_survey_have_each_point_once(server, kind):
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"dataType": "zstandard"}, "the type zstandard, and those of the types laszip and binary can"),
+        ({"dataType": "brotli"}, "the type brotli, and those of the types laszip, binary and zstandard can"),
         ({"points": 2001}, "it promises 2001 points, but its nodes hold 2000"),
         ({"points": -1}, "it is no description"),
         ({"points": 10**30}, "it is no description"),
@@ -188,7 +191,7 @@ def test_a_number_of_points_that_is_not_that_of_the_node_is_refused(made, kind, 
     path = made(kind)
     page = path.parent / "ept-hierarchy" / "0-0-0-0.json"
     page.write_text(json.dumps({**json.loads(page.read_text()), "0-0-0-0": count}))
-    with pytest.raises(ValueError, match=r"0-0-0-0\.(laz|bin) is truncated or damaged: it"):
+    with pytest.raises(ValueError, match=r"0-0-0-0\.(laz|bin|zst) is truncated or damaged: it"):
         read_cloud(path, box=VIEW)
 
 
@@ -207,6 +210,42 @@ def test_a_node_that_is_missing_or_cut_off_is_named(server, folder, made, kind):
         pytest.raises(ValueError, match=rf"There is no file at http.*/{node.name} \(404\)"),
     ):
         read_cloud(other.address("ept.json"))
+
+
+def test_a_node_that_unpacks_to_more_than_its_points_is_refused_unread(made):
+    path = made("zstandard")
+    node = path.parent / "ept-data" / "0-0-0-0.zst"
+    node.write_bytes(zstandard.compress(bytes(2**28)))
+    with pytest.raises(ValueError, match=r"0-0-0-0\.zst is .* points should take (\d+) bytes, and it has more"):
+        read_cloud(path)
+    node.write_bytes(b"no zstandard")
+    with pytest.raises(ValueError, match="its points can't be unpacked"):
+        read_cloud(path)
+
+
+def test_without_a_package_for_zstandard_its_name_is_said(made, monkeypatch):
+    monkeypatch.setitem(sys.modules, "zstandard", None)
+    monkeypatch.setitem(sys.modules, "compression.zstd", None)
+    with pytest.raises(ValueError, match="the Python package zstandard is missing; install it"):
+        read_extent(made("zstandard"))
+    module = SimpleNamespace(open=zstandard.open, ZstdError=zstandard.ZstdError)
+    monkeypatch.setitem(sys.modules, "compression.zstd", module)
+    monkeypatch.setitem(sys.modules, "compression", SimpleNamespace(zstd=module, __path__=[]))
+    assert len(read_cloud(made("zstandard"))) == 2000
+
+
+def test_nodes_and_pages_are_kept_while_the_description_does_not_change(server, tmp_path, monkeypatch):
+    monkeypatch.setattr(web_cache, "_folder", [str(tmp_path / "kept")])
+    asked = []
+    for server.version in ("1", "1", "2", "2"):
+        web_file._known.clear()
+        ept._hierarchy.cache_clear()
+        server.requests.clear()
+        check(read_cloud(server.address("binary/ept.json"), box=VIEW), POINTS[inside(POINTS, VIEW)])
+        asked.append({path for path, *_ in server.requests})
+    assert len(asked[0]) == 10
+    assert asked[0] == asked[2]
+    assert asked[1] == asked[3] == {"binary/ept.json"}
 
 
 def test_a_hierarchy_that_leads_to_itself_or_has_no_end_is_refused(made, monkeypatch):
