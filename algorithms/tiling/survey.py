@@ -203,9 +203,11 @@ class Survey:
 
     def _records(self, source: Source, box: np.ndarray, monitor: Monitor) -> Iterable[tuple[np.ndarray, np.ndarray]]:
         """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
-        header = source.header
+        header, near = source.header, box / self.crs.horizontal
+        if self.extent is not None:
+            near = np.array([np.maximum(near[0], self.extent[0]), np.minimum(near[1], self.extent[1])])
         with readable(source.path):
-            for start, chunk in chunks_near(source.path, header, box / self.crs.horizontal, monitor):
+            for start, chunk in chunks_near(source.path, header, near, monitor):
                 rows = np.flatnonzero(self.holds(chunk, header) & self._inside(chunk, header, box))
                 if header.spacing is not None:
                     rows = rows[lowest_rows(chunk[rows], header)]

@@ -324,6 +324,10 @@ def test_a_spacing_in_tiles_reads_coarse_levels_and_gives_the_points_of_one_run(
     np.testing.assert_array_equal(*(np.sort(one.to_map(one.get("xyz")), axis=0) for one in (found, wanted)))
     assert made["POINTS"] == len(wanted)
     assert "are read from 127.0.0.1" in " ".join(log.infos)
+    # The margin of a block reaches beyond the extent, and what is read does not.
+    sent = server.sent
+    (_, (_, needed)) = sizes_within(server.address("a.copc.laz"), BOX, np.full(3, 12.0))[0]
+    assert sent <= 1.3 * needed
 
 
 def test_what_was_read_is_kept_in_the_folder_of_the_options(provider, context, server, out):
