@@ -37,6 +37,7 @@ from ..algorithms.stage import (
 )
 from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
+from .crs import WGS84
 from .crs_authority import crs_reader, text_of
 from .destinations import Made
 from .errors import as_processing_errors
@@ -92,6 +93,7 @@ class Job:
     clouds: list[Path] = field(default_factory=list)
     unmade: list[Made] = field(default_factory=list)  #: Outputs that need a layer which is not given
     layer: str = ""  #: Name of the layer that gives the cloud, "" for a file
+    systems: list[str] = field(default_factory=list)  #: Coordinate reference systems of files in place of layers
     reference: Optional[Path] = None
     box: Optional[np.ndarray] = None
     spacing: Optional[np.ndarray] = None  #: Sides (3,) of cubes that one point each is read of, in units of the clouds
@@ -183,18 +185,22 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Return the coordinate reference systems of the clouds, and the one that is given."""
         read = crs_reader(self.job.crs)
         systems = [read_extent(path, read, self.job.box)[2].plane for path in self.job.paths]
-        return [*systems, *names_of_crs(self.job.crs)]
+        has_file = any(isinstance(made.declared, TextFile) for made in self.job.wanted)
+        return [*systems, *self.job.systems, *names_of_crs(self.job.crs), *[WGS84] * has_file]
 
     def _job(self, parameters: dict, context: QgsProcessingContext) -> Job:
         """Return the checked parameters of a run; raise a ValueError where it can't succeed."""
         inputs = self.inputs
         tunables = self.tunables(parameters, context)
         wanted = [made for made in self.made if parameters.get(made.name) not in UNWANTED]
-        given = [one.name for one in inputs.layers if find_input_layer(self, one, parameters, context) is not None]
+        found = {one: find_input_layer(self, one, parameters, context) for one in inputs.layers}
+        given = [one.name for one, layer in found.items() if layer is not None]
         unmade = [made for made in wanted if made.only_with and made.only_with not in given]
         wanted = [made for made in wanted if made not in unmade]
         job = Job(tunables, wanted)
         job.unmade = unmade
+        # Others last as long as their layers.
+        job.systems = [layer.sourceCrs().authid() for one, layer in found.items() if one.read and layer is not None]
         if inputs.clouds:
             job.clouds = input_paths(self, inputs.several, parameters, context)
             job.layer = name_of_layer(parameters.get(INPUT))

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Callable, Optional
 
+import numpy as np
 from qgis.core import (
     Qgis,
     QgsApplication,
     QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsLineString,
     QgsMapLayer,
+    QgsProcessingContext,
     QgsProcessingFeatureSource,
     QgsUnitTypes,
 )
@@ -16,6 +21,7 @@ from qgis.PyQt.QtCore import QThread
 
 from .crs_authority import text_of
 
+WGS84 = "EPSG:4326"
 _NO_LENGTHS = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
 
 
@@ -75,6 +81,21 @@ def renew_in_main_thread(layers: Iterable[QgsMapLayer]) -> None:
     QgsCoordinateReferenceSystem.invalidateCache()
     for layer, text in named:
         layer.setCrs(crs_of(text))
+
+
+def to_degrees(
+    crs: QgsCoordinateReferenceSystem, context: QgsProcessingContext
+) -> Optional[Callable[[np.ndarray], np.ndarray]]:
+    """Return what turns coordinates (n, 2) in a CRS into longitudes and latitudes; None for an invalid one."""
+    change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(WGS84), context.transformContext())
+
+    def transformed(coordinates: np.ndarray) -> np.ndarray:
+        # As one line: a hundred times as fast as point by point.
+        line = QgsLineString(*np.asarray(coordinates).T.tolist())
+        line.transform(change)
+        return np.frombuffer(bytes(line.asWkb()), "<f8", offset=9).reshape(-1, 2)
+
+    return transformed if crs.isValid() else None
 
 
 def is_main_thread() -> bool:

@@ -7,26 +7,18 @@ from pathlib import Path
 from typing import Optional
 
 import numpy as np
-from qgis.core import (
-    QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsPointXY,
-    QgsProcessingContext,
-)
+from qgis.core import QgsCsException, QgsProcessingContext
 
 from ..algorithms.cloud.outputs import VPC as VPC_SUFFIX
 from ..algorithms.cloud.outputs import kind_of, same_file
 from ..algorithms.cloud.vpc import write_vpc
 from ..algorithms.stage import Monitor
 from ..algorithms.tiling.survey import Survey
+from .crs import to_degrees
 from .places import Place, place_of_cloud
 
 # The output that is the virtual point cloud.
 VPC = "VPC"
-
-# The system of positions in degrees, which virtual point clouds have beside those of the survey.
-WGS84 = "EPSG:4326"
 
 
 def place_of_survey(survey: Survey) -> Place:
@@ -72,14 +64,8 @@ def write_survey(
         If it can't be written.
     """
     crs, path = place_of_survey(survey).crs, _vpc_of(folder)
-    change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(WGS84), context.transformContext())
-
-    def to_degrees(coordinates: np.ndarray) -> np.ndarray:
-        points = [change.transform(QgsPointXY(*position)) for position in coordinates.tolist()]
-        return np.array([(point.x(), point.y()) for point in points])
-
     try:
-        write_vpc(tiles, path, to_degrees if crs.isValid() else None, survey.crs)
+        write_vpc(tiles, path, to_degrees(crs, context), survey.crs)
     except QgsCsException:
         # Coordinates far outside of the area of their system have no position in degrees.
         monitor.warn(

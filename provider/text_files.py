@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from qgis.core import QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingParameterFileDestination
+from qgis.core import (
+    QgsCsException,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingParameterFileDestination,
+)
 
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.stage import FileContent, MapFrame, Monitor, TextFile
+from .crs import to_degrees
 from .inputs import with_help
 from .layer_outputs import BETWEEN_CHECKS, UNWANTED
 from .places import Place
@@ -36,10 +42,20 @@ def write_text(
     target = algorithm.parameterAsFileOutput(parameters, name, context) if wanted else ""
     if not target:
         return {}
-    frame = MapFrame(place.to_map, place.code)
-    with replacing(Path(target)) as stream:
-        for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
-            if number % BETWEEN_CHECKS == 0:
-                monitor.progress(0.0)
-            stream.write(piece.encode() if isinstance(piece, str) else piece)
+    path = Path(target)
+    frame = MapFrame(place.to_map, place.code, to_degrees(place.crs, context), path.name.split(".")[0])
+    try:
+        with replacing(path) as stream:
+            for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
+                if number % BETWEEN_CHECKS == 0 or isinstance(piece, tuple):
+                    monitor.progress(0.0)
+                if isinstance(piece, tuple):
+                    # Into the working folder of the run, from which it is put in place with the file.
+                    path.with_name(piece[0]).write_bytes(piece[1])
+                else:
+                    stream.write(piece.encode() if isinstance(piece, str) else piece)
+    except QgsCsException as error:
+        raise ValueError(
+            f"The models lie outside of {place.crs.userFriendlyIdentifier()}; check the coordinate reference system."
+        ) from error
     return {name: target}

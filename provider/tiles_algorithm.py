@@ -37,6 +37,7 @@ from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
 from .clouds import CloudsParameter, survey_paths
+from .crs import WGS84
 from .crs_authority import crs_reader
 from .declared import on_command_line
 from .destinations import Made
@@ -66,7 +67,7 @@ from .rasters import write_mosaic
 from .run_log import about_run, complete_page, parameter_rows
 from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
-from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
+from .surveys import VPC, check_vpc, place_of_survey, write_survey
 from .text_files import write_text
 from .web import check_sizes, tell_sizes
 

@@ -413,7 +413,7 @@ def text_of(content: FileContent) -> str:
     """Return what a stage writes into a text file, in the first of its formats, on a map of meters."""
     stages = [stage for stage in ALL.values() if stage.files]
     called = [called for stage in stages for file in stage.files for called in file.formats]
-    frame = MapFrame(np.asarray, "EPSG:25832")
+    frame = MapFrame(np.asarray, "EPSG:25832", lambda coordinates: 1e-5 * coordinates)
     return "".join(str(piece) for one in dict.fromkeys(called) for piece in content.pieces(one, frame))
 
 

@@ -1,17 +1,19 @@
-"""Models of buildings for other programs: GLB."""
+"""Models of buildings for other programs: GLB and 3D Tiles."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from typing import Annotated
 
 import numpy as np
 
 from ..models3d.set_openings import WINDOW
 from ..models3d.solids import GROUND, ROOF, WALL
-from ..stage import InputLayer, MapFrame, TextFile, stage
+from ..stage import InputLayer, MapFrame, Param, TextFile, stage
 from .cityjson_faces import ENDINGS, read_cityjson
 from .exported_models import ExportedModel, exported_models
 from .gltf import glb
+from .tileset import tileset_pieces
 
 
 def glb_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) -> Iterator[bytes]:
@@ -27,7 +29,7 @@ def _layer(name: str, title: str, text: str) -> InputLayer:
 
 @stage(
     "3D",
-    tags="3D,export,GLB,glTF,web,browser,CityJSON,metadata",
+    tags="3D,export,GLB,glTF,3D Tiles,Cesium,tileset,web,browser,CityJSON,metadata",
     input_layers=(
         _layer("buildings", "Buildings", "Grounds of the buildings, with the attributes that files keep."),
         _layer("walls", "Walls", "Walls of the same run; an attribute 'building' says of which building."),
@@ -44,13 +46,34 @@ def _layer(name: str, title: str, text: str) -> InputLayer:
             read=read_cityjson,
         ),
     ),
-    files=(TextFile("glb", "GLB", {"GLB": (".glb",)}, glb_pieces),),
+    files=(
+        TextFile("glb", "GLB", {"GLB": (".glb",)}, glb_pieces),
+        TextFile("tileset", "Tileset", {"3D Tiles": (".json",)}, tileset_pieces),
+    ),
 )
-def export_models(buildings=None, walls=None, roofs=None, openings=None, cityjson=None, *, monitor=None):
+def export_models(
+    buildings=None,
+    walls=None,
+    roofs=None,
+    openings=None,
+    cityjson=None,
+    *,
+    geoid_height: Annotated[
+        float,
+        Param(
+            "For 3D Tiles, height of the geoid over the ellipsoid WGS 84, which is added to elevations: about 43 m in "
+            "the Netherlands, 45 to 50 m in Germany, -32 m in New York. Without it models lie under or over the "
+            "terrain of a globe by as much.",
+            within="[-120, 120] m",
+        ),
+    ] = 0.0,
+    monitor=None,
+):
     """Write models of buildings for browsers and other programs, from the layers of a run or from CityJSON.
 
     GLB is one file that browsers, Blender, PowerPoint and games open: meters, the axis y up, roofs, walls, grounds,
-    windows and doors in colors. Buildings and faces have their attributes as ``EXT_structural_metadata``.
+    windows and doors in colors. A tileset (3D Tiles 1.1) is for Cesium, QGIS's tiled scenes and other globes: GLB files
+    next to its JSON, simple levels of detail far away. Buildings and faces have their attributes in both.
 
     Parameters
     ----------
@@ -61,8 +84,8 @@ def export_models(buildings=None, walls=None, roofs=None, openings=None, cityjso
 
     Returns
     -------
-    glb : list of ExportedModel
-        The models for a file.
+    glb, tileset : list of ExportedModel
+        The models for the files.
 
     Raises
     ------
@@ -72,7 +95,13 @@ def export_models(buildings=None, walls=None, roofs=None, openings=None, cityjso
     Notes
     -----
     Coordinates in GLB have 24 bits, so they are relative to a round position, which the file names (``asset.extras``)
-    with its coordinate reference system.
+    with its coordinate reference system. Attributes are ``EXT_structural_metadata``, one table of buildings and one of
+    faces. Layers have the finest level only, CityJSON has all; the grounds of layers lack corners that walls have, so
+    that surfaces are closed without gaps from CityJSON only.
+
+    A tile of a quadtree has up to 100 buildings, in one file for each level of detail. Its geometric error is the
+    height by which the worst corner of a roof is off at that level (root mean square of the buildings). Positions on
+    the globe are those of QGIS in plan; heights are elevations and ``geoid_height``.
 
     References
     ----------
@@ -84,11 +113,11 @@ def export_models(buildings=None, walls=None, roofs=None, openings=None, cityjso
     >>> from lidar_buildings.algorithms.stage import LayerFeatures
     >>> ring = np.array([[0, 0, 3.0], [4, 0, 3], [4, 5, 3], [0, 5, 3], [0, 0, 3]])
     >>> roof = LayerFeatures([[ring]], {"building": ["town hall"], "slope": [0.0]})
-    >>> [(model.name, len(model.best)) for model in export_models(roofs=roof)]
+    >>> [(model.name, len(model.best)) for model in export_models(roofs=roof)[0]]
     [('town hall', 1)]
     """
     layers = {GROUND: buildings, WALL: walls, ROOF: roofs, WINDOW: openings, "": cityjson}
-    models, left_out = exported_models(layers)
+    models, left_out = exported_models(layers, geoid_height)
     if not models:
         raise ValueError(
             f"There is no model to export ({left_out} polygons without heights); give the layers of "
@@ -97,4 +126,4 @@ def export_models(buildings=None, walls=None, roofs=None, openings=None, cityjso
     if left_out:
         monitor.warn(f"{left_out} polygons have no heights and are left out.")
     monitor.inform(f"{len(models)} buildings with {sum(len(model.best) for model in models)} faces.")
-    return models
+    return models, models

@@ -43,11 +43,15 @@ class Face:
 
 @dataclass(frozen=True)
 class ExportedModel:
-    """A building: its name, its attributes, and its faces by level of detail ("" where layers have one level only)."""
+    """A building: its name, its attributes, and its faces by level of detail ("" where layers have one level only).
+
+    ``rise`` is the height (m) of the geoid over the ellipsoid there.
+    """
 
     name: str
     facts: dict[str, Any]
     levels: dict[str, list[Face]]
+    rise: float = 0.0
 
     def at(self, level: str) -> list[Face]:
         """Return the faces of the finest level up to the given one, or else of the simplest."""
@@ -59,7 +63,7 @@ class ExportedModel:
         return self.levels[max(self.levels)]
 
 
-def exported_models(layers: dict[str, Optional[LayerFeatures]]) -> tuple[list[ExportedModel], int]:
+def exported_models(layers: dict[str, Optional[LayerFeatures]], rise: float) -> tuple[list[ExportedModel], int]:
     """Return the models whose faces are in some layers, and the number of polygons without heights, which are left out.
 
     Parameters
@@ -68,6 +72,8 @@ def exported_models(layers: dict[str, Optional[LayerFeatures]]) -> tuple[list[Ex
         Polygons by the kind that they have where no attribute ``kind`` says it, "" where their slope does. An attribute
         ``building`` names the building, or else ``id``; ``lod`` is the level of detail. Grounds have the attributes of
         buildings.
+    rise : float
+        Height (m) of the geoid over the ellipsoid.
     """
     found: dict[str, dict[str, list[Face]]] = {}
     left_out = 0
@@ -77,7 +83,7 @@ def exported_models(layers: dict[str, Optional[LayerFeatures]]) -> tuple[list[Ex
                 left_out += 1
             else:
                 found.setdefault(name, {}).setdefault(level, []).append(face)
-    return [_model(name, levels) for name, levels in found.items()], left_out
+    return [_model(name, levels, rise) for name, levels in found.items()], left_out
 
 
 def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optional[Face]]]:
@@ -99,11 +105,11 @@ def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optio
         yield str(names[row]), str(levels[row]), Face(own, rings, facts) if has_heights else None
 
 
-def _model(name: str, levels: dict[str, list[Face]]) -> ExportedModel:
+def _model(name: str, levels: dict[str, list[Face]], rise: float) -> ExportedModel:
     """Return a building with the attributes of its ground, or of its first face where it has none."""
     best = levels[max(levels)]
     first = next((face for face in best if face.kind == GROUND), best[0])
-    return ExportedModel(name, first.facts, levels)
+    return ExportedModel(name, first.facts, levels, rise)
 
 
 def kind_by_slope(ring: np.ndarray) -> str:

@@ -38,6 +38,7 @@ from .inputs_outputs import (  # noqa: F401
     LayerFeatures,
     MapFrame,
     Measure,
+    Piece,
     Raster,
     RasterSurface,
     Report,

@@ -228,10 +228,16 @@ class RasterSurface:
 
 @dataclass(frozen=True)
 class MapFrame:
-    """Where local meters are on the map: what turns them (m, 3) into coordinates, and the CRS ("EPSG:7415" or "")."""
+    """Where local meters are on the map: what turns them (m, 3) into coordinates, and the CRS ("EPSG:7415" or "").
+
+    ``to_degrees``, where the CRS is known, turns coordinates (n, 2) into longitudes and latitudes of WGS 84. ``file``
+    is the name, without its ending, of the file that is written.
+    """
 
     to_map: Callable[[np.ndarray], np.ndarray]
     crs: str = ""
+    to_degrees: Optional[Callable[[np.ndarray], np.ndarray]] = None
+    file: str = "models"
 
     @property
     def units(self) -> tuple[float, float]:
@@ -256,8 +262,8 @@ class FileItem(Protocol):
         """Return the item of plain values, under a name."""
 
 
-# A part of a file.
-Piece = Union[str, bytes]
+# A part of a file, or the name and the content of another one that belongs next to it.
+Piece = Union[str, bytes, tuple[str, bytes]]
 
 
 @dataclass(frozen=True)

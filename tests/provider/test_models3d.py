@@ -6,7 +6,15 @@ import json
 
 import numpy as np
 import pytest
-from qgis.core import Qgis, QgsProcessingException, QgsVectorLayer
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsProcessingException,
+    QgsTiledSceneLayer,
+    QgsVector3D,
+    QgsVectorLayer,
+)
 from qgis.PyQt import sip
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
@@ -86,6 +94,36 @@ def test_layers_and_cityjson_are_exported_alike(house, provider, context, log, o
     same = (out / "m.city.json").rename(out / "same.glb")
     with pytest.raises(QgsProcessingException, match="is also an input"):
         run("exportmodels", {"CITYJSON": str(same), "GLB": str(same)}, context, log)
+
+
+def test_a_tileset_is_where_qgis_has_its_models(provider, context, log, out):
+    """Positions are those of QGIS's own way to coordinates from the middle of the Earth, by another formula."""
+    corners = [
+        [500_000, 5_700_000, 100],
+        [500_010, 5_700_000, 100],
+        [500_010, 5_700_008, 104],
+        [500_000, 5_700_008, 104],
+    ]
+    surface = {"type": "MultiSurface", "lod": "2.2", "boundaries": [[[0, 1, 2, 3]]]}
+    objects = {"town hall": {"type": "Building", "geometry": [surface]}}
+    head = {"type": "CityJSON", "version": "2.0", "metadata": {"referenceSystem": "urn:ogc:def:crs:EPSG::25832"}}
+    (out / "m.city.json").write_text(json.dumps({**head, "CityObjects": objects, "vertices": corners}))
+    given = {"CITYJSON": str(out / "m.city.json"), "GEOID_HEIGHT": 45.0, "TILESET": str(out / "t.json")}
+    run("exportmodels", given, context, log)
+    assert sorted(path.name for path in out.iterdir()) == ["m.city.json", "t-2.2.glb", "t.json"]
+    matrix = np.array(json.loads((out / "t.json").read_text())["root"]["transform"]).reshape(4, 4).T
+    placed = Glb((out / "t-2.2.glb").read_bytes()).triangles()[0].reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    systems = [QgsCoordinateReferenceSystem(f"EPSG:{code}") for code in (25832, 4978)]
+    change = QgsCoordinateTransform(*systems, context.transformContext())
+    true = [change.transform(QgsVector3D(x, y, z + 45)) for x, y, z in corners]
+    true = np.array([(one.x(), one.y(), one.z()) for one in true])
+    off = np.linalg.norm(placed[:, None] - true[None], axis=2)
+    assert off.min(axis=0).max() < 1e-3
+    assert off.min(axis=1).max() < 1e-3
+    layer = QgsTiledSceneLayer(f"url=file://{out / 't.json'}", "tiles", "cesiumtiles")
+    assert layer.isValid()
+    longitudes = layer.extent().xMinimum(), layer.extent().xMaximum()
+    assert longitudes[0] < 9.0001 < longitudes[1] < 9.001
 
 
 def test_a_name_without_a_format_is_refused(house, provider, context, out):

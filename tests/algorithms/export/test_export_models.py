@@ -39,14 +39,14 @@ def glb_of(models, frame=FRAME):
 
 def from_layers(models):
     buildings, walls, roofs, *_ = models
-    return export_models(buildings, walls, roofs)
+    return export_models(buildings, walls, roofs)[0]
 
 
 def from_cityjson(models, called=CITYJSON):
     features, code = read_cityjson("".join(cityjson_pieces(models[3], called, FRAME)))
     assert code == FRAME.crs
     rings = [[ring - [85_000, 447_000, 0] for ring in rings] for rings in features.geometries]
-    return export_models(cityjson=LayerFeatures(rings, features.columns))
+    return export_models(cityjson=LayerFeatures(rings, features.columns))[0]
 
 
 def assert_closed(triangles):
@@ -101,7 +101,7 @@ def test_windows_and_holes_stay_closed():
     footprints = LayerFeatures([[RINGS[0]]], {"id": ["a"]})
     facades, openings = LayerFeatures([front], {}), LayerFeatures([window], {"kind": ["window"]})
     buildings, walls, roofs, set_openings, _ = reconstruct_block(*scene(), footprints, facades, openings)
-    glb = glb_of(export_models(buildings, walls, roofs, set_openings))
+    glb = glb_of(export_models(buildings, walls, roofs, set_openings)[0])
     positions, _, _, _, material = glb.triangles()
     assert_closed(positions)
     across = np.cross(positions[:, 1] - positions[:, 0], positions[:, 2] - positions[:, 0]) / 2
@@ -127,7 +127,7 @@ def test_faces_of_other_programs_get_kinds_by_their_slope():
     )
     features, code = read_cityjson(text)
     assert code == "EPSG:7415"
-    (model,) = export_models(cityjson=features)
+    (model,) = export_models(cityjson=features)[0]
     assert (model.name, model.facts) == ("NL.1-0", {"year": 1900, "tags": '["a"]'})
     assert list(model.levels) == ["2"]
     assert [face.kind for face in model.best] == ["ground", "roof", "wall", "wall", "wall", "wall"]

@@ -27,6 +27,6 @@ def test_glb_passes_the_validator_of_khronos(tmp_path):
     x, y = np.array([0, 4, 4, 0, 0]), np.array([0, 0, 5, 5, 0])
     roof = LayerFeatures([[np.column_stack([x, y, 3.0 + 0.5 * x])]], {"building": ["Rathaus Größe"], "slope": [26.6]})
     path = tmp_path / "models.glb"
-    path.write_bytes(b"".join(glb_pieces(export_models(roofs=roof), "GLB", MapFrame(np.asarray, "EPSG:25832"))))
+    path.write_bytes(b"".join(glb_pieces(export_models(roofs=roof)[0], "GLB", MapFrame(np.asarray, "EPSG:25832"))))
     issues = json.loads(node("-e", SCRIPT, str(path)).stdout)
     assert issues["numErrors"] == issues["numWarnings"] == 0, issues["messages"]
