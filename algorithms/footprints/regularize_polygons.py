@@ -73,7 +73,7 @@ _FIELDS = (
             "Outlines of buildings: traced from rasters, by networks or from clouds, or drawn by hand.",
         ),
     ),
-    layers=(Layer("regularized", "Regularized footprints", "Polygon", _FIELDS),),
+    layers=(Layer("regularized", "Regularized footprints", "Polygon", _FIELDS, style="regularized"),),
 )
 def regularize_polygons(
     polygons,

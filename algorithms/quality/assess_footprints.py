@@ -22,7 +22,7 @@ from .building_maps import (
     rounded_down,
     within,
 )
-from .corner_matching import FARTHEST, Corners, automatic_tolerance, corners_of, nearest_corners
+from .corner_matching import FARTHEST, NO_LENGTH, Corners, automatic_tolerance, corners_of, nearest_corners
 from .polygon_comparison import hausdorff, polis, squareness
 
 FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "invented"
@@ -34,6 +34,9 @@ COLORS = {FOUND: BLUE, MERGED: "#228833", SPLIT: "#66ccee", MISSED: YELLOW, INVE
 
 # Rows of the table of the buildings that agree least: one screen.
 _WORST = 10
+
+# Distances (m) within which agencies want all corners of a building.
+_WITHIN = (0.3, 0.5, 1.0)
 
 _BUILDINGS = Layer(
     "buildings",
@@ -59,6 +62,7 @@ _BUILDINGS = Layer(
         Field("counterpart_corners", int, "corners of the best counterpart"),
         Field("matched", int, "its corners that the other layer has too"),
         Field("corner_distance", float, "mean distance of these", "m"),
+        Field("farthest_corner", float, "greatest distance of these, where all of its corners are matched", "m"),
         Field("squareness", float, "share of its edges' length along two directions square to each other, 0 to 1"),
         Field("counterpart_squareness", float, "the same of the best counterpart"),
     ),
@@ -82,6 +86,7 @@ _MEASURES = (
     Measure("footprint_corners", "Corners of the footprints that belong to buildings"),
     Measure("matched", "Corners matched"),
     Measure("corner_distance", "Median distance of matched corners", "m"),
+    *(Measure(f"within_{100 * most:.0f}_cm", f"Buildings with all corners within {most:g} m") for most in _WITHIN),
     Measure("shift_east", "Median shift of the footprints eastward", "m"),
     Measure("shift_north", "Median shift of the footprints northward", "m"),
     Measure("squareness", "Median squareness of the footprints"),
@@ -302,7 +307,8 @@ def _table(
     square = [np.array([squareness(rings) for rings in one.rings]) for one in (true, new)]
     iou = np.full(n, np.nan)
     np.fmax.at(iou, match.building, match.iou)
-    matched, distance = _of_buildings(corners, pairs, n)
+    matched, distance, farthest = _of_buildings(corners, pairs, n)
+    farthest[matched < counts[0]] = np.nan
     return {
         "id": np.arange(1, n + len(invented) + 1),
         "status": match.status + [INVENTED] * len(invented),
@@ -317,6 +323,7 @@ def _table(
         "counterpart_corners": np.append(_taken(counts[1], match.best, has_footprint, 0), zero),
         "matched": np.append(matched, zero),
         "corner_distance": np.append(distance, nothing),
+        "farthest_corner": np.append(farthest, nothing),
         "squareness": np.append(square[0], square[1][invented]),
         "counterpart_squareness": np.append(_taken(square[1], match.best, has_footprint, np.nan), nothing),
     }
@@ -343,13 +350,15 @@ def _distances(
 
 def _of_buildings(
     corners: tuple[Corners, Corners], pairs: tuple[np.ndarray, np.ndarray], n: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many corners of each building of the reference are matched, and their mean distance (m)."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return how many corners of each building of the reference are matched, their mean and greatest distance (m)."""
     building = corners[0].building[pairs[0]]
     distance = np.hypot(*(corners[1].xy[pairs[1]] - corners[0].xy[pairs[0]]).T)
     matched = np.bincount(building, minlength=n)
     mean = np.where(matched > 0, np.bincount(building, distance, n) / np.maximum(matched, 1), np.nan)
-    return matched, mean
+    farthest = np.full(n, np.nan)
+    np.fmax.at(farthest, building, distance)
+    return matched, mean, farthest
 
 
 def _counterparts(match: _Match, names: list[str]) -> list[str]:
@@ -381,6 +390,9 @@ def _values(table: dict, match: _Match, corners: tuple[Corners, Corners], moved:
         "footprint_corners": int(np.isin(corners[1].building, match.footprint).sum()),
         "matched": len(moved),
         "corner_distance": _median(np.hypot(*moved.T)),
+        **{
+            f"within_{100 * most:.0f}_cm": int((table["farthest_corner"] <= most + NO_LENGTH).sum()) for most in _WITHIN
+        },
         "shift_east": _median(moved[:, 0]),
         "shift_north": _median(moved[:, 1]),
         "squareness": _median(table["counterpart_squareness"][:n][has_footprint]),
@@ -453,6 +465,12 @@ def _corner_rows(values: dict[str, float]) -> list[Row]:
         ),
         Row("Matched", f"{values['matched']:,}", "Corners that both layers have."),
         Row("Distance", _meters(values["corner_distance"]), "Median distance between matched corners."),
+        *(
+            Row(
+                f"All within {most:g} m", f"{values[f'within_{100 * most:.0f}_cm']:,}", "Buildings with all corners so."
+            )
+            for most in _WITHIN
+        ),
         Row(
             "Shift eastward", _meters(values["shift_east"]), "Median displacement to the east; negative is to the west."
         ),

@@ -170,6 +170,7 @@ def test_a_feature_is_called_by_its_number_and_shows_what_matters_where_the_mous
         ("objects", "kind", {FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART}),
         ("assessed_footprints", "status", set(footprints.COLORS)),
         ("compared_surveys", "status", set(surveys.COLORS)),
+        ("regularized", "regularized", {0, 1}),
         ("compared_buildings", "status", {corners.FOUND, corners.MISSED, corners.NEW}),
     ],
 )

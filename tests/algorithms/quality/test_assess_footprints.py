@@ -136,6 +136,18 @@ def test_a_footprint_much_larger_than_its_building_is_invented():
     assert found[1]["covered"] == pytest.approx(1 / 3)
 
 
+def test_buildings_with_all_corners_within_a_distance_are_counted():
+    """Moved by 0.2, 0.45 and 0.9 m, with one corner 1.2 m off, without one of four corners, and missed."""
+    reference = [box(30 * at, 0) for at in range(6)]
+    corner = np.array([[0, 0], [1.2, 0], [0, 0], [0, 0], [0, 0]])
+    cut = [np.array([[120, 0], [130, 0], [130, 10], [120, 0.0]])]
+    moved = [box(0.2, 0), box(30, 0.45), box(60.9, 0), [reference[3][0] + corner], cut]
+    found, values = assessed(moved, reference, tolerance=2.0)
+    farthest = [row["farthest_corner"] for row in found]
+    assert farthest == pytest.approx([0.2, 0.45, 0.9, 1.2, np.nan, np.nan], nan_ok=True)
+    assert [values[f"within_{most}_cm"] for most in (30, 50, 100)] == [1, 2, 3]
+
+
 def test_names_are_those_of_the_layers():
     buildings, _ = assess_footprints(layer(box(0, 0), fid=[17]), layer(box(0, 0), id=["NL.12"]))
     assert rows(buildings)[0]["building"] == "NL.12"
