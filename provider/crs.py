@@ -11,6 +11,7 @@ from qgis.core import (
     QgsApplication,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
+    QgsCsException,
     QgsLineString,
     QgsMapLayer,
     QgsProcessingContext,
@@ -93,7 +94,11 @@ def to_degrees(
         # As one line: a hundred times as fast as point by point.
         line = QgsLineString(*np.asarray(coordinates).T.tolist())
         line.transform(change)
-        return np.frombuffer(bytes(line.asWkb()), "<f8", offset=9).reshape(-1, 2)
+        found = np.frombuffer(bytes(line.asWkb()), "<f8", offset=9).reshape(-1, 2)
+        if not np.isfinite(found).all():
+            # Of points QGIS says so itself.
+            raise QgsCsException("Coordinates lie outside of their system.")
+        return found
 
     return transformed if crs.isValid() else None
 

@@ -95,6 +95,12 @@ ROOF_FIELDS = (
     Field("slope", float, "slope", "°"),
     Field("azimuth", float, "direction that it faces, clockwise from north; empty for level faces", "°"),
     Field("area", float, "area, in the slope", "m²"),
+    Field(
+        "usable_area",
+        float,
+        "area times the share of its points that lie on it: without chimneys, windows and dormers that it lacks",
+        "m²",
+    ),
     Field("eave", float, "elevation of its lowest corner", "m"),
     Field("ridge", float, "elevation of its highest corner", "m"),
     Field("rms", float, "root mean square height of its points above or below it", "m"),
@@ -105,6 +111,10 @@ WALL_FIELDS = (
     Field("azimuth", float, "direction that it faces, clockwise from north", "°"),
     Field("area", float, "area", "m²"),
 )
+
+
+# Facts by plane, whose numbers JSON would make text.
+_OF_PLANES = ("face_rms", "face_on")
 
 
 @dataclass(frozen=True)
@@ -120,9 +130,9 @@ class NamedModel:
         """Return it as plain values, which JSON keeps to the last bit."""
         facts = {field.name: getattr(self.model, field.name) for field in fields(self.model) if field.name != "solids"}
         solids = {level: [_plain_solid(solid) for solid in some] for level, some in self.model.solids.items()}
-        face_rms = [(int(plane), float(rms)) for plane, rms in self.model.face_rms.items()]
+        of_planes = {name: list(getattr(self.model, name).items()) for name in _OF_PLANES}
         rings = [np.asarray(ring).tolist() for ring in self.rings]
-        model = {**facts, "face_rms": face_rms}
+        model = {**facts, **of_planes}
         return {"rings": rings, "model": model, "solids": solids, "attributes": self.attributes}
 
     @classmethod
@@ -132,7 +142,7 @@ class NamedModel:
             level: [Solid(**{**solid, "vertices": np.array(solid["vertices"])}) for solid in some]
             for level, some in record["solids"].items()
         }
-        facts = {**record["model"], "face_rms": {plane: rms for plane, rms in record["model"]["face_rms"]}}
+        facts = {**record["model"], **{name: dict(record["model"][name]) for name in _OF_PLANES}}
         rings = [np.array(ring) for ring in record["rings"]]
         return cls(name, rings, BuildingModel(**facts, solids=solids), record["attributes"])
 
@@ -224,8 +234,9 @@ def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
     if solid.kinds[face] != ROOF:
         return facts
     z = solid.vertices[solid.faces[face][0]][:, 2]
-    rms = one.model.face_rms.get(solid.planes[face], math.nan)
-    return {**facts, "slope": slope, "eave": float(z.min()), "ridge": float(z.max()), "rms": rms}
+    rms, on = (of_plane.get(solid.planes[face], math.nan) for of_plane in (one.model.face_rms, one.model.face_on))
+    usable = facts["area"] * on
+    return {**facts, "slope": slope, "usable_area": usable, "eave": float(z.min()), "ridge": float(z.max()), "rms": rms}
 
 
 def roof_type(solids: Sequence[Solid]) -> str:

@@ -66,6 +66,7 @@ class BuildingModel:
     weakest: float = 1.0
     n_points: int = 0  #: Number of points of the building
     face_rms: dict[int, float] = field(default_factory=dict)  #: Root mean square by plane of the best level (m)
+    face_on: dict[int, float] = field(default_factory=dict)  #: Share of the points of these planes that lie on them
 
     @property
     def best(self) -> list[Solid]:
@@ -261,8 +262,8 @@ def _enter(
     model.face_rms = {plane: root_mean_square(off) for plane, off in off_of.items()}
     inside = partition.label >= 0
     area = np.bincount(partition.label[inside], partition.cells.areas()[inside])
-    large = [off for plane, off in off_of.items() if area[plane] >= LARGE and len(off)]
-    model.weakest = min((_explained(off, top) for off in large), default=1.0)
+    model.face_on = {plane: _explained(off, top) for plane, off in off_of.items() if len(off)}
+    model.weakest = min((on for plane, on in model.face_on.items() if area[plane] >= LARGE), default=1.0)
 
 
 def _explained(off: np.ndarray, top: _Top) -> float:

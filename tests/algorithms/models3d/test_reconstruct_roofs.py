@@ -76,6 +76,21 @@ def test_faces_know_their_slope_direction_and_area():
     assert layers["buildings"].columns["volume"] == pytest.approx([12 * 8 * 5.6], rel=0.02)
 
 
+def test_usable_area_is_without_what_is_not_modelled():
+    """A chimney of 1 m² is no face: its area is that of its face still, but nothing can lie there."""
+    xyz, classes, footprints = scene(SHAPES["gable"], density=20.0)
+    slopes = reconstructed(xyz, classes, footprints)[0]["roofs"].columns
+    assert slopes["usable_area"] == pytest.approx(slopes["area"], rel=0.01)
+    is_chimney = (classes == 6) & (abs(xyz[:, :2] - (4.0, 2.0)) < (0.5, 0.5)).all(axis=1)
+    assert is_chimney.sum() == pytest.approx(20, abs=6)
+    xyz[is_chimney, 2] += 1.0
+    roofs = reconstructed(xyz, classes, footprints)[0]["roofs"].columns
+    assert roofs["area"] == pytest.approx(slopes["area"], rel=0.01)
+    lost = np.subtract(roofs["area"], roofs["usable_area"])
+    assert sorted(lost) == pytest.approx([0.0, np.hypot(1, 0.8)], abs=0.35)
+    assert roofs["azimuth"][lost.argmax()] == pytest.approx(180, abs=2)
+
+
 def test_simpler_levels_have_level_tops():
     scanned = scene(SHAPES["steps"])
     simple, _, _ = reconstructed(*scanned, level_of_detail="1.2", top_percentile=50.0)
