@@ -141,7 +141,7 @@ DAMAGED = {"type": "CityJSON", "vertices": [], "CityObjects": {"a": {"type": "Bu
     "text",
     ["", "[]", "{}", '{"type": "FeatureCollection"}', '{"type": "CityJSON"}', "[" * 100_000, json.dumps(DAMAGED)],
 )
-def test_what_is_no_cityjson_is_refused(text):
+def test_other_files_are_refused(text):
     with pytest.raises(ValueError, match="no sound CityJSON"):
         read_cityjson(text)
 

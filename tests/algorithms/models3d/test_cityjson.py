@@ -1,0 +1,72 @@
+"""CityJSON and CityJSONSeq pass the official schemas, version 2.0.2 (github.com/cityjson/specs, CC0), as published."""
+
+import gzip
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces
+from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
+from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
+
+jsonschema = pytest.importorskip("jsonschema", reason="the package jsonschema is not installed")
+
+SCHEMAS = Path(__file__).parents[2]
+
+
+def errors(whole, kind):
+    schema = json.loads(gzip.decompress((SCHEMAS / f"{kind}-2.0.2.schema.json.gz").read_bytes()))
+    return [error.message for error in jsonschema.Draft7Validator(schema).iter_errors(whole)]
+
+
+@pytest.fixture(scope="module")
+def models():
+    """Two houses with all levels of detail; one has a window and a door."""
+    x, y = np.mgrid[0:45:0.4, 0:20:0.4].reshape(2, -1)
+    is_gable, is_flat = ((abs(x - middle) < 4) & (abs(y - 9) < 5) for middle in (9, 34))
+    z = np.where(is_gable, 8 - 0.5 * abs(x - 9), np.where(is_flat, 4.0, 0.0))
+    rings = [np.array([[w, 4], [w + 8, 4], [w + 8, 14], [w, 14], [w, 4.0]]) for w in (5.0, 30.0)]
+    front = np.array([[5, 4, 0], [13, 4, 0], [13, 4, 6], [5, 4, 6], [5, 4, 0.0]])
+    window, door = (
+        np.array([[w, 4, low], [w + 1, 4, low], [w + 1, 4, high], [w, 4, high], [w, 4, low]])
+        for w, low, high in ((7, 2.0, 3.0), (10, 0.1, 2.2))
+    )
+    footprints = LayerFeatures([[ring] for ring in rings], {"id": ["a", "b"]})
+    openings = LayerFeatures([[window], [door]], {"kind": ["window", "door"]})
+    classes = np.where(is_gable | is_flat, 6, 2)
+    return reconstruct_block(np.column_stack([x, y, z]), classes, footprints, LayerFeatures([[front]], {}), openings)[
+        -1
+    ]
+
+
+@pytest.mark.parametrize("crs", ["EPSG:7415", ""])
+def test_cityjson_passes_the_schema(models, crs):
+    whole = json.loads("".join(cityjson_pieces(models, CITYJSON, MapFrame(np.asarray, crs))))
+    kinds = {
+        surface["type"]
+        for one in whole["CityObjects"].values()
+        for geometry in one["geometry"]
+        for surface in geometry["semantics"]["surfaces"]
+    }
+    assert kinds == {"RoofSurface", "WallSurface", "GroundSurface", "Window", "Door"}
+    assert errors(whole, "cityjson") == []
+
+
+def test_a_file_without_models_passes_the_schema():
+    whole = json.loads("".join(cityjson_pieces([], CITYJSON, MapFrame(np.asarray, "EPSG:7415"))))
+    assert errors(whole, "cityjson") == []
+
+
+def test_each_line_of_a_sequence_passes_its_schema(models):
+    head, *features = map(json.loads, "".join(cityjson_pieces(models, CITYJSON_SEQ, MapFrame(np.asarray))).splitlines())
+    assert errors(head, "cityjson") == []
+    assert len(features) == 2
+    assert [errors(feature, "cityjsonfeature") for feature in features] == [[], []]
+
+
+def test_the_schema_finds_faults(models):
+    whole = json.loads("".join(cityjson_pieces(models, CITYJSON, MapFrame(np.asarray))))
+    next(iter(whole["CityObjects"].values()))["geometry"][0]["semantics"]["surfaces"][0]["type"] = "Roof"
+    assert errors(whole, "cityjson")
