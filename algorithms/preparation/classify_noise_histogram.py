@@ -108,8 +108,8 @@ def classify_noise_histogram(
 
     Isolated points under the ground are found without histograms: single points or a few, ``UNDER_GROUND.depth`` m or
     more below the surface on all sides. They are not near others of the same height, as ground seen between leaves is.
-    More than three that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in
-    narrow yards points just below the ground are left alone.
+    More than three that share a level over meters, to the noise of surfaces, and are most of those around, are a floor,
+    seen through glass or in a shaft. Among crowns and in narrow yards points just below the ground are left alone.
 
     The filter of the paper (T_f) has no gap, no groups, no pooled cells and no isolated points; see 'Classify noise by
     height histogram (as published 2019)'.
@@ -148,7 +148,7 @@ def classify_noise_histogram(
     is_high[hanging[_in_group(points[hanging], max(1.0, DENSITY.link * spacing))]] = False
     if isolated:
         rest = np.flatnonzero(~(is_low | is_high))
-        is_low[rest[under_ground(points.take(rest, axis=0), spacing, monitor.part(0.7, 1.0))]] = True
+        is_low[rest[under_ground(points.take(rest, axis=0), spacing, sampling.noise, monitor.part(0.7, 1.0))]] = True
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))

@@ -137,7 +137,7 @@ def classify_noise_statistical(
         hanging = in_the_air(points[rest], spacing, monitor.part(0.5, 0.7))
         is_high[rest[hanging]] = True
         rest = rest[~hanging]
-        is_low[rest[under_ground(points[rest], spacing, monitor.part(0.7, 1.0))]] = True
+        is_low[rest[under_ground(points[rest], spacing, sampling.noise, monitor.part(0.7, 1.0))]] = True
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))

@@ -17,6 +17,7 @@ from ..packages import spatial
 from ..rules import rule
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
+from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 
@@ -32,8 +33,18 @@ class UnderGroundRules:
 UNDER_GROUND = UnderGroundRules()
 
 
-def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
-    """Return which points (n, 3), m, of a spacing (m) lie under the ground, alone or few together."""
+def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor) -> np.ndarray:
+    """Return which points (n,) lie under the ground, alone or without a common level.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates, m.
+    spacing, noise : float
+        Point spacing, and noise of surfaces, m.
+    monitor : Monitor
+        Receives progress.
+    """
     cell = float(np.sqrt(DENSITY.points_per_cell)) * spacing
     grid = fixed_grid_over(xyz, cell)
     cells, which = distinct(grid.number(xyz))
@@ -42,8 +53,9 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
     start = np.cumsum(n_points) - n_points
     size = max(SCENE.ground_within, 8 * cell)
 
-    found, is_floor = np.zeros((2, len(xyz)), bool)
+    found, is_floor, is_deep = np.zeros((3, len(xyz)), bool)
     n_found = np.zeros(len(cells), np.int64)
+    surface = _Surface.unknown(len(cells))
     near = np.arange(len(cells))
     # Points that are found hide others beneath the surface that they pull down.
     for turn in count(1):
@@ -53,22 +65,20 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
         )
         lowest[n_found == n_points] = np.nan
         # Below the surface close by, below the ground around, and not beside others of the same height.
-        surface = _close_surface(grid, cells, lowest, middle, near)
-        is_left = mask_of(len(cells), near)[which] & ~(found | is_floor)
-        rows = _deep(xyz, which, np.flatnonzero(is_left), surface)
+        surface.fit(grid, cells, lowest, middle, near)
+        _find_deep(is_deep, xyz, which, mask_of(len(cells), near), surface)
+        rows = np.flatnonzero(is_deep & ~(found | is_floor))
         around = _surroundings(lowest[n_found < n_points], xyz[rows], size)
-        close, is_smooth = surface.at(xyz, rows, which), surface.is_smooth[which[rows]]
-        rows = rows[_is_under(xyz[rows, 2], close, is_smooth, around)]
+        rows = rows[_is_under(xyz[rows, 2], surface.at(xyz, rows, which), surface.is_smooth[which[rows]], around)]
         near = near_cells(grid, cells, which[rows])
-        beside = np.flatnonzero(mask_of(len(cells), near)[which])
-        rows = rows[_at_level(xyz[rows], xyz[beside], cell) <= UNDER_GROUND.few]
+        beside = np.flatnonzero(mask_of(len(cells), near)[which] & ~found)
+        rows = rows[_at_level(xyz[rows], xyz[beside], cell, UNDER_GROUND.depth) <= UNDER_GROUND.few]
         monitor.progress(1 - 0.5**turn)
         if not len(rows):
             return found
         found[rows] = True
         low = np.flatnonzero(found)
-        # Points of a floor that is seen here and there lie apart.
-        is_floor[low] = _at_level(xyz[low], xyz[low], SCENE.ground_within / 2) > UNDER_GROUND.few
+        is_floor[low] = _on_floor(xyz[low], noise)
         found &= ~is_floor
         n_found = np.bincount(which[found], minlength=len(cells))
         near = near_cells(grid, cells, which[rows])
@@ -91,15 +101,13 @@ def _by_cell_and_height(which: np.ndarray, xyz: np.ndarray) -> np.ndarray:
     return ordered(key, x, y)
 
 
-def _deep(xyz: np.ndarray, which: np.ndarray, rows: np.ndarray, surface: _Surface) -> np.ndarray:
-    """Return those of the rows that lie deep below the surface, or where it is not known."""
-    is_deep = np.zeros(len(xyz), bool)
+def _find_deep(is_deep: np.ndarray, xyz: np.ndarray, which: np.ndarray, is_near: np.ndarray, surface: _Surface) -> None:
+    """Set which points of some cells lie deep below the surface, or where it is not known."""
 
     def work(part: np.ndarray) -> None:
         is_deep[part] = ~(xyz[part, 2] >= surface.at(xyz, part, which) - UNDER_GROUND.depth)
 
-    in_chunks(work, rows, ROWS_AT_ONCE, Monitor())
-    return rows[is_deep[rows]]
+    in_chunks(work, np.flatnonzero(is_near[which]), ROWS_AT_ONCE, Monitor())
 
 
 def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -110,9 +118,10 @@ def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
 
 def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: np.ndarray) -> np.ndarray:
     """Return which elevations (m) below the surface close by are below the ground, too."""
+    lowest = around[:, 0]
     # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
-    lowest_ground = np.where(is_smooth, around[:, 1], 2 * around[:, 0] - around[:, 2])
-    is_on_ground = is_smooth & (close <= around[:, 1] + UNDER_GROUND.depth)
+    lowest_ground = np.where(is_smooth, lowest, 2 * lowest - around[:, 2])
+    is_on_ground = is_smooth & (close <= lowest + UNDER_GROUND.depth)
     return (z < lowest_ground - UNDER_GROUND.depth) | is_on_ground
 
 
@@ -127,39 +136,39 @@ class _Surface:
     slope: np.ndarray
     is_smooth: np.ndarray
 
+    @classmethod
+    def unknown(cls, n_cells: int) -> _Surface:
+        """Return a surface that is known nowhere."""
+        return cls(np.full((n_cells, 3), np.nan), np.zeros((n_cells, 2)), np.zeros(n_cells, bool))
+
     def at(self, xyz: np.ndarray, rows: np.ndarray, which: np.ndarray) -> np.ndarray:
         """Return the elevation (m) of the surface at some points, ``which`` is the cell of each point."""
         cell = which[rows]
         off = xyz[rows, :2] - self.origin[cell, :2]
         return self.origin[cell, 2] + np.einsum("ij,ij->i", self.slope[cell], off)
 
+    def fit(self, grid: Grid, cells: np.ndarray, lowest: np.ndarray, middle: np.ndarray, wanted: np.ndarray) -> None:
+        """Fit the surface around the ``wanted`` cells (positions in ``cells``).
 
-def _close_surface(
-    grid: Grid, cells: np.ndarray, lowest: np.ndarray, middle: np.ndarray, wanted: np.ndarray
-) -> _Surface:
-    """Return the lowest surface around the ``wanted`` cells (positions in ``cells``).
+        ``lowest`` and ``middle`` are the points of each cell at these ranks in height. Up to three neighbors may hold
+        companions of a low point; most points of such a cell are on the surface, though, unlike those of a cell
+        beyond an edge or farther along a ditch.
+        """
 
-    ``lowest`` and ``middle`` are the points of each cell at these ranks in height. Up to three neighbors may hold
-    companions of a low point; most points of such a cell are on the surface, though, unlike those of a cell
-    beyond an edge or farther along a ditch.
-    """
-    origin, slope, is_smooth = np.full((len(cells), 3), np.nan), np.zeros((len(cells), 2)), np.zeros(len(cells), bool)
+        def work(part: np.ndarray) -> None:
+            around = [find_cells(cells, cells[part] + step) for step in grid.around]
+            beside = _beside(around, lowest, middle[part])
+            self.slope[part] = _slope(beside)
+            low = _flattened(beside, self.slope[part])
+            mid = _flattened(_beside(around, middle, middle[part]), self.slope[part])
+            smooth = low[:, 4:] - low[:, :4] <= UNDER_GROUND.depth
+            self.is_smooth[part] = smooth.any(axis=1)
+            base = np.take_along_axis(low, np.argmax(smooth, axis=1)[:, None], axis=1)[:, 0]
+            rough = low[:, 1] - (low[:, 3] - low[:, 1])
+            self.origin[part, :2] = middle[part, :2]
+            self.origin[part, 2] = np.minimum(np.where(self.is_smooth[part], base, rough), mid[:, 0])
 
-    def work(part: np.ndarray) -> None:
-        around = [find_cells(cells, cells[part] + step) for step in grid.around]
-        beside = _beside(around, lowest, middle[part])
-        slope[part] = _slope(beside)
-        low = _flattened(beside, slope[part])
-        mid = _flattened(_beside(around, middle, middle[part]), slope[part])
-        smooth = low[:, 4:] - low[:, :4] <= UNDER_GROUND.depth
-        is_smooth[part] = smooth.any(axis=1)
-        base = np.take_along_axis(low, np.argmax(smooth, axis=1)[:, None], axis=1)[:, 0]
-        rough = low[:, 1] - (low[:, 3] - low[:, 1])
-        origin[part, :2] = middle[part, :2]
-        origin[part, 2] = np.minimum(np.where(is_smooth[part], base, rough), mid[:, 0])
-
-    in_chunks(work, wanted, ROWS_AT_ONCE, Monitor())
-    return _Surface(origin, slope, is_smooth)
+        in_chunks(work, wanted, ROWS_AT_ONCE, Monitor())
 
 
 def _surroundings(levels: np.ndarray, points: np.ndarray, size: float) -> np.ndarray:
@@ -169,8 +178,9 @@ def _surroundings(levels: np.ndarray, points: np.ndarray, size: float) -> np.nda
     order = _by_cell_and_height(which, levels)
     n_levels = np.bincount(which)
     start = np.cumsum(n_levels) - n_levels
-    # Levels that low points have pulled down are few.
-    chosen = levels[order[start + np.minimum(UNDER_GROUND.few, n_levels // 2)]]
+    # A field of low points pulls many levels down, and a forest shows few at the ground. As many as the square root of
+    # twice their number are passed over: more in large cells, but a smaller share. Fitted on simulated towns.
+    chosen = levels[order[start + np.sqrt(2 * n_levels - 2).astype(np.int64)]]
     number = grid.number(points)
     beside = _beside([find_cells(cells, number + step) for step in grid.around], chosen, points)
     return _flattened(beside, _slope(beside))
@@ -213,8 +223,18 @@ def _middle(values: np.ndarray) -> np.ndarray:
     return np.where(known > 0, middle, 0.0)
 
 
-def _at_level(points: np.ndarray, others: np.ndarray, reach: float) -> np.ndarray:
-    """Return how many of others (m, 3) lie at the height of points (n, 3), up to a distance ``reach`` (m)."""
+def _on_floor(low: np.ndarray, noise: float) -> np.ndarray:
+    """Return which low points (n, 3), m, lie on a floor that is seen here and there; ``noise`` (m) is that of surfaces.
+
+    Points of a floor differ by noise alone, and most low points around are on it. Multipath comes at all depths.
+    """
+    reach = SCENE.ground_within / 2
+    at_level = _at_level(low, low, reach, 2 * SURFACES.on_plane * noise)
+    return (at_level > UNDER_GROUND.few) & (2 * at_level >= _at_level(low, low, reach, np.inf))
+
+
+def _at_level(points: np.ndarray, others: np.ndarray, reach: float, height: float) -> np.ndarray:
+    """Return how many of others (m, 3) lie up to ``reach`` (m) in plan and ``height`` (m) from points (n, 3)."""
     # Heights are stretched so that the neighborhood is a flat disk.
-    stretch = [1.0, 1.0, reach / UNDER_GROUND.depth]
+    stretch = [1.0, 1.0, reach / height]
     return spatial.cKDTree(others * stretch).query_ball_point(points * stretch, reach, return_length=True)

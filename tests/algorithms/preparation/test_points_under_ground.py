@@ -58,7 +58,7 @@ def test_depth_under_open_ground(rng, density, slope):
     xyz = plain(rng, density, slope=slope)
     plan = np.stack(np.meshgrid([20.0, 40, 60], [20.0, 40, 60]), axis=-1).reshape(-1, 2)
     low = np.column_stack([plan, slope * plan[:, 0] - 0.8 - np.arange(9)])
-    found = under_ground(np.concatenate([xyz, low]), density**-0.5, Monitor())
+    found = under_ground(np.concatenate([xyz, low]), density**-0.5, 0.02, Monitor())
     assert found[-9:].all()
     assert not found[:-9].any()
 
@@ -71,14 +71,14 @@ def test_pits_ditches_steps_and_ground_between_leaves_stay(rng):
     xyz[x > 70, 2] -= 4
     in_wood = (x > 30) & (x < 60) & (y < 35) & (rng.random(len(x)) < 0.85)
     xyz[in_wood, 2] += rng.uniform(4, 14, in_wood.sum())
-    assert under_ground(xyz, 8.0**-0.5, Monitor()).mean() <= 2e-4
+    assert under_ground(xyz, 8.0**-0.5, 0.02, Monitor()).mean() <= 2e-4
 
 
 def test_points_that_are_ground_for_each_other_stay(rng):
     """Four points of a hollow, seen here and there between leaves: 0.8 m apart and 0.2 m higher and lower."""
     hollow = np.array([[40.0, 40, -0.8], [40.8, 40, -0.6], [40.8, 40.8, -0.8], [40, 40.8, -0.6]])
     alone = np.array([[60.0, 60, -0.8]])
-    found = under_ground(np.concatenate([plain(rng, 16.0), hollow, alone]), 0.25, Monitor())
+    found = under_ground(np.concatenate([plain(rng, 16.0), hollow, alone]), 0.25, 0.02, Monitor())
     assert not found[-5:-1].any()
     assert found[-1]
 
@@ -89,8 +89,18 @@ def test_points_that_share_a_level_are_a_floor_seen_through_glass(rng):
     along = np.linspace(0, 5, 9)
     floor = np.column_stack([18 + along, 20 + 0.3 * rng.random(9), -3 + rng.uniform(-0.025, 0.025, 9)])
     spread = floor - [0, 0, 1] * np.linspace(0, 4, 9)[:, None]
-    assert not under_ground(np.concatenate([deck, floor]), 10.0**-0.5, Monitor()).any()
-    assert under_ground(np.concatenate([deck, spread]), 10.0**-0.5, Monitor())[-9:].all()
+    assert not under_ground(np.concatenate([deck, floor]), 10.0**-0.5, 0.02, Monitor()).any()
+    assert under_ground(np.concatenate([deck, spread]), 10.0**-0.5, 0.02, Monitor())[-9:].all()
+
+
+@pytest.mark.parametrize("density", [8.0, 60.0])
+def test_points_at_all_depths_under_a_surface_that_reflects_are_no_floor(rng, density):
+    """Sixty points over 12 m pull the ground of their cells down, and some of any four are at one height by chance."""
+    xyz = plain(rng, density, 60.0)
+    low = np.column_stack([rng.uniform(24, 36, (60, 2)), rng.uniform(-6, -0.8, 60)])
+    found = under_ground(np.concatenate([xyz, low]), density**-0.5, 0.02, Monitor())
+    assert found[-60:].mean() > 0.75
+    assert not found[:-60].any()
 
 
 @pytest.mark.parametrize("height_step", [0.0, 0.3])
@@ -100,11 +110,11 @@ def test_order_changes_nothing_where_heights_are_equal(rng, height_step):
     if height_step:
         xyz[:, 2] = height_step * np.round(xyz[:, 2] / height_step)
     spacing = 4.0**-0.5
-    found = under_ground(xyz, spacing, Monitor())
+    found = under_ground(xyz, spacing, 0.02, Monitor())
     assert found.any()
     for _ in range(3):
         order = rng.permutation(len(xyz))
-        assert (under_ground(xyz[order], spacing, Monitor()) == found[order]).all()
+        assert (under_ground(xyz[order], spacing, 0.02, Monitor()) == found[order]).all()
 
 
 def test_position_and_order_change_nothing(rng):
