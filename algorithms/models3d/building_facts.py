@@ -230,13 +230,14 @@ def _eave(solids: Sequence[Solid]) -> float:
 def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
     """Return what a model says of one of its faces, by the fields of the face's layer but its number."""
     slope, azimuth = slope_and_azimuth(solid, face)
-    facts = {"building": one.name, "azimuth": azimuth, "area": face_area(solid, face)}
+    area = face_area(solid, face)
+    facts = {"building": one.name, "azimuth": azimuth, "area": area}
     if solid.kinds[face] != ROOF:
         return facts
     z = solid.vertices[solid.faces[face][0]][:, 2]
     rms, on = (of_plane.get(solid.planes[face], math.nan) for of_plane in (one.model.face_rms, one.model.face_on))
-    usable = facts["area"] * on
-    return {**facts, "slope": slope, "usable_area": usable, "eave": float(z.min()), "ridge": float(z.max()), "rms": rms}
+    heights = {"eave": float(z.min()), "ridge": float(z.max())}
+    return {**facts, "slope": slope, "usable_area": area * on, **heights, "rms": rms}
 
 
 def roof_type(solids: Sequence[Solid]) -> str:
