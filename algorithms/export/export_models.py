@@ -1,19 +1,24 @@
-"""Models of buildings for other programs: GLB and 3D Tiles."""
+"""Models of buildings for browsers and other programs: GLB, a page that shows it, and 3D Tiles."""
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Collection, Iterator
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 
 from ..models3d.set_openings import WINDOW
 from ..models3d.solids import GROUND, ROOF, WALL
-from ..stage import InputLayer, MapFrame, Param, TextFile, stage
+from ..stage import InputLayer, MapFrame, Param, Piece, TextFile, stage
 from .cityjson_faces import ENDINGS, read_cityjson
 from .exported_models import ExportedModel, exported_models
 from .gltf import glb
 from .tileset import tileset_pieces
+
+# The page around a file, with "@GLB@" in its place.
+_PAGE = Path(__file__).with_name("page.html")
 
 
 def glb_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) -> Iterator[bytes]:
@@ -21,6 +26,14 @@ def glb_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) 
     origin = frame.to_map(np.zeros((1, 3)))[0].tolist()
     finest = max(level for model in models for level in model.levels)
     yield glb(list(models), finest, np.asarray, extras={"crs": frame.crs, "origin": origin})
+
+
+def page_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) -> Iterator[Piece]:
+    """Yield a page that needs nothing else, with the GLB file in it."""
+    before, after = _PAGE.read_text(encoding="utf-8").split("@GLB@")
+    yield before
+    yield from map(base64.b64encode, glb_pieces(models, called, frame))
+    yield after
 
 
 def _layer(name: str, title: str, text: str) -> InputLayer:
@@ -48,6 +61,7 @@ def _layer(name: str, title: str, text: str) -> InputLayer:
     ),
     files=(
         TextFile("glb", "GLB", {"GLB": (".glb",)}, glb_pieces),
+        TextFile("page", "Web page", {"HTML": (".html",)}, page_pieces),
         TextFile("tileset", "Tileset", {"3D Tiles": (".json",)}, tileset_pieces),
     ),
 )
@@ -71,9 +85,10 @@ def export_models(
 ):
     """Write models of buildings for browsers and other programs, from the layers of a run or from CityJSON.
 
-    GLB is one file that browsers, Blender, PowerPoint and games open: meters, the axis y up, roofs, walls, grounds,
-    windows and doors in colors. A tileset (3D Tiles 1.1) is for Cesium, QGIS's tiled scenes and other globes: GLB files
-    next to its JSON, simple levels of detail far away. Buildings and faces have their attributes in both.
+    GLB is one file that Blender, PowerPoint and games open: meters, the axis y up, roofs, walls, grounds, windows and
+    doors in colors. The web page shows it in any browser, from a disk or a mail, without a server or a connection; a
+    click shows the attributes of a building. A tileset (3D Tiles 1.1) is for Cesium, QGIS's tiled scenes and other
+    globes: GLB files next to its JSON, simple levels of detail far away. Buildings and faces keep their attributes.
 
     Parameters
     ----------
@@ -84,7 +99,7 @@ def export_models(
 
     Returns
     -------
-    glb, tileset : list of ExportedModel
+    glb, page, tileset : list of ExportedModel
         The models for the files.
 
     Raises
@@ -126,4 +141,4 @@ def export_models(
     if left_out:
         monitor.warn(f"{left_out} polygons have no heights and are left out.")
     monitor.inform(f"{len(models)} buildings with {sum(len(model.best) for model in models)} faces.")
-    return models, models
+    return models, models, models

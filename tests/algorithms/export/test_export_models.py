@@ -1,12 +1,14 @@
 """Exported files are read back: surfaces closed, with the volumes and areas of the solids they were made of."""
 
+import base64
 import json
+import re
 
 import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
-from lidar_buildings.algorithms.export.export_models import export_models, glb_pieces
+from lidar_buildings.algorithms.export.export_models import export_models, glb_pieces, page_pieces
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces
 from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
@@ -93,6 +95,15 @@ def test_buildings_and_faces_keep_their_attributes(models, source):
 def test_glb_names_where_it_is(models):
     extras = glb_of(from_layers(models)).root["asset"]["extras"]
     assert extras == {"crs": "EPSG:28992", "origin": [85_000.0, 447_000.0, 0.0]}
+
+
+def test_page_has_the_file_in_it(models):
+    exported = from_layers(models)
+    page = "".join(part if isinstance(part, str) else part.decode() for part in page_pieces(exported, "HTML", FRAME))
+    (raw,) = glb_pieces(exported, "GLB", FRAME)
+    (found,) = re.findall(r'<script id="glb" type="text/plain">(.*)</script>', page)
+    assert base64.b64decode(found, validate=True) == raw
+    assert not re.findall(r"(?:src|href)=|https?:|import|fetch", page.replace(found, "")), "it needs nothing else"
 
 
 def test_windows_and_holes_stay_closed():
