@@ -7,7 +7,7 @@ those that cost least, by the evidence of each and how alike the houses between 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Callable
 
@@ -122,6 +122,8 @@ def split_row(
     while waiting:
         number = waiting.pop()
         is_own = house == number
+        if is_own.sum() * lattice.step**2 < 2 * ROWS.least_area:
+            continue
         row = max((view.best_row(is_own) for view in views), key=lambda row: row.saved)
         if row.saved > 0:
             count = int(house.max())
@@ -215,18 +217,25 @@ class _View:
 
     def best_row(self, is_own: np.ndarray) -> _Row:
         """Return the row with the greatest saving in a part of a building (nodes of the lattice); 0 if none pays."""
-        inside = ndimage.binary_closing(is_own.ravel()[self.of_grid], iterations=self.closed)
+        own = is_own.ravel()[self.of_grid]
+        used = [np.flatnonzero(own.any(axis=axis)) for axis in (1, 0)]
+        # Closing needs its reach on all sides, and the nearest node of the lattice may be one farther.
+        start = tuple(max(0, int(at[0]) - self.closed - 1) for at in used)
+        box = tuple(slice(low, int(at[-1]) + self.closed + 2) for low, at in zip(start, used))
+        part = replace(self, strength=self.strength[box], beside=self.beside[box])
+        inside = ndimage.binary_closing(own[box], iterations=self.closed)
         runs = _Runs.of(inside)
-        sums = self._sums(runs, inside)
+        sums = part._sums(runs, inside)
         pays = self._pays(runs, *sums)
         found = [(*_chosen_walls(pays[chain], runs.length[chain], self.step), chain) for chain in runs.chains()]
         saved, walls, chain = max(found, key=lambda one: one[0], default=(0, *np.zeros((2, 0), np.int64)))
         house = runs.houses(chain, walls, self.step)
         if saved <= 0 or not house.any():
             return _Row(0.0, np.zeros((0, 2, 2)), np.zeros(is_own.shape, np.int64))
-        ends = np.column_stack([runs.first[chain[walls]], runs.last[chain[walls]] - 1])
-        label = spread_out(np.where(inside, 1 + house[runs.number], 0))[self.of_lattice] - 1
-        places = runs.column[chain[0]] + self._places(sums[1][chain], walls)
+        nodes = tuple(np.clip(at - low, 0, n - 1) for at, low, n in zip(self.of_lattice, start, inside.shape))
+        label = spread_out(np.where(inside, 1 + house[runs.number], 0))[nodes] - 1
+        ends = np.column_stack([runs.first[chain[walls]], runs.last[chain[walls]] - 1]) + start[0]
+        places = start[1] + runs.column[chain[0]] + self._places(sums[1][chain], walls)
         return _Row(saved, self.in_plan(ends, places), label.reshape(is_own.shape))
 
     def _sums(self, runs: _Runs, inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
