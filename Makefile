@@ -19,6 +19,9 @@ CORE_PYTHON := $(VENV)/bin/python
 CORE_TESTS := tests/algorithms tests/test_contract.py algorithms
 OF_TESTS := 'lazrs>=0.6,<0.9' 'pytest>=8,<10' 'pytest-xdist>=3.5,<4' 'hypothesis==6.*'
 
+# Collecting the tests takes three times as long where they are not kept compiled.
+export PYTHONDONTWRITEBYTECODE :=
+
 ifdef PROFILE
 export QGIS_CUSTOM_CONFIG_PATH := $(abspath $(PROFILE))
 endif
@@ -33,7 +36,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install pictures demo test test-core test-pythons lint bench fuzz docs package clean
+.PHONY: help install pictures demo test test-core test-pythons check lint bench fuzz docs package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -53,6 +56,9 @@ test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but re
 test-pythons: ## the tests of the core with the oldest and the newest Python and numpy, in Debian's own builds (in .pythons)
 	@scripts/other_python.sh bullseye 3.9 .pythons 'numpy==1.24.*' 'scipy==1.10.*' 'scikit-learn==1.2.*' 'laspy==2.5.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
 	@scripts/other_python.sh trixie 3.13 .pythons 'numpy>=2' scipy scikit-learn 'laspy<3' 'pysfcgal==2.3.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
+
+check: $(VENV)/made ## what changed since main, in half a minute: ruff, mypy, the tests of the modules and their contract
+	@$(VENV)/bin/python scripts/check.py
 
 lint: $(VENV)/made ## ruff, mypy, spelling, and words that make text hard to read
 	@$(VENV)/bin/ruff check .

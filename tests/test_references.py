@@ -33,7 +33,12 @@ def sections(path: Path) -> list[str]:
     ]
 
 
-MODULES = [path for path in sorted((ROOT / "algorithms").rglob("*.py")) if sections(path)]
+# Parsing all modules would take two seconds of every collection.
+MODULES = [
+    path
+    for path in sorted((ROOT / "algorithms").rglob("*.py"))
+    if re.search(r"^ *References\n *-+\n", path.read_text(encoding="utf-8"), re.MULTILINE)
+]
 
 
 def test_sections_are_found():
@@ -42,7 +47,9 @@ def test_sections_are_found():
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: path.stem)
 def test_every_reference_has_a_key_of_the_list(path):
-    for section in sections(path):
+    found = sections(path)
+    assert found
+    for section in found:
         cited = re.findall(r"\[([a-z]+\d{4})\]", section)
         assert len(cited) >= max(1, len(re.findall(r"\b(?:19|20)\d\d(?:\.|\),) ", section)))
         assert set(cited) <= KEYS
