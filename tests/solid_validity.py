@@ -197,7 +197,7 @@ def assert_valid_objects(objects, vertices, transform):
     for thing in objects.values():
         assert thing["type"] == "Building"
         for geometry in thing["geometry"]:
-            assert geometry["lod"] in ("1.2", "1.3", "2.2", "3")
+            assert geometry["lod"] in ("1.2", "1.3", "2.0", "2.2", "3")
             for shell, values in shells_of(geometry):
                 used |= {v for rings in shell for ring in rings for v in ring}
                 surfaces = geometry["semantics"]["surfaces"]

@@ -55,7 +55,7 @@ _EAVE = 0.25
 BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
     Field("building", str, "footprint below it: its attribute id, or its number", of="footprints"),
-    Field("level", str, "level of detail that it has: 1.2, 1.3 or 2.2"),
+    Field("level", str, "level of detail that it has: 1.2, 1.3, 2.0 or 2.2"),
     Field("reason", str, "why it has a simpler level than was asked for, empty where it has that one"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other"),
     Field("ground", float, "elevation of its base, near that of the lowest ground beside it", "m"),

@@ -11,12 +11,18 @@ import numpy as np
 from ..geometry.groups import components
 from .mending import LARGE, mended
 from .roof_partition import FARTHEST, Partition, covered_share, divide_footprint, empty_partition
-from .roof_planes import RoofPlanes, find_roof_planes, with_level_patches
+from .roof_planes import RoofPlanes, find_roof_planes, selected_planes, with_level_patches
 from .roof_points import HeightsAround, are_on_roof, distances, root_mean_square, share_off
 from .solids import Solid
 
-# Levels of detail, from the simplest.
-LEVELS = ("1.2", "1.3", "2.2")
+# Levels of detail, from the simplest. The one without dormers takes as long as the finest, so it is made only where it
+# is asked for.
+COARSE = "2.0"
+LEVELS = ("1.2", "1.3", COARSE, "2.2")
+
+# Area (m²) of the smallest plane without dormers, as the level is defined, and its least share of the largest plane:
+# roofs of small buildings keep all their sides.
+_COARSE_AREA, _COARSE_SHARE = 10.0, 0.5
 
 # Percentile of the heights of roof points that is the ridge's, as in 'Extract footprints': chimneys rise above it.
 _RIDGE = 98
@@ -105,13 +111,15 @@ def model_building(
         model.reason = "its roof is not above the ground beside it"
         return model
     for level in LEVELS[: LEVELS.index(settings.level) + 1]:
+        if level == COARSE != settings.level:
+            continue
         partition, why = _partition(top, level)
         if partition is not None:
             if level == "1.3" and len(partition.coefficients) == 1 and "1.2" in model.solids:
                 # One part for all is the simplest level.
                 solids, why = [replace(solid) for solid in model.solids["1.2"]], ""
             else:
-                solids, why = mended(partition, base, local, limits if level == "2.2" else None, settings.percentile)
+                solids, why = mended(partition, base, local, limits if level >= COARSE else None, settings.percentile)
             if not why:
                 above, label = _above_model(top, partition)
                 why = _worse(model, level, top, above)
@@ -157,6 +165,8 @@ def _partition(top: _Top, level: str) -> tuple[Optional[Partition], str]:
     """Return the partition of the roof at a level of detail, or None with the reason."""
     if level == "1.2":
         return _single_top(top)
+    if level == COARSE:
+        top = replace(top, planes=_without_dormers(top.planes, top.settings.spacing))
     roof = top.roof
     if roof is None:
         return None, "no roof plane was found"
@@ -173,6 +183,12 @@ def _single_top(top: _Top) -> tuple[Optional[Partition], str]:
         return None, "its footprint has no area"
     coefficients = np.array([[0.0, 0.0, height]])
     return Partition(cells, np.where(inside, 0, -1), coefficients, np.zeros((len(cells), 1))), ""
+
+
+def _without_dormers(planes: RoofPlanes, spacing: float) -> RoofPlanes:
+    """Return the planes that are no dormers, chimneys and other small parts of a roof."""
+    area = np.bincount(planes.label[planes.label >= 0], minlength=len(planes)) * spacing**2
+    return selected_planes(planes, area >= min(_COARSE_AREA, _COARSE_SHARE * area.max(initial=0.0)))
 
 
 def _level_tops(top: _Top, roof: Partition) -> Partition:

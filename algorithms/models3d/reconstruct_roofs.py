@@ -67,7 +67,7 @@ _TopPercentile = Annotated[
 
 @stage(
     "3D",
-    tags="3D,LoD1.2,LoD1.3,LoD2.2,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,CityGML,OBJ,3DBAG,ridge,"
+    tags="3D,LoD1.2,LoD1.3,LoD2.0,LoD2.2,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,CityGML,OBJ,3DBAG,ridge,"
     "gable,hip,dormer",
     input_layers=(
         InputLayer(
@@ -96,8 +96,9 @@ def reconstruct_roofs(
     level_of_detail: Annotated[
         str,
         Param(
-            "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.2: the planes of the "
-            "roof. Files have the simpler levels too.",
+            "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.0: the large planes of "
+            "the roof, without dormers, chimneys and parts of under 10 m²; 2.2: all planes. Files have the simpler "
+            "levels too, 2.0 only where it is chosen.",
             choices=LEVELS,
         ),
     ] = "2.2",
@@ -123,7 +124,7 @@ def reconstruct_roofs(
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
-    """Model buildings as closed solids of roof planes, walls and a level ground, at levels of detail 1.2, 1.3 and 2.2.
+    """Model buildings as closed solids of roof planes, walls and a level ground, at levels of detail from 1.2 to 2.2.
 
     Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above
     another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost

@@ -79,7 +79,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     label = _chosen_by_neighborhood(xyz, neighbors, label, tolerance)
     planes = planes_through(xyz, _large(label, min_points))
     # Points change planes after these have grown, and the last fit may turn a plane upright.
-    return _selected_planes(planes, planes.cosine >= growth.least_upward)
+    return selected_planes(planes, planes.cosine >= growth.least_upward)
 
 
 def with_level_patches(
@@ -114,7 +114,7 @@ def with_level_patches(
     return RoofPlanes(np.concatenate([planes.coefficients, level]), label)
 
 
-def _selected_planes(planes: RoofPlanes, is_kept: np.ndarray) -> RoofPlanes:
+def selected_planes(planes: RoofPlanes, is_kept: np.ndarray) -> RoofPlanes:
     """Return the planes that are kept (m,), with their points."""
     number = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, -1), -1)
     return RoofPlanes(planes.coefficients[is_kept], number[planes.label])

@@ -1,5 +1,6 @@
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -104,6 +105,34 @@ def test_simpler_levels_have_level_tops():
     assert [one["lod"] for one in geometry] == ["1.2", "1.3"]
     merged, _, _ = reconstructed(*scanned, level_of_detail="1.3", min_step=3.5)
     assert len(merged["roofs"]) == 1
+
+
+@pytest.mark.parametrize("name", ["dormer", "gable", "hip"])
+def test_level_without_dormers_has_the_sides_of_the_roof(name):
+    """A dormer of 4 m² is at level 2.2 only; below it the roof goes on."""
+    scanned = scene(SHAPES[name], density=20.0)
+    layers, files, _ = reconstructed(*scanned, level_of_detail="2.0")
+    assert layers["buildings"].columns["level"] == ["2.0"]
+    plain = SHAPES["gable" if name == "dormer" else name]
+    fine = reconstructed(*scene(plain, density=20.0))[0]
+    assert len(layers["roofs"]) == len(fine["roofs"]) == (4 if name == "hip" else 2)
+    assert layers["buildings"].columns["volume"] == pytest.approx(fine["buildings"].columns["volume"], rel=0.01)
+    text = written(files, "cityjson", CITYJSON)
+    assert_valid_cityjson(text)
+    assert [geometry["lod"] for one in json.loads(text)["CityObjects"].values() for geometry in one["geometry"]] == [
+        "1.2",
+        "1.3",
+        "2.0",
+    ]
+    assert len(reconstructed(*scanned)[0]["roofs"]) == len(fine["roofs"]) + (name == "dormer")
+
+
+def test_level_without_dormers_keeps_the_sides_of_small_roofs():
+    shape = replace(
+        SHAPES["gable"], outline=SHAPES["gable"].outline * 0.3, top=lambda x, y: 2 + 0.8 * np.minimum(y, 2.4 - y)
+    )
+    layers, _, _ = reconstructed(*scene(shape, density=40.0), level_of_detail="2.0")
+    assert len(layers["roofs"]) == 2
 
 
 def test_order_of_points_and_far_coordinates_change_nothing():
