@@ -73,7 +73,8 @@ def test_glb_has_the_volumes_and_areas_of_the_solids(models, source):
         volume = np.einsum("ij,ij->", positions[of_one, 0], across[of_one]) / 3
         assert volume == pytest.approx(sum(solid.volume for solid in one.model.best), rel=1e-5)
     np.testing.assert_allclose(area[(material == 0) & (building == 0)].sum(), 80 * np.sqrt(1.25), rtol=0.01)
-    assert positions[:, :, 2].max() == pytest.approx(8, abs=0.05)
+    assert positions.min(axis=(0, 1)) == pytest.approx([5, 4, 0], abs=0.05)
+    assert positions.max(axis=(0, 1)) == pytest.approx([38, 14, 8], abs=0.05)
 
 
 @pytest.mark.parametrize("source", [from_layers, from_cityjson])
@@ -85,6 +86,7 @@ def test_buildings_and_faces_keep_their_attributes(models, source):
     assert of_buildings["use"] == ["school", None]
     assert of_buildings["points"] == models[0].columns["points"]
     np.testing.assert_allclose(of_buildings["volume"], models[0].columns["volume"], atol=0.001)
+    assert "volume" not in of_faces
     assert of_faces["kind"] == ["roof"] * 3 + ["wall"] * 8 + ["ground"] * 2
     np.testing.assert_allclose(of_faces["slope"][:3], models[2].columns["slope"], atol=0.001)
     assert of_faces["slope"][3:] == [None] * 10
