@@ -199,9 +199,13 @@ class Review:
             self._set(fid, name, value)
 
     def _add_fields(self) -> None:
+        text, kinds = QMetaType.Type.QString, self.layer.dataProvider().nativeTypes()
+        # PostGIS makes no column without its own name of the type, and the first one is of a single letter.
+        found = {one.mTypeName: one for one in reversed(kinds) if one.mType == text}
+        kind = found.get("text") or list(found.values())[-1]
         for name in (REVIEW, REVIEWED_AT):
             if self._index(name) < 0:
-                self.layer.addAttribute(QgsField(name, QMetaType.Type.QString))
+                self.layer.addAttribute(QgsField(name, text, kind.mTypeName, kind.mMinLen))
 
     def _set(self, fid: int, name: str, value: Any) -> None:
         """Set an attribute, if the layer has it."""

@@ -98,6 +98,18 @@ def current(dock):
     return dock.list.currentItem().text(0)
 
 
+def test_decisions_are_fields_of_a_type_that_the_provider_names(layer):
+    """PostGIS made no column of a type without a name, and the whole review was lost."""
+    review = Review(layer, lambda _: None)
+    review.decide(review.buildings()[0].id(), "kept")
+    review.end()
+    names = {one.mTypeName for one in layer.dataProvider().nativeTypes()}
+    field = layer.fields().field("review")
+    assert field.typeName() == "text"
+    assert field.typeName() in names
+    assert value_of(layer, review.buildings("\"review\" = 'kept'")[0], "review") == "kept"
+
+
 def test_the_least_sure_come_first_and_filters_choose(dock):
     assert listed(dock) == ["3", "2"]
     dock.filter.setCurrentIndex(2)
