@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Optional
@@ -16,6 +17,9 @@ from ..stage import LayerFeatures, feature_names
 # Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window or door.
 BUILDING, LEVEL, KIND = "building", "lod", "kind"
 KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR)
+
+# Levels of detail, of which files get their names.
+_LEVELS = re.compile(r"\d(\.\d)?")
 
 # Faces of unknown kind are walls if the vertical part of their unit normal is less than this: slopes over 80°.
 _UPRIGHT = 0.17
@@ -102,7 +106,12 @@ def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optio
         if own == GROUND and has_heights and area_vector(rings[0])[2] > 0:
             # Layers have it as it is seen on a map, solids as it is seen from below.
             rings = [ring[::-1] for ring in rings]
-        yield str(names[row]), str(levels[row]), Face(own, rings, facts) if has_heights else None
+        level = str(levels[row])
+        yield (
+            str(names[row]),
+            level if _LEVELS.fullmatch(level) else "",
+            Face(own, rings, facts) if has_heights else None,
+        )
 
 
 def _model(name: str, levels: dict[str, list[Face]], rise: float) -> ExportedModel:

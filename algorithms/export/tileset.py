@@ -6,6 +6,7 @@ import json
 from collections.abc import Collection, Generator, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Callable
+from urllib.parse import quote
 
 import numpy as np
 
@@ -93,7 +94,8 @@ def tileset_pieces(models: Collection[ExportedModel], called: str, frame: MapFra
     """
     if frame.to_degrees is None:
         raise ValueError(
-            "3D Tiles lie on the globe, and the models have no coordinate reference system; give them one."
+            "3D Tiles lie on the globe, and the models have no coordinate reference system; give them one, or leave "
+            "the tileset out."
         )
     listed = list(models)
     corners = [np.concatenate([face.corners for faces in one.levels.values() for face in faces]) for one in listed]
@@ -140,7 +142,7 @@ def _levels(models: Sequence[ExportedModel], boxes: np.ndarray, name: str, site:
         file = f"{name}-{level or 'tile'}.glb"
         yield file, glb(models, level, site.placed, middle.tolist())
         finer = {"children": [tile]} if tile else {}
-        tile = {**_bounded(boxes, error if tile else 0.0), "content": {"uri": file}, **finer}
+        tile = {**_bounded(boxes, error if tile else 0.0), "content": {"uri": quote(file)}, **finer}
     return tile
 
 

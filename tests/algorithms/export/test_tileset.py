@@ -1,6 +1,7 @@
 """Tilesets are read back: each vertex on the globe where an independent formula has it, in boxes that hold it."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -47,7 +48,7 @@ def town(count):
     """Return as many houses in a square, in rows."""
     rows = [(f"h{i}", *face) for i in range(count) for face in house(20 * (i % 20), 15 * (i // 20), 4.0 + i % 5)]
     columns = {name: [row[i] for row in rows] for i, name in ((0, "building"), (2, "kind"), (3, "lod"))}
-    return export_models(cityjson=LayerFeatures([[row[1]] for row in rows], columns), geoid_height=RISE)[1]
+    return export_models(cityjson=LayerFeatures([[row[1]] for row in rows], columns), geoid_height=RISE)[-1]
 
 
 def written(models, frame=FRAME):
@@ -138,6 +139,15 @@ def test_levels_that_look_the_same_are_one_file():
     for model in models:
         model.levels["1.3"] = model.levels["1.2"]
     assert list(written(models)[0]) == ["town-2.2.glb", "town-1.3.glb"]
+
+
+def test_names_of_files_are_addresses_and_lead_nowhere_else():
+    ring = np.array([[0, 0, 3.0], [4, 0, 3], [4, 5, 3], [0, 0, 3]])
+    features = LayerFeatures([[ring]], {"building": ["a"], "lod": ["../../2"]})
+    models = export_models(roofs=features)[-1]
+    files, whole = written(models, replace(FRAME, file="town #1"))
+    assert list(files) == ["town #1-tile.glb"]
+    assert whole["root"]["content"]["uri"] == "town%20%231-tile.glb"
 
 
 def test_models_without_a_system_have_no_place_on_the_globe():
