@@ -21,12 +21,15 @@ _DEPTH = {"MultiSurface": 0, "CompositeSurface": 0, "Solid": 1, "MultiSolid": 2,
 
 _KINDS: dict[Any, str] = {name: kind for kind, name in SURFACES.items()}
 
+# Coordinates are less than this in all systems (m or feet).
+_FARTHEST = 1e9
+
 # Entries of a semantic surface that are no attributes.
 _NO_FACTS = ("type", "parent", "children")
 
 
 def read_cityjson(text: str) -> tuple[LayerFeatures, str]:
-    """Return the faces in a file, in its coordinates, with their attributes, and the code of its CRS, "" without one.
+    """Return the faces of the buildings in a file, in its coordinates, and the code of its CRS, "" without one.
 
     Each face has its building, level of detail and kind; the first ground of a building, or else its first face, has
     the building's attributes, with those of its parents. Footprints (level 0) are left out.
@@ -68,8 +71,12 @@ def _faces(document: dict, transform: Any) -> Iterator[tuple[list[np.ndarray], d
     vertices = np.array(document["vertices"], float).reshape(-1, 3)
     if transform is not None:
         vertices = vertices * transform["scale"] + transform["translate"]
+    if not (np.abs(vertices) < _FARTHEST).all():
+        raise ValueError("a vertex lies beyond the Earth")
     objects = document["CityObjects"]
     for name, one in objects.items():
+        if not one["type"].startswith("Building"):
+            continue
         facts = _attributes(name, objects)
         for geometry in one.get("geometry", ()):
             level = str(geometry.get("lod", ""))
@@ -94,6 +101,8 @@ def _of_geometry(geometry: dict, vertices: np.ndarray) -> Iterator[tuple[list[np
     """Yield closed rings, kind and attributes of each face of a geometry."""
     semantics = geometry.get("semantics") or {}
     for numbers, value in _surfaces(geometry["boundaries"], semantics.get("values"), _DEPTH[geometry["type"]]):
+        if not numbers or min(map(len, numbers)) < 3:
+            continue
         rings = [vertices[[*ring, ring[0]]] for ring in numbers]
         surface = {} if value is None else semantics["surfaces"][value]
         kind = _KINDS.get(surface.get("type")) or kind_by_slope(rings[0])

@@ -18,6 +18,9 @@ from ..stage import LayerFeatures, feature_names
 BUILDING, LEVEL, KIND = "building", "lod", "kind"
 KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR)
 
+# Faces of less area (m²) are lines; without them a surface is closed still.
+_LEAST_AREA = 1e-9
+
 # Levels of detail, of which files get their names.
 _LEVELS = re.compile(r"\d(\.\d)?")
 
@@ -101,6 +104,8 @@ def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optio
         # Maps have attributes of that name, too.
         own = facts.pop(KIND) if facts.get(KIND) in KINDS else kind
         has_heights = all(ring.shape[1] == 3 and len(ring) > 3 for ring in rings)
+        if has_heights and np.linalg.norm(area_vector(rings[0])) < _LEAST_AREA:
+            continue
         if not own and has_heights:
             own = kind_by_slope(rings[0])
         if own == GROUND and has_heights and area_vector(rings[0])[2] > 0:

@@ -180,8 +180,7 @@ def _triangles(corners: np.ndarray, face: Face) -> list[list[int]]:
 def _normal(positions: np.ndarray, face: Face) -> np.ndarray:
     """Return the unit normal (3,) of a face whose exterior is at the beginning of positions (n, 3)."""
     normal = area_vector(positions[: len(face.rings[0]) - 1])
-    length = np.linalg.norm(normal)
-    return normal / length if length > 0 else np.array([0.0, 1.0, 0.0])
+    return normal / np.linalg.norm(normal)
 
 
 def _property_table(name: str, rows: list[dict[str, Any]], file: _File) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -125,6 +125,7 @@ def test_faces_of_other_programs_get_kinds_by_their_slope():
     corners = [[x, y, z] for z in (0, 3) for y in (0, 2) for x in (0, 2)]
     sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
     part = {"type": "Solid", "lod": 2, "boundaries": [[[side] for side in sides]]}
+    line = {"type": "MultiSurface", "lod": 2, "boundaries": [[[0, 1, 1]], []]}
     lod0 = {"type": "MultiSurface", "lod": "0", "boundaries": [[sides[0]]]}
     text = json.dumps(
         {
@@ -133,7 +134,8 @@ def test_faces_of_other_programs_get_kinds_by_their_slope():
             "metadata": {"referenceSystem": "urn:ogc:def:crs:EPSG::7415"},
             "CityObjects": {
                 "NL.1": {"type": "Building", "attributes": {"year": 1900, "tags": ["a"], "none": None}},
-                "NL.1-0": {"type": "BuildingPart", "parents": ["NL.1"], "geometry": [lod0, part]},
+                "NL.1-0": {"type": "BuildingPart", "parents": ["NL.1"], "geometry": [lod0, part, line]},
+                "road": {"type": "Road", "geometry": [part]},
             },
             "vertices": corners,
         }
