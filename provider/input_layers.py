@@ -83,7 +83,7 @@ def find_input_layer(
             return None
         raise ValueError(f"{input_layer.title} ({name}) is missing; choose a layer of {input_layer.objects}.")
     if input_layer.read is not None:
-        return _read_file(algorithm, input_layer, Path(str(value)), context)
+        return _read_file(algorithm, input_layer, Path(algorithm.parameterAsFile(parameters, name, context)), context)
     found = algorithm.parameterAsSource(parameters, name, context)
     if found is None:
         raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; nothing was found at {value}.")
@@ -131,7 +131,7 @@ def input_layer_files(
     files = []
     for input_layer in input_layers:
         if input_layer.read is not None:
-            files.append(Path(str(parameters.get(input_layer_name(input_layer)) or "")))
+            files.append(Path(algorithm.parameterAsFile(parameters, input_layer_name(input_layer), context)))
             continue
         if find_input_layer(algorithm, input_layer, parameters, context) is None:
             continue

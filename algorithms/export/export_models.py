@@ -76,7 +76,7 @@ def export_models(
         float,
         Param(
             "For 3D Tiles, height of the geoid over the ellipsoid WGS 84, which is added to elevations: about 43 m in "
-            "the Netherlands, 45 to 50 m in Germany, -32 m in New York. Without it models lie under or over the "
+            "the Netherlands, 36 to 50 m in Germany, -32 m in New York. Without it models lie under or over the "
             "terrain of a globe by as much.",
             within="[-120, 120] m",
         ),
