@@ -77,6 +77,7 @@ _MODULES = (
     "quality.assess_segments",
     "quality.compare_corners",
     "quality.compare_surveys",
+    "quality.update_map",
     "simulation.simulate_town",
     "simulation.simulate_bridges",
     "simulation.simulate_power_line",

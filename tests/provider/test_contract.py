@@ -58,6 +58,7 @@ IDS = {
     "classifynoisestatistical",
     "comparecorners",
     "comparesurveys",
+    "updatemap",
     "downsamplevoxels",
     "mergeclouds",
     "completebuildings",

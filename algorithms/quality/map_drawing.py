@@ -1,0 +1,148 @@
+"""Buildings of a map drawn anew where they have changed: along old walls as far as these are right."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..footprints.soft_shares import Lattice
+from ..geometry.cell_polygons import cell_polygons
+from ..geometry.line_segments import is_valid
+from ..geometry.points_in_polygons import are_within
+from ..geometry.rings import polygon_area
+from ..geometry.subdivision import Subdivision
+from ..packages import spatial
+
+# Cuts along old walls pass vertices this closely (m). Maps have details of a centimeter; where lines nearly coincide,
+# coarser cuts are sound.
+_OLD_SNAPS = 0.002, 0.005, 0.01, 0.02
+
+# Vertices nearer than this to an old vertex or wall, in these distances, are of it: more than cutting moves them.
+_SAME = 2.0
+
+# A cut along a new wall takes vertices this near, as a share of the least width of a change.
+_NEW_SNAP = 0.3
+
+# Area of a cell as a share (m) of the length around it below which it is a seam: a strip 5 cm wide.
+_THIN = 0.025
+
+# Sine of the greatest angle between a new wall and the old one that it is part of, 10°.
+_PARALLEL = 0.17
+
+
+def draw_labels(
+    lattice: Lattice, wanted: np.ndarray, old: np.ndarray, fixed: np.ndarray, new: np.ndarray, width: float
+) -> dict[int, list[list[np.ndarray]]]:
+    """Return the polygons of each label from 1 on, as rings, m, the largest polygon first.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        Nodes in and around these buildings.
+    wanted : ndarray of shape (rows, columns), int64
+        Label of the building that each node is to be of: 0 the ground, -1 what stays.
+    old, fixed, new : ndarray of shape (k, 2, 2)
+        Walls of old buildings that are drawn, of those that stay as they are, and new ones: start and end, m.
+    width : float
+        Least width of a change, m. New walls nearer to the line of an old one go on along it.
+
+    Returns
+    -------
+    dict of int to list of list of ndarray
+        They overlap neither each other nor what stays, and where they keep an old wall they have its vertices.
+    """
+    new = _along_old(new, np.concatenate([old, fixed]), width)
+    for snap in _OLD_SNAPS:
+        drawn = _drawn(lattice, wanted, old, fixed, new, (snap, _NEW_SNAP * width))
+        if all(is_valid(rings) for polygons in drawn.values() for rings in polygons):
+            return drawn
+    return {number: [rings for rings in polygons if is_valid(rings)] for number, polygons in drawn.items()}
+
+
+def _drawn(
+    lattice: Lattice,
+    wanted: np.ndarray,
+    old: np.ndarray,
+    fixed: np.ndarray,
+    new: np.ndarray,
+    snaps: tuple[float, float],
+) -> dict[int, list[list[np.ndarray]]]:
+    """Return the polygons of each label where cuts along old and new walls pass vertices closer than ``snaps`` (m)."""
+    positions, walls = lattice.positions, np.concatenate([old, fixed])
+    low, high = positions[0] - 0.3 * lattice.step, positions[-1] + 0.3 * lattice.step
+    cells = Subdivision(low, high, positions)
+    for sides, snap in zip((walls, new), snaps):
+        for number in np.argsort(-np.hypot(*(sides[:, 1] - sides[:, 0]).T), kind="stable"):
+            start, end = sides[number]
+            cells.cut(start, end, snap)
+    found: dict[int, list] = {}
+    label = np.where(are_within(cells.centers(), fixed), 0, _labels(cells, lattice, wanted))
+    for polygon in cell_polygons(cells, label):
+        found.setdefault(polygon.label, []).append([_on_old(ring, walls, _SAME * snaps[0]) for ring in polygon.rings])
+    return {number: sorted(own, key=polygon_area, reverse=True) for number, own in found.items()}
+
+
+def _labels(cells: Subdivision, lattice: Lattice, wanted: np.ndarray) -> np.ndarray:
+    """Return the label (cells,) of most nodes in each cell, 0 for -1; of a seam that beyond most of its border."""
+    pairs, sides = cells.edges()
+    length = np.hypot(*np.diff(np.array(cells.vertices)[pairs], axis=1)[:, 0].T)
+    around = np.bincount(sides.ravel(), np.repeat(length, 2), len(cells))
+    is_seam = (cells.areas() < _THIN * around) | np.array([len(nodes) == 0 for nodes in cells.members])
+    label, flat = np.full(len(cells), -1), wanted.ravel() + 1
+    for cell in np.flatnonzero(~is_seam):
+        label[cell] = np.bincount(flat[cells.members[cell]]).argmax() - 1
+    border = np.zeros((len(cells), label.max() + 2))
+    for one, other in (sides.T, sides.T[::-1]):
+        is_border = is_seam[one] & (label[other] >= 0)
+        np.add.at(border, (one[is_border], label[other[is_border]]), length[is_border])
+    return np.where(is_seam, border.argmax(axis=1), np.maximum(label, 0))
+
+
+def _along_old(new: np.ndarray, old: np.ndarray, width: float) -> np.ndarray:
+    """Return new walls (n, 2, 2), those near the line of an old wall and parallel to it moved onto that line."""
+    start, way = old[:, 0], old[:, 1] - old[:, 0]
+    length = np.hypot(*way.T)
+    along = way / length[:, None]
+    moved = new.copy()
+    for number, side in enumerate(new):
+        (x, y), own = (side[1] - side[0]) / np.hypot(*(side[1] - side[0])), side[:, None] - start
+        reach = (own * along).sum(axis=2)
+        across = own[..., 1] * along[:, 0] - own[..., 0] * along[:, 1]
+        gap = np.maximum(reach.min(axis=0) - length, -reach.max(axis=0))
+        off = np.abs(across).max(axis=0)
+        is_near = (np.abs(along[:, 0] * y - along[:, 1] * x) < _PARALLEL) & (off < width) & (gap < width)
+        if is_near.any():
+            best = np.where(is_near, off + np.maximum(gap, 0.0), np.inf).argmin()
+            moved[number] = start[best] + reach[:, best, None] * along[best]
+    return moved
+
+
+def _on_old(ring: np.ndarray, old: np.ndarray, same: float) -> np.ndarray:
+    """Return a closed ring with the vertices of old walls (m, 2, 2) within a distance (m), as exact as these are."""
+    if not len(old):
+        return ring
+    corners = np.unique(old.reshape(-1, 2), axis=0)
+    off, nearest = spatial.cKDTree(corners).query(ring, distance_upper_bound=same)
+    ring = np.where(np.isfinite(off)[:, None], corners[np.minimum(nearest, len(corners) - 1)], ring)
+    ring = _without_spikes(ring)
+    corners, made = corners[~(corners[:, None] == ring).all(axis=2).any(axis=1)], []
+    for start, end in zip(ring[:-1], ring[1:]):
+        way, own = end - start, corners - start
+        share = own @ way / (way @ way)
+        across = np.abs(own[:, 0] * way[1] - own[:, 1] * way[0]) / np.hypot(*way)
+        inner = np.flatnonzero((across < same) & (share > 0) & (share < 1))
+        made += [start, *corners[inner[np.argsort(share[inner])]]]
+    return _without_spikes(np.array([*made, ring[0]]))
+
+
+def _without_spikes(ring: np.ndarray) -> np.ndarray:
+    """Return a closed ring without vertices that repeat the one before, or from which it goes straight back."""
+    corners = [tuple(corner) for corner in ring[:-1].tolist()]
+    at = 0
+    while at < len(corners) > 2:
+        before, after = corners[at - 1], corners[(at + 1) % len(corners)]
+        if corners[at] == before or before == after:
+            del corners[at]
+            at = max(at - 2, 0)
+        else:
+            at += 1
+    return np.array([*corners, corners[0]])

@@ -1,0 +1,181 @@
+"""How an old map lies on new outlines: its shift, what it draws inside of eaves, and buildings that lie elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..geometry.groups import components
+from ..geometry.points_in_polygons import are_in_polygons
+from ..geometry.polygon_overlap import Polygons
+from ..geometry.rings import along_sides
+from ..packages import spatial
+from ..stage import Monitor
+from .building_maps import BuildingMap
+
+# Distance (m) of positions along walls: several on the shortest wall.
+_STEP = 0.25
+
+# Walls with another building within this distance (m) beyond are not seen from above.
+_BEYOND = 0.3
+
+# Farthest (m) that a wall is looked for, and how many positions of new walls are: some are of walls across.
+_FARTHEST, _NEAREST = 3.0, 8
+
+# Cosine of the greatest angle between the normals of a wall and its counterpart, 45°.
+_SAME_WAY = 0.7
+
+# Rounds of the fit; a shift of 3 m is found in five.
+_ROUNDS = 8
+
+# Deviation (m) from which on a position counts less, as in a fit of least absolute deviations.
+_SURE = 0.1
+
+# Weight of the usual shift and overhang, as a share of the weight of the walls: it holds rows along their street.
+_USUAL = np.array([0.005, 0.005, 0.05])
+
+# Share of the length of its walls that must have a counterpart for a building to be moved.
+_FOUND = 0.6
+
+# A building that is moved lies this much nearer to its counterpart afterwards: least ratio of the deviations.
+_NEARER = 0.5
+
+# Shifts are of a building if they are greater than this multiple of the median one; least and greatest tolerance (m).
+_DEVIATIONS, _LEAST_SHIFT, _MOST_SHIFT = 3.0, 0.75, 2.0
+
+# Greatest overhang (m) that is taken off new outlines.
+_MOST_OVERHANG = 1.0
+
+# Where walls that meet are nearly parallel, their corner stays along them: the least share of singular values.
+_PARALLEL = 0.05
+
+
+@dataclass(frozen=True)
+class MapFit:
+    """How an old map lies on new outlines."""
+
+    shift: np.ndarray  #: (2,), m: from the map to the new outlines
+    overhang: float  #: How far new outlines lie outside of the walls of the map, m
+    deviation: float  #: Median distance of the walls of both maps after that, m
+    moved: np.ndarray  #: (n, 2), m: shift of each building against the others, 0 where it is none
+
+
+def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
+    """Measure how an old map lies on new outlines, by the walls that both have; buildings that touch move together."""
+    nothing = MapFit(np.zeros(2), 0.0, 0.0, np.zeros((len(old.rings), 2)))
+    if not old.rings or not new.rings:
+        return nothing
+    count, group = _touching(old.polygons)
+    position, outward, building = _outer(old.polygons)
+    there, normal, _ = _outer(new.polygons)
+    walls = _Walls(position, outward, group[building], count, spatial.cKDTree(there), there, normal)
+    first, _ = walls.fit(np.zeros(3))
+    usual = np.median(first, axis=0)
+    fits, _ = walls.fit(usual)
+    off, found = walls.deviations(fits)
+    before, _ = walls.deviations(np.tile(usual, (count, 1)))
+    apart = np.hypot(*(fits - usual)[:, :2].T)
+    tolerance = np.clip(_DEVIATIONS * np.median(apart), _LEAST_SHIFT, _MOST_SHIFT)
+    is_moved = (apart > tolerance) & (found >= _FOUND) & (off < _NEARER * before)
+    shift = np.where(is_moved[:, None], fits[:, :2] - usual[:2], 0.0)
+    overhang = float(np.clip(usual[2], -_MOST_OVERHANG, _MOST_OVERHANG))
+    return MapFit(usual[:2], overhang, float(np.nanmedian(np.append(off[~is_moved], 0.0))), shift[group])
+
+
+def in_frame(new: BuildingMap, fit: MapFit) -> list:
+    """Return the rings of new outlines as the old map would draw them: shifted back, outer walls without overhang."""
+    sides = new.polygons.edges
+    way = sides[:, 1] - sides[:, 0]
+    outward = np.column_stack([way[:, 1], -way[:, 0]]) / np.hypot(*way.T)[:, None]
+    is_outer = ~are_in_polygons(sides.mean(axis=1) + _BEYOND * outward, new.polygons, Monitor())
+    made, at = [], 0
+    for rings in new.rings:
+        own = []
+        for ring in rings:
+            rows = np.arange(at, at + len(ring) - 1)
+            at += len(rows)
+            across = np.stack([np.roll(outward[rows], 1, axis=0), outward[rows]], axis=1)
+            by = -fit.overhang * np.column_stack([np.roll(is_outer[rows], 1), is_outer[rows]])
+            corners = sides[rows, 0] - fit.shift + (np.linalg.pinv(across, _PARALLEL) @ by[..., None])[..., 0]
+            own.append(np.concatenate([corners, corners[:1]]))
+        made.append(own)
+    return made
+
+
+def _touching(polygons: Polygons) -> tuple[int, np.ndarray]:
+    """Return the number of groups of polygons that touch, and the group of each (n,)."""
+    position, side, _ = along_sides(polygons.edges, _STEP)
+    building = _polygon_of(side, polygons)
+    pairs = building[spatial.cKDTree(position).query_pairs(_BEYOND, output_type="ndarray")]
+    return components(pairs[:, 0], pairs[:, 1], len(polygons.box))
+
+
+def _outer(polygons: Polygons) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return positions (p, 2) along outer walls, m, unit vectors out of these, and the polygon of each."""
+    position, side, outward = along_sides(polygons.edges, _STEP)
+    is_outer = ~are_in_polygons(position + _BEYOND * outward, polygons, Monitor())
+    return position[is_outer], outward[is_outer], _polygon_of(side[is_outer], polygons)
+
+
+def _polygon_of(side: np.ndarray, polygons: Polygons) -> np.ndarray:
+    return np.searchsorted(polygons.first, side, side="right") - 1
+
+
+@dataclass(frozen=True)
+class _Walls:
+    """Positions (p, 2) along the outer walls of groups of buildings, m, and those of new outlines."""
+
+    position: np.ndarray
+    outward: np.ndarray  #: (p, 2): unit vectors out of the walls
+    group: np.ndarray  #: (p,), int64
+    count: int  #: Number of groups
+    tree: Any  #: Of positions along the new walls
+    there: np.ndarray  #: (q, 2): these, m
+    normal: np.ndarray  #: (q, 2): unit vectors out of these walls
+
+    def fit(self, usual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return shift east and north and overhang (groups, 3), m, of each group, and the distances (p,) after that.
+
+        ``usual`` (3,) holds where its walls do not tell.
+        """
+        fits = np.tile(usual, (self.count, 1))
+        factors = np.column_stack([self.outward, np.ones(len(self.outward))])
+        for _ in range(_ROUNDS):
+            apart = self._apart(fits)
+            found = np.flatnonzero(np.isfinite(apart))
+            own, one = self.group[found], factors[found]
+            off = apart[found] - fits[own, 2]
+            weight = 1 / np.maximum(np.abs(off), _SURE)
+            total = np.bincount(own, weight, self.count) + 1e-9
+            matrix = np.zeros((self.count, 3, 3))
+            np.add.at(matrix, own, weight[:, None, None] * one[:, :, None] * one[:, None, :])
+            right = np.zeros((self.count, 3))
+            np.add.at(right, own, (weight * off)[:, None] * one)
+            right += total[:, None] * _USUAL * (usual - fits)
+            matrix += total[:, None, None] * np.diag(_USUAL)
+            fits = fits + np.linalg.solve(matrix, right[..., None])[..., 0]
+        return fits, self._apart(fits)
+
+    def _apart(self, fits: np.ndarray) -> np.ndarray:
+        """Return how far (p,), m, new walls lie outside of the shifted ones, NaN where there is none."""
+        moved = self.position + fits[self.group, :2]
+        _, near = self.tree.query(moved, _NEAREST, distance_upper_bound=_FARTHEST)
+        near = np.minimum(near, len(self.there))
+        normal = np.vstack([self.normal, [0.0, 0.0]])[near]
+        is_same = (normal * self.outward[:, None]).sum(axis=2) > _SAME_WAY
+        first = near[np.arange(len(near)), is_same.argmax(axis=1)]
+        apart = np.vstack([self.there, [np.nan, np.nan]])[first] - moved
+        return np.where(is_same.any(axis=1), (apart * self.outward).sum(axis=1), np.nan)
+
+    def deviations(self, fits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the median distance (groups,), m, of walls from their counterparts, and the share that has one."""
+        off = np.abs(self._apart(fits) - fits[self.group, 2])
+        found = np.isfinite(off)
+        median = np.full(self.count, np.nan)
+        order = np.argsort(self.group, kind="stable")
+        for number, rows in enumerate(np.split(order, np.searchsorted(self.group[order], np.arange(1, self.count)))):
+            median[number] = np.median(np.where(found[rows], off[rows], _FARTHEST)) if len(rows) else np.nan
+        size = np.maximum(np.bincount(self.group, minlength=self.count), 1)
+        return median, np.bincount(self.group, found, self.count) / size

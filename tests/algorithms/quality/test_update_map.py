@@ -1,0 +1,213 @@
+"""A map that is updated: towns of which it is known what has changed since the map was drawn."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.geometry.line_segments import is_valid
+from lidar_buildings.algorithms.geometry.points_in_polygons import are_within
+from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
+from lidar_buildings.algorithms.geometry.rings import polygon_area, sides_of_rings
+from lidar_buildings.algorithms.quality.update_map import (
+    CHANGED,
+    DOUBTFUL,
+    GONE,
+    MOVED,
+    NEW,
+    UNCHANGED,
+    UNSEEN,
+    update_map,
+)
+from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+
+
+def house(west, south, *corners):
+    """Return a polygon of corners from its south-western one, counterclockwise; 10 x 8 m without any."""
+    ring = np.array(corners or [(0, 0), (10, 0), (10, 8), (0, 8)], float) + [west, south]
+    return [np.concatenate([ring, ring[:1]])]
+
+
+def annexed(west, south):
+    return house(west, south, (0, 0), (10, 0), (10, 3), (14, 3), (14, 8), (0, 8))
+
+
+def cloud(houses, low=(-20, -20), high=(40, 40), holes=(), trees=(), step=0.5):
+    """Return points and classes of flat ground with roofs 5 m above, with nothing in holes and crowns over trees."""
+    x, y = np.mgrid[low[0] : high[0] : step, low[1] : high[1] : step].reshape(2, -1)
+    plan = np.column_stack([x, y]) + 0.1
+    is_roof, is_hole, is_tree = (_within(plan, polygons) for polygons in (houses, holes, trees))
+    xyz = np.column_stack([plan, np.select([is_roof, is_tree], [5.0, 7.0], 0.0)])
+    return xyz[~is_hole], np.select([is_roof, is_tree], [6, 5], 2)[~is_hole]
+
+
+def _within(plan, polygons):
+    return np.any([np.zeros(len(plan), bool), *(are_within(plan, sides_of_rings(rings)) for rings in polygons)], axis=0)
+
+
+def updated(old, houses, footprints=None, columns=None, **others):
+    """Return the updated map by id, the buildings gone, and the report, of an old map and the true houses."""
+    keys = {name: others.pop(name) for name in ("holes", "trees", "low", "high") if name in others}
+    columns = columns or {"id": np.arange(len(old))}
+    layer = None if footprints is None else LayerFeatures(footprints, {})
+    made, gone, report = update_map(
+        *cloud(houses, **keys), old_map=LayerFeatures(old, columns), footprints=layer, **others
+    )
+    rows = {}
+    for number, (rings, key) in enumerate(zip(made.geometries, made.columns["id"])):
+        rows.setdefault(key, []).append({**{name: own[number] for name, own in made.columns.items()}, "rings": rings})
+    assert all(is_valid(rings) for rings in made.geometries)
+    return rows, gone, report
+
+
+def iou(one, other):
+    first, second = as_polygons([one]), as_polygons([other])
+    shared = overlaps(first, second, Monitor())[2].sum()
+    return shared / (first.area[0] + second.area[0] - shared)
+
+
+def test_what_is_right_stays_as_it_is_to_the_byte():
+    old = [house(0, 0), house(0.3, 12.2)]
+    rows, gone, report = updated(old, [house(0, 0), house(0, 12)], columns={"id": [7, 9], "street": ["A", None]})
+    assert [(row["status"], row["street"]) for (row,) in rows.values()] == [(UNCHANGED, "A"), (UNCHANGED, None)]
+    assert [row["rings"] is rings for (row,), rings in zip(rows.values(), old)] == [True, True]
+    assert not len(gone)
+    assert (report.values["unchanged"], report.values["new"]) == (2, 0)
+
+
+def test_an_annex_is_added_to_the_old_walls():
+    ((row,),) = updated([house(0.2, 0.1)], [annexed(0, 0)])[0].values()
+    assert row["status"] == CHANGED
+    assert row["added"] == pytest.approx(20, abs=4)
+    assert row["removed"] == 0
+    assert iou(row["rings"], annexed(0, 0)) > 0.93
+    for corner in house(0.2, 0.1)[0][[0, 1, 3]]:
+        assert (row["rings"][0] == corner).all(axis=1).any()
+
+
+def test_a_part_that_was_torn_down_is_cut_off():
+    ((row,),) = updated([annexed(0, 0)], [house(0, 0)])[0].values()
+    assert row["status"] == CHANGED
+    assert row["removed"] == pytest.approx(20, abs=4)
+    assert iou(row["rings"], house(0, 0)) > 0.95
+
+
+def test_a_torn_down_part_that_trees_hide_stays():
+    ((row,),) = updated([annexed(0, 0)], [house(0, 0)], trees=[house(10, 1, (0, 0), (7, 0), (7, 9), (0, 9))])[
+        0
+    ].values()
+    assert row["status"] == UNCHANGED
+
+
+def test_what_has_gone_what_was_not_seen_and_what_trees_hide():
+    old = [house(0, 0), house(0, 12), house(20, 0), house(20, 12)]
+    rows, gone, report = updated(old, [house(0, 0)], holes=[house(20, 0)], trees=[house(20, 12)])
+    assert {key: own[0]["status"] for key, own in rows.items()} == {0: UNCHANGED, 2: UNSEEN, 3: DOUBTFUL}
+    assert gone.columns["id"] == [1]
+    assert gone.geometries[0] is old[1]
+    assert [report.values[name] for name in ("gone", "not_seen", "doubtful")] == [1, 1, 1]
+
+
+def test_a_new_house_gets_an_id_and_shares_its_neighbors_wall():
+    old = house(0, 0)
+    rows, _, _ = updated([old], [old, house(10, 0)], [old, house(10.2, 0.2)], {"id": [4]})
+    assert sorted(rows) == [4, 5]
+    new = rows[5][0]
+    assert (new["status"], rows[4][0]["status"]) == (NEW, UNCHANGED)
+    assert {(10.0, 0.0), (10.0, 8.0)} <= {tuple(corner) for corner in new["rings"][0].tolist()}
+    assert iou(new["rings"], house(10, 0)) > 0.93
+
+
+@pytest.mark.parametrize(("ids", "new"), [([4.0, np.nan], 5), (["a", "b"], "new-1"), ([3, 9], 10)])
+def test_new_ids_follow_those_of_the_map(ids, new):
+    old = [house(0, 0), house(0, 12)]
+    rows, _, _ = updated(old, [*old, house(20, 0)], columns={"id": ids})
+    assert [own[0]["status"] for key, own in rows.items() if key == new] == [NEW]
+
+
+def test_a_house_that_was_misdrawn_as_a_whole_is_shifted():
+    true = [house(15.0 * i, 14.0 * j) for i in range(3) for j in range(3)]
+    old = [[ring + [1.5, -1.0]] if number == 4 else [ring] for number, (ring,) in enumerate(true)]
+    rows, _, _ = updated(old, true, low=(-10, -10), high=(60, 60))
+    assert {key: own[0]["status"] for key, own in rows.items()} == {i: MOVED if i == 4 else UNCHANGED for i in range(9)}
+    moved = rows[4][0]
+    assert [moved["shift_east"], moved["shift_north"]] == pytest.approx([-1.5, 1.0], abs=0.1)
+    assert np.abs(moved["rings"][0] - true[4][0]).max() < 0.1
+
+
+def test_the_maps_own_offset_is_no_change_and_is_that_of_what_is_drawn():
+    true = [house(15.0 * i, 14.0 * j) for i in range(3) for j in range(2)]
+    roofs = [[_grown(ring, 0.6)] for (ring,) in [*true, house(0, 28)]]
+    old = [[ring + [0.9, -0.7]] for (ring,) in true]
+    rows, _, report = updated(old, roofs, roofs, low=(-10, -10), high=(60, 60))
+    assert {own[0]["status"] for key, own in rows.items() if key < 6} == {UNCHANGED}
+    found = [report.values[name] for name in ("map_shift_east", "map_shift_north", "overhang")]
+    assert found == pytest.approx([-0.9, 0.7, 0.6], abs=0.05)
+    assert np.abs(np.sort(rows[6][0]["rings"][0][:-1], axis=0) - np.sort(house(0.9, 27.3)[0][:-1], axis=0)).max() < 0.05
+
+
+def _grown(ring, by):
+    return np.mean(ring[:-1], axis=0) + (ring - np.mean(ring[:-1], axis=0)) * [1 + by / 5, 1 + by / 4]
+
+
+def test_a_town_that_has_changed_since_a_map_with_errors_was_drawn():
+    true, old, kinds = [], [], []
+    rng = np.random.default_rng(2)
+    for i in range(10):
+        for j in range(6):
+            kind = ["same", "annex", "cut", NEW, GONE, MOVED][(i + 2 * j) % 6] if i % 2 else "row"
+            for part in range(2 if kind == "row" else 1):
+                at = 24.0 * i + 10 * part, 22.0 * j
+                now, before = house(*at), house(*at)
+                now = annexed(*at) if kind == "annex" else now
+                before = annexed(*at) if kind == "cut" else before
+                true += [] if kind == GONE else [now]
+                kinds.append(kind)
+                old.append(None if kind == NEW else before)
+    angle, size = rng.uniform(0, 2 * np.pi, 2000), rng.uniform(0.1, 0.5, 2000)
+    errors = iter(np.column_stack([size * np.cos(angle), size * np.sin(angle)]))
+    of_corner = {}
+    for number, rings in enumerate(old):
+        if rings is not None:
+            off = [of_corner.setdefault(tuple(corner), next(errors)) for corner in rings[0].tolist()]
+            far = np.array([1.6, 1.2]) if kinds[number] == MOVED else np.zeros(2)
+            old[number] = [rings[0] + off + far]
+    keys = [number for number, rings in enumerate(old) if rings is not None]
+    rows, gone, _ = updated([old[key] for key in keys], true, columns={"id": keys}, low=(-10, -10), high=(250, 140))
+    status = {key: rows[key][0]["status"] if key in rows else GONE for key in keys}
+    wanted = {"same": UNCHANGED, "row": UNCHANGED, "annex": CHANGED, "cut": CHANGED, GONE: GONE, MOVED: MOVED}
+    assert {key: one for key, one in status.items() if one != wanted[kinds[key]]} == {}
+    assert sum(own[0]["status"] == NEW for own in rows.values()) == kinds.count(NEW)
+    for row, *_ in rows.values():
+        best = max(iou(row["rings"], rings) for rings in true)
+        assert best > (0.85 if row["status"] in (UNCHANGED, MOVED) else 0.88)
+
+
+def test_buildings_of_the_map_neither_overlap_nor_part_where_one_is_drawn_anew():
+    old = [house(0, 0), house(10, 0), house(20, 0)]
+    true = [old[0], house(10, 0, (0, 0), (10, 0), (10, 12), (0, 12)), old[2]]
+    rows, _, _ = updated(old, true, true, low=(-20, -20), high=(50, 40))
+    rings = [own[0]["rings"] for own in rows.values()]
+    edges = as_polygons(rings)
+    one, other, shared = overlaps(edges, edges, Monitor())
+    assert shared[one != other].max() < 1e-6
+    assert [own[0]["status"] for own in rows.values()] == [UNCHANGED, CHANGED, UNCHANGED]
+    assert sum(map(polygon_area, rings)) == pytest.approx(280, abs=1)
+    for corner in [(10, 0), (10, 8), (20, 0), (20, 8)]:
+        assert (rings[1][0] == corner).all(axis=1).any()
+
+
+def test_points_without_ground_are_refused():
+    xyz, classes = cloud([house(0, 0)])
+    with pytest.raises(ValueError, match="No point is called ground"):
+        update_map(xyz, np.where(classes == 2, 1, classes), old_map=LayerFeatures([house(0, 0)], {}))
+
+
+def test_a_missing_identifier_is_refused():
+    with pytest.raises(ValueError, match="no attribute 'key'"):
+        updated([house(0, 0)], [house(0, 0)], id_field="key")
+
+
+@pytest.mark.parametrize(("old", "status"), [([], [NEW]), ([house(20, 20)], [NEW])])
+def test_a_map_without_any_of_the_buildings(old, status):
+    rows, gone, _ = updated(old, [house(0, 0)])
+    assert [own[0]["status"] for own in rows.values()] == status
+    assert len(gone) == len(old)
