@@ -35,6 +35,7 @@ from ..algorithms.stage import (
     Stage,
     TextFile,
 )
+from ..algorithms.tiling.survey import Survey
 from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
 from .crs import WGS84
@@ -118,6 +119,7 @@ class Read:
     reference: Optional[Cloud]
     layers: dict[str, LayerFeatures]
     place: Optional[Place]
+    survey: Optional[Survey] = None  #: In place of a cloud that is worked on block by block
 
 
 class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):

@@ -10,13 +10,19 @@ from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.help import stage_help
 from ..algorithms.run import Results, run_stage
 from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, Stage
+from ..algorithms.tiling.features_in_blocks import LARGEST, measure_features
+from ..algorithms.tiling.survey import open_survey
 from .cloud_algorithm import CloudAlgorithm, Inputs, Read
+from .crs_authority import crs_reader
 from .destinations import Made
 from .feedback import FeedbackMonitor, announce
+from .input_layers import find_input_layer, read_input_layer
 from .inputs import cloud_title
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .run_log import RunLog
+from .surveys import place_of_survey
 from .vectors import number
+from .web import tell_sizes
 
 
 class StageAlgorithm(CloudAlgorithm):
@@ -55,8 +61,22 @@ class StageAlgorithm(CloudAlgorithm):
         log.begin(self.stage, self.job.tunables)
         return FeedbackMonitor(feedback, self.stage, self.job.tunables, log)
 
+    def _read(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> Read:
+        """Read clouds and layers; of a large cloud the layer whose features are measured block by block."""
+        job, stage = self.job, self.stage
+        if not stage.each or job.points <= LARGEST:
+            return super()._read(parameters, context, monitor)
+        tell_sizes(job.paths, job.box, job.spacing, monitor)
+        survey = open_survey(job.paths, crs_reader(job.crs), monitor, job.box, job.spacing)
+        (wanted,), place = stage.input_layers, place_of_survey(survey)
+        layer = read_input_layer(wanted, find_input_layer(self, wanted, parameters, context), place, context, monitor)
+        return Read([], None, {wanted.name: layer}, place, survey)
+
     def compute(self, read: Read, monitor: Monitor) -> Results:
         """Run the stage on what was read."""
+        if read.survey is not None:
+            layer = measure_features(self.stage, read.survey, read.layers[self.stage.each], monitor)
+            return Results(None, {self.stage.layers[0].name: layer})
         self._log_earlier_dimensions(read, monitor)
         cloud = read.clouds if self.stage.merges else read.clouds[0] if read.clouds else None
         made = run_stage(self.stage, cloud, read.reference, monitor, read.layers, **self.job.tunables)

@@ -92,7 +92,8 @@ def regularize_polygons(
     """Draw polygons anew along few main directions, with right angles, common borders and the same areas.
 
     Any polygon layer will do; no point cloud is needed. Polygons that touch share their border vertex by vertex. Holes,
-    attributes and the order of the features stay, and curves stay curves.
+    attributes and the order of the features stay, and curves stay curves. It has no twin in tiles: polygons take little
+    memory, and a border that neighbors share must be drawn once, for both.
 
     Parameters
     ----------

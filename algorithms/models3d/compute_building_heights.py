@@ -53,6 +53,12 @@ _MIN_AREA, _STEEPEST = 1.5, 75.0
 # Least share of the points of a building that lie on planes where only these are its roof: less is a dome or a wreck.
 _ON_PLANES = 0.5
 
+# Distance (m) from an outline within which its ground and its neighbors are: a wide building has none nearer.
+_REACH = 100.0
+
+# What parts of a cloud take of the whole: whether points have class 6, and the spacing (m) of those of roofs.
+_ARE_CLASSIFIED, _ROOF_SPACING = "are_classified", "building_spacing"
+
 # Adjusted standard GPS time is counted from this day, less 10⁹ s. Times of a week have no date.
 _GPS_BEGIN, _ADJUSTED, _WEEK = np.datetime64("1980-01-06T00:00:00"), 1_000_000_000, 604_800.0
 
@@ -98,6 +104,9 @@ _FIELDS = (
     ),
     layers=(Layer("buildings", "Buildings", "Polygon", _FIELDS, style="building_heights"),),
     cost=10.0,
+    reach=_REACH,
+    of_whole=(_ARE_CLASSIFIED, _ROOF_SPACING),
+    each="footprints",
 )
 def compute_building_heights(
     xyz,
@@ -111,7 +120,8 @@ def compute_building_heights(
     """Measure the heights, volume and roof type of the buildings of a map, without models.
 
     Every polygon that touches the extent of the points keeps its outline and attributes, and gets those of its roof. An
-    attribute says where the roof was not seen, or where trees hide it.
+    attribute says where the roof was not seen, or where trees hide it. Clouds of any size will do: those of more than
+    10 million points, surveys of many tiles too, are read and worked on block by block.
 
     Parameters
     ----------
@@ -170,7 +180,7 @@ def compute_building_heights(
     """
     require_ground(classification)
     rows, outlines = _outlines(footprints, xyz, monitor)
-    points = _Points.of(xyz, classification, gps_time, monitor)
+    points = _Points.of(xyz, classification, gps_time, sampling, monitor)
     tolerance = plane_tolerance(sampling.roughness)
     borders = _borders(outlines, points.spacing, monitor.part(0.0, 0.2))
     facts = []
@@ -217,12 +227,19 @@ class _Points:
     spacing: float  #: Mean distance of neighboring points of these, m
 
     @classmethod
-    def of(cls, xyz: np.ndarray, classification: np.ndarray, time: Optional[np.ndarray], monitor: Monitor) -> _Points:
+    def of(
+        cls,
+        xyz: np.ndarray,
+        classification: np.ndarray,
+        time: Optional[np.ndarray],
+        sampling: CloudSampling,
+        monitor: Monitor,
+    ) -> _Points:
         """Return the points of a cloud; say so where no class calls any a building."""
         roofs: tuple[int, ...] = (PointClass.BUILDING,)
-        if not np.isin(classification, roofs).any():
+        if not sampling.shared(_ARE_CLASSIFIED, lambda: float((classification == roofs[0]).any())):
             roofs = PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED
-            if not np.isin(classification, roofs).any():
+            if not np.isin(classification, roofs).any() and not sampling.of_whole:
                 require_buildings(classification)
             monitor.inform(
                 "No point is called building (class 6): roofs are the planes among the unclassified points over "
@@ -238,7 +255,7 @@ class _Points:
             ground,
             spatial.cKDTree(ground[:, :2]),
             roofs,
-            point_spacing(xyz[np.isin(classification, roofs)]),
+            sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[np.isin(classification, roofs)])),
         )
 
     def date(self, rows: np.ndarray) -> Optional[str]:
@@ -273,8 +290,11 @@ def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], 
         is_plant = _are_plants(points.xyz[building], planes.label >= 0, points.spacing)
         plants = np.concatenate([plants, building[is_plant]])
         building, planes = building[~is_plant], RoofPlanes(planes.coefficients, planes.label[~is_plant])
-    covered = covered_share(rings, points.xyz[building], points.spacing)
-    trees = covered_share(rings, points.xyz[np.append(building, plants)], points.spacing) - covered
+    # Cells begin at the corner of each footprint, wherever the cloud does.
+    corner = np.append(rings[0].min(axis=0), 0.0)
+    moved, seen = [ring - corner[:2] for ring in rings], (building, np.append(building, plants))
+    covered, beneath = (covered_share(moved, points.xyz[rows] - corner, points.spacing) for rows in seen)
+    trees = beneath - covered
     facts: dict[str, Any] = dict.fromkeys((field.name for field in _FIELDS if field.type is float), np.nan)
     facts.update(h_ground=base, roof_type=None, date=None, points=len(building), covered=covered, trees=trees)
     has_roof = shows_roof(len(building), points.spacing, rings)
@@ -316,7 +336,8 @@ def _roof_facts(
     xyz, spacing = points.xyz[building], points.spacing
     is_roof = _are_roof(xyz, planes, spacing)
     plan, z = xyz[is_roof, :2], xyz[is_roof, 2]
-    middles = (cells_inside(rings, spacing) + 0.5) * spacing
+    corner = rings[0].min(axis=0)
+    middles = (cells_inside([ring - corner for ring in rings], spacing) + 0.5) * spacing + corner
     surface = surface_heights(middles if len(middles) else plan, plan, z, spacing)
     return {
         **{name: float(np.percentile(surface, percent)) for name, percent in _PERCENTILES.items()},

@@ -467,7 +467,9 @@ def _corner_rows(values: dict[str, float]) -> list[Row]:
         Row("Distance", _meters(values["corner_distance"]), "Median distance between matched corners."),
         *(
             Row(
-                f"All within {most:g} m", f"{values[f'within_{100 * most:.0f}_cm']:,}", "Buildings with all corners so."
+                f"All within {most:g} m",
+                f"{values[f'within_{100 * most:.0f}_cm']:,}",
+                "Buildings of which every corner has been matched that near.",
             )
             for most in _WITHIN
         ),

@@ -64,6 +64,8 @@ class Stage:
     #: Values that it measures on its results; a part of a cloud takes those of the whole instead of its own, see
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
+    #: Input layer of which it makes one feature each: those of a large cloud are worked on block by block
+    each: str = ""
     input_title: str = "Point cloud"  #: Label of the cloud that it reads
     report_title: str = "Report"  #: What its page is called
     reference_title: str = "Reference point cloud"  #: Label of the second cloud of a stage that reads one

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from functools import partial
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -10,9 +11,12 @@ from ..cloud.cloud import Cloud
 from ..pipeline import Pipeline
 from ..run import counted, has_several_returns, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling, Learn
-from ..stage import Monitor, ProgressOnly
+from ..stage import LayerFeatures, Monitor, ProgressOnly
 from .survey import Survey
 from .tiled_steps import in_blocks, measuring, part_of, preparing, tunables_of
+
+# Layers that steps are given.
+Layers = dict[str, Optional[LayerFeatures]]
 
 # Most points that the sampling is measured on: all points of small surveys, else those of windows.
 _SAMPLED_WHOLE = 3_000_000
@@ -32,7 +36,7 @@ _MEASURED = 1_500_000
 
 
 def samplings_of(
-    pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor
+    pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor, layers: Optional[Layers] = None
 ) -> dict[str, CloudSampling]:
     """Return the sampling of a survey, "", and those of the clouds that its preparing steps make, by their names.
 
@@ -49,6 +53,8 @@ def samplings_of(
         Tunables of the composite by name.
     monitor : Monitor
         Receives the progress.
+    layers : dict of str to LayerFeatures, optional
+        Layers that steps read, by name, m from the origin of the survey.
 
     Raises
     ------
@@ -70,17 +76,17 @@ def samplings_of(
     for done, step in enumerate(steps):
         before = list(samplings.values())[-1]
         part = monitor.part(0.3 + 0.7 * done / len(steps), 0.3 + 0.7 * (done + 1) / len(steps))
-        alone = part_of(pipeline, [step])
+        make = partial(_made, part_of(pipeline, [step]), before, tunables, layers)
         monitor.inform(f"Measured on parts of the survey: {step.stage.title}.")
         # All parts, until the points are those that the others work on.
         if any(later in prepares for later in steps[done:]):
             parts = [part.part(at / len(clouds), (at + 1) / len(clouds)) for at in range(len(clouds))]
-            made = [_made(alone, cloud, before, tunables, own) for cloud, own in zip(clouds, parts)]
+            made = list(map(make, clouds, parts))
             clouds = [one for one in made if one is not None]
             if step in prepares:
                 samplings[step.name] = _sampling_of(clouds, corner)
         elif clouds:
-            clouds, measured = _measured(alone, _enough(clouds), before, tunables, part)
+            clouds, measured = _measured(make, _enough(clouds), before, part)
             before.of_whole.update(measured)
     return samplings
 
@@ -126,15 +132,15 @@ def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple
 
 
 def _made(
-    step: Pipeline, cloud: Cloud, sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
+    step: Pipeline, sampling: CloudSampling, tunables: dict[str, Any], layers: Any, cloud: Cloud, monitor: Monitor
 ) -> Optional[Cloud]:
     """Return the cloud that a step makes of a part of a survey."""
     own = tunables_of(step, tunables)
-    return run_pipeline(step, cloud, ProgressOnly(monitor), samplings={"": sampling}, **own).cloud
+    return run_pipeline(step, cloud, ProgressOnly(monitor), layers, samplings={"": sampling}, **own).cloud
 
 
 def _measured(
-    step: Pipeline, clouds: list[Cloud], sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
+    make: Callable[[Cloud, Monitor], Optional[Cloud]], clouds: list[Cloud], sampling: CloudSampling, monitor: Monitor
 ) -> tuple[list[Cloud], dict[str, Any]]:
     """Return the clouds that a step makes of parts of a survey, and what it measures and learns on them together."""
     made: list[Optional[Cloud]] = []
@@ -145,7 +151,7 @@ def _measured(
         sampling.samples.clear()
         part = monitor.part(done / len(clouds), (done + 1) / len(clouds))
         try:
-            made.append(_made(step, cloud, sampling, tunables, part))
+            made.append(make(cloud, part))
         except ValueError:
             # A part without ground, as over water, or islands far from each other: blocks there report their errors.
             continue

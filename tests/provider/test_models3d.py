@@ -21,6 +21,7 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.provider import stage_algorithm
 from lidar_buildings.provider.paths import STYLES
 from lidar_buildings.tests.blocks import seen_from
 from lidar_buildings.tests.glb_reader import Glb
@@ -63,6 +64,19 @@ def test_layers_have_heights_and_files_the_format_of_their_extension(house, cont
     assert sorted(path.name for path in out.iterdir()) == sorted(
         ["m.obj", name, *(f"{o.lower()}.gpkg" for o in wanted)]
     )
+
+
+def test_heights_of_a_large_cloud_are_measured_in_blocks(house, context, log, out, monkeypatch):
+    """The same values, in the coordinates of the map."""
+    rows = []
+    for name, largest in (("whole", 10_000_000), ("blocks", 0)):
+        monkeypatch.setattr(stage_algorithm, "LARGEST", largest)
+        made = run("computebuildingheights", {**house, "BUILDINGS": str(out / f"{name}.gpkg")}, context, log)
+        (feature,) = QgsVectorLayer(made["BUILDINGS"], name).getFeatures()
+        rows.append((feature.attributes()[1:], feature.geometry().asWkt(3)))
+    assert rows[0] == rows[1]
+    assert rows[0][0][0] == "seen"
+    assert "1 of 1 features touch the points; 1 blocks of" in " ".join(log.infos)
 
 
 def test_coordinates_in_a_file_are_those_of_the_map(house, context, log, out):

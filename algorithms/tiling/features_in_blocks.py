@@ -1,0 +1,79 @@
+"""A stage that measures each feature of a layer, on surveys of any size: block by block, and each feature in one."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.cloud import Cloud
+from ..pipeline import Pipeline, Step
+from ..run import run_stage
+from ..stage import LayerFeatures, Monitor, ProgressOnly, Stage
+from .block_plan import side_of_blocks
+from .blocks import feature_boxes, take_features
+from .survey import Survey, Window, boxes_meet
+from .survey_sampling import samplings_of
+
+# Points of the largest cloud that is worked on as a whole: it takes 4 GB of memory.
+LARGEST = 10_000_000
+# Attribute with the position of a feature in its layer.
+_ROW = "row of the layer"
+
+
+def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor: Monitor) -> LayerFeatures:
+    """Return what a stage makes of the features of a layer that touch a survey, in their order.
+
+    The values are those of one run on all points where nothing beyond the reach of the stage decides on a feature, but
+    for what it measures of the whole. Memory: the points of one block.
+
+    Parameters
+    ----------
+    stage : Stage
+        One without tunables, which makes one feature each of those of a layer (``each``).
+    survey : Survey
+        The points.
+    given : LayerFeatures
+        The features, m from the origin of the survey.
+    monitor : Monitor
+        Receives progress, and warnings of features that are left out.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or all are left out.
+    """
+    alone = Pipeline(stage.name, stage.title, *("",) * 5, (Step(stage.name, stage.name),))
+    sampling = samplings_of(alone, survey, {}, monitor.part(0.0, 0.1), {stage.each: given})[""]
+    reach, boxes = stage.reach_of({}), feature_boxes(given) + survey.origin[:2]
+    side = side_of_blocks(sampling.density, reach)
+    features = LayerFeatures(given.geometries, {**given.columns, _ROW: list(range(len(given)))})
+    near = np.flatnonzero(boxes_meet(boxes, survey.box))
+    blocks, of_block = np.unique(np.floor(boxes[near].mean(axis=1) / side), axis=0, return_inverse=True)
+    monitor.inform(f"{len(near):,} of {len(given):,} features touch the points; {len(blocks):,} blocks of {side:g} m.")
+    found, why = [], "None of the features touches the extent of the point cloud; choose a layer of the same area."
+    for number in range(len(blocks)):
+        own, (start, end) = near[of_block.ravel() == number], 0.1 + 0.9 * np.array([number, number + 1]) / len(blocks)
+        box = np.array([boxes[own, 0].min(axis=0) - reach, boxes[own, 1].max(axis=0) + reach])
+        part, around = monitor.part(start, end), take_features(features, np.flatnonzero(boxes_meet(boxes, box)))
+        try:
+            cloud = _points(survey.window(box, part))
+            made = run_stage(stage, cloud, None, ProgressOnly(part), {stage.each: around}, sampling)
+        except ValueError as error:
+            why = str(error)
+            monitor.warn(f"{len(own):,} features of a block are left out: {why}")
+            continue
+        (layer,) = made.layers.values()
+        found.append(take_features(layer, np.flatnonzero(np.isin(layer.columns[_ROW], own))))
+    if not found:
+        raise ValueError(why)
+    columns = {name: [value for one in found for value in one.columns[name]] for name in found[0].columns}
+    joined = LayerFeatures([geometry for one in found for geometry in one.geometries], columns)
+    return take_features(joined, np.argsort(columns.pop(_ROW)))
+
+
+def _points(window: Optional[Window]) -> Cloud:
+    """Return the points of a window; raise a ValueError where it has none."""
+    if window is None:
+        raise ValueError("There are no points near them.")
+    return window.cloud
