@@ -11,11 +11,17 @@ def area_vector(ring: np.ndarray) -> np.ndarray:
     Seen from its tip, the ring runs counterclockwise.
     """
     offset = ring - ring[0]
-    return 0.5 * np.cross(offset, np.roll(offset, -1, axis=0)).sum(axis=0)
+    return 0.5 * _cross(offset, np.concatenate([offset[1:], offset[:1]])).sum(axis=0)
+
+
+def _cross(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the cross products (..., 3) of vectors, in half of the time that numpy takes for few of them."""
+    (x, y, z), (u, v, w) = one.T, other.T
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
 def axes_across(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return two unit vectors (3,) that span the plane of a unit normal, counterclockwise seen from its tip."""
-    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    first = _cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     first /= np.linalg.norm(first)
-    return first, np.cross(normal, first)
+    return first, _cross(normal, first)
