@@ -51,12 +51,8 @@ def has_laz() -> bool:
 
 def zstandard() -> Any:
     """Return the module that unpacks zstandard, of Python 3.14 or of the package of this name; None without either."""
-    for name in ("compression.zstd", "zstandard"):
-        try:
-            return importlib.import_module(name)
-        except ImportError:
-            continue
-    return None
+    found = [name for name in ("compression.zstd", "zstandard") if importlib.util.find_spec(name.partition(".")[0])]
+    return importlib.import_module(found[0]) if found else None
 
 
 def absent(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:

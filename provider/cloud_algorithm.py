@@ -235,10 +235,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         subject = subject_of(self.job.paths, self.job.layer, feedback)
         title = self.displayName() if self.alone else ""
         log = RunLog()
-        with (
-            as_processing_errors(feedback),
-            all_in_place(definitions, parameters, context, subject, title) as run,
-        ):
+        with as_processing_errors(feedback), all_in_place(definitions, parameters, context, subject, title) as run:
             monitor = self.monitor(feedback, log)
             if self.job.unmade:
                 titles = ", ".join(made.title for made in self.job.unmade)

@@ -71,14 +71,8 @@ from .surveys import VPC, check_vpc, place_of_survey, write_survey
 from .text_files import write_text
 from .web import check_sizes, tell_sizes
 
-BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED, LOAD = (
-    "BLOCK_SIDE",
-    "PROCESSES",
-    "SCHEDULER",
-    "CERTIFICATES",
-    "COMPRESSED",
-    "LOAD",
-)
+BLOCK_SIDE, PROCESSES, COMPRESSED, LOAD = "BLOCK_SIDE", "PROCESSES", "COMPRESSED", "LOAD"
+SCHEDULER, CERTIFICATES = "SCHEDULER", "CERTIFICATES"
 # Numbers that the algorithm returns.
 _NUMBERS = {
     "TILES": "Tiles written",

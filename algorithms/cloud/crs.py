@@ -201,12 +201,7 @@ def _with_heights(wkt: str, units: Units) -> str:
 
 
 def _crs(
-    stated: str,
-    wkt: str,
-    known: Optional[Definition],
-    identity: str,
-    units: Optional[Units],
-    warnings: tuple[str, ...],
+    stated: str, wkt: str, known: Optional[Definition], identity: str, units: Optional[Units], warnings: tuple[str, ...]
 ) -> Crs:
     plane, code = (known.plane, known.code) if known else ("", "")
     return Crs(stated, wkt, plane, code, identity, *(units or Units()), warnings)

@@ -89,7 +89,7 @@ class Ept:
             )
         self.is_laz = self.kind == "laszip"
         #: What shows whether a description on the web has changed; "" on this computer
-        self.version = cast(WebFile, path).version if is_on_web(path) else ""
+        self.version = str(path.stat().st_mtime_ns or "") if is_on_web(path) else ""
         (self.low, self.high), self.bounds = ends
         #: Distance of the points that the root shows
         self.spacing = float((self.high - self.low)[0] / span) if span > 0 else 0.0

@@ -288,17 +288,10 @@ class WebFile:
         return False
 
     def stat(self) -> WebState:
-        """Return its size, and a number for its version."""
+        """Return its size, and a number for its version, 0 where the server names none."""
         content = _content(self.address, self.login)
         content.take(0, 1)
         return WebState(content.size, zlib.crc32(content.version.encode()))
-
-    @property
-    def version(self) -> str:
-        """The version that the server names, "" if it names none."""
-        content = _content(self.address, self.login)
-        content.take(0, 1)
-        return content.version
 
     def open(self, mode: str = "rb") -> WebStream:  # noqa: ARG002 - as of a path
         """Return a stream of its bytes."""

@@ -227,14 +227,7 @@ class _Points:
     spacing: float  #: Mean distance of neighboring points of these, m
 
     @classmethod
-    def of(
-        cls,
-        xyz: np.ndarray,
-        classification: np.ndarray,
-        time: Optional[np.ndarray],
-        sampling: CloudSampling,
-        monitor: Monitor,
-    ) -> _Points:
+    def of(cls, xyz: np.ndarray, classification: np.ndarray, time: Any, sampling: Any, monitor: Monitor) -> _Points:
         """Return the points of a cloud; say so where no class calls any a building."""
         roofs: tuple[int, ...] = (PointClass.BUILDING,)
         if not sampling.shared(_ARE_CLASSIFIED, lambda: float((classification == roofs[0]).any())):

@@ -13,23 +13,12 @@ import numpy as np
 from ..stage import LayerFeatures
 from .array_files import is_as_written, write_arrays
 
-# Fields of a result with arrays by name: of dimensions, rasters, layers, steps or values.
-_KINDS = (
-    "dimensions",
-    "used",
-    "counts",
-    "most",
-    "inside",
-    "beside",
-    "rasters",
-    "lattices",
-    "pieces",
-    "seconds",
-    "values",
-)
-
-# Those whose size grows with the points or the cells of a block, which are not read where all blocks are in memory.
+# Fields of a result with arrays by name, of dimensions and rasters: their sizes grow with the points or the cells of a
+# block, and they are not read where all blocks are in memory.
 _LARGE = ("dimensions", "inside", "beside", "rasters")
+
+# All fields with arrays by name, of dimensions, rasters, layers, steps or values.
+_KINDS = (*_LARGE, "used", "counts", "most", "lattices", "pieces", "seconds", "values")
 
 
 @dataclass

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
-from ..cloud.cloud import Cloud
 from ..pipeline import Pipeline, Step
 from ..run import run_stage
 from ..stage import LayerFeatures, Monitor, ProgressOnly, Stage
 from .block_plan import side_of_blocks
 from .blocks import feature_boxes, take_features
-from .survey import Survey, Window, boxes_meet
+from .survey import Survey, boxes_meet
 from .survey_sampling import samplings_of
 
 # Points of the largest cloud that is worked on as a whole: it takes 4 GB of memory.
@@ -51,14 +48,16 @@ def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor
     near = np.flatnonzero(boxes_meet(boxes, survey.box))
     blocks, of_block = np.unique(np.floor(boxes[near].mean(axis=1) / side), axis=0, return_inverse=True)
     monitor.inform(f"{len(near):,} of {len(given):,} features touch the points; {len(blocks):,} blocks of {side:g} m.")
-    found, why = [], "None of the features touches the extent of the point cloud; choose a layer of the same area."
+    found, why = [], "None of the features has points near it; choose a layer of the same area as the point cloud."
     for number in range(len(blocks)):
         own, (start, end) = near[of_block.ravel() == number], 0.1 + 0.9 * np.array([number, number + 1]) / len(blocks)
         box = np.array([boxes[own, 0].min(axis=0) - reach, boxes[own, 1].max(axis=0) + reach])
         part, around = monitor.part(start, end), take_features(features, np.flatnonzero(boxes_meet(boxes, box)))
+        window = survey.window(box, part)
+        if window is None:
+            continue
         try:
-            cloud = _points(survey.window(box, part))
-            made = run_stage(stage, cloud, None, ProgressOnly(part), {stage.each: around}, sampling)
+            made = run_stage(stage, window.cloud, None, ProgressOnly(part), {stage.each: around}, sampling)
         except ValueError as error:
             why = str(error)
             monitor.warn(f"{len(own):,} features of a block are left out: {why}")
@@ -70,10 +69,3 @@ def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor
     columns = {name: [value for one in found for value in one.columns[name]] for name in found[0].columns}
     joined = LayerFeatures([geometry for one in found for geometry in one.geometries], columns)
     return take_features(joined, np.argsort(columns.pop(_ROW)))
-
-
-def _points(window: Optional[Window]) -> Cloud:
-    """Return the points of a window; raise a ValueError where it has none."""
-    if window is None:
-        raise ValueError("There are no points near them.")
-    return window.cloud

@@ -33,16 +33,7 @@ from .survey import Source, Survey, files_of_survey, open_survey, tiles_folder
 from .survey_sampling import samplings_of
 from .survey_steps import SurveySteps
 from .tile_writing import TileWriter, unique_stems
-from .tiled_run import (
-    CUT,
-    JOINED,
-    SAMPLED,
-    WORKED,
-    RunSettings,
-    TilesOptions,
-    TilesOutcome,
-    WorkedOn,
-)
+from .tiled_run import CUT, JOINED, SAMPLED, WORKED, RunSettings, TilesOptions, TilesOutcome, WorkedOn
 from .tiled_steps import in_blocks, layers_of, owners, tunables_of, why_whole
 from .work_folder import remove_work, work_folder
 from .workers import BETWEEN_MESSAGES, run_all
@@ -219,9 +210,8 @@ class _Run:
 
     def _opened(self, paths: list[Path]) -> Survey:
         """Return files as a survey of the same extent and spacing."""
-        return open_survey(
-            paths, lambda _: self.survey.crs, extent=self.survey.extent, spacing=self.survey.header.spacing
-        )
+        whole = self.survey
+        return open_survey(paths, lambda _: whole.crs, None, whole.extent, whole.header.spacing)
 
     def _key(self, sources: Iterable[Source], *facts: Any) -> str:
         """Return a name for the result of files in the state at the start, of facts, tunables and this version."""
@@ -270,18 +260,8 @@ class _Run:
         part = replace(self.survey, sources=tuple(self.survey.sources[one] for one in near))
         result = settings.work / f"block-{block.name}-{key}.npz"
         tunables = tunables_of(in_blocks(settings.pipeline), settings.tunables)
-        return BlockTask(
-            block,
-            part,
-            tuple(near),
-            settings.pipeline.name,
-            settings.steps,
-            tunables,
-            samplings,
-            halo,
-            result,
-            settings.stop,
-        )
+        run = settings.pipeline.name, settings.steps, tunables, samplings, halo
+        return BlockTask(block, part, tuple(near), *run, result, settings.stop)
 
     def _block_log(self, blocks: int, points: float) -> Callable[[int], None]:
         """Return a function that logs from time to time how many blocks are done, how fast, and the time left."""

@@ -11,12 +11,9 @@ from ..cloud.cloud import Cloud
 from ..pipeline import Pipeline
 from ..run import counted, has_several_returns, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling, Learn
-from ..stage import LayerFeatures, Monitor, ProgressOnly
+from ..stage import Monitor, ProgressOnly
 from .survey import Survey
 from .tiled_steps import in_blocks, measuring, part_of, preparing, tunables_of
-
-# Layers that steps are given.
-Layers = dict[str, Optional[LayerFeatures]]
 
 # Most points that the sampling is measured on: all points of small surveys, else those of windows.
 _SAMPLED_WHOLE = 3_000_000
@@ -36,7 +33,7 @@ _MEASURED = 1_500_000
 
 
 def samplings_of(
-    pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor, layers: Optional[Layers] = None
+    pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor, layers: Any = None
 ) -> dict[str, CloudSampling]:
     """Return the sampling of a survey, "", and those of the clouds that its preparing steps make, by their names.
 

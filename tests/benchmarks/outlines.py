@@ -17,7 +17,7 @@ from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, ove
 from lidar_buildings.algorithms.geometry.ring_directions import along_two_directions
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, match_polygons
+from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
 from lidar_buildings.algorithms.stage import Monitor
@@ -27,6 +27,7 @@ from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.benchmarks import regulariser
 from lidar_buildings.tests.benchmarks.results import Table
+from lidar_buildings.tests.polygon_matches import match_polygons
 from lidar_buildings.tests.real.clouds import DELFT, detected, path_of, run_on, truth
 
 CLOUDS = (DELFT, "buildings/ahn3-delft-4", "buildings/ahn-amsterdam-1", "buildings/ign-stbarth")

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
-from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, match_polygons
+from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.benchmarks.outlines import in_blocks
+from lidar_buildings.tests.polygon_matches import match_polygons
 from lidar_buildings.tests.real.clouds import detected, path_of
 
 DIMENSIONS = ("classification", "cluster_id", "height_above_ground", "reason")

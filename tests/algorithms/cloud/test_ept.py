@@ -225,12 +225,12 @@ def test_a_node_that_unpacks_to_more_than_its_points_is_refused_unread(made):
 
 def test_without_a_package_for_zstandard_its_name_is_said(made, monkeypatch):
     monkeypatch.setitem(sys.modules, "zstandard", None)
-    monkeypatch.setitem(sys.modules, "compression.zstd", None)
+    monkeypatch.setitem(sys.modules, "compression", None)
     with pytest.raises(ValueError, match="the Python package zstandard is missing; install it"):
         read_extent(made("zstandard"))
     module = SimpleNamespace(open=zstandard.open, ZstdError=zstandard.ZstdError)
     monkeypatch.setitem(sys.modules, "compression.zstd", module)
-    monkeypatch.setitem(sys.modules, "compression", SimpleNamespace(zstd=module, __path__=[]))
+    monkeypatch.setitem(sys.modules, "compression", SimpleNamespace(zstd=module, __path__=[], __spec__=object()))
     assert len(read_cloud(made("zstandard"))) == 2000
 
 

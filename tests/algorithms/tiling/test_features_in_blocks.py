@@ -88,7 +88,7 @@ def test_blocks_without_ground_are_left_out_with_a_warning(town, tmp_path, monke
     far = create_cloud({"xyz": CORNER + [[0, 0, 0], [4000.0, 0, 0]]}, "EPSG:32631")
     write_cloud(far, tmp_path / "far.las")
     both = open_survey([tmp_path / "hole.las", tmp_path / "far.las"])
-    with pytest.raises(ValueError, match="There are no points near them"):
+    with pytest.raises(ValueError, match="None of the features has points near it"):
         measure_features(HEIGHTS, both, layer_of([house(1000, 10)], both.origin), monitor)
-    with pytest.raises(ValueError, match="None of the features touches"):
+    with pytest.raises(ValueError, match="None of the features has points near it"):
         measure_features(HEIGHTS, survey, layer_of(rings[-1:], survey.origin), monitor)
