@@ -17,8 +17,8 @@ class PaperThresholds(NamedTuple):
 
 # T_Np and N of the table, 50 and 16 points, are the minimum building area of 4 m² at these densities.
 PAPER_THRESHOLDS = {
-    "table 2, 12.5 points/m²": PaperThresholds(0.6, 0.2, 12.5),
-    "table 2, 4 points/m²": PaperThresholds(1.4, 0.3, 4.0),
+    "12.5 points/m² (table 2)": PaperThresholds(0.6, 0.2, 12.5),
+    "4 points/m² (table 2)": PaperThresholds(1.4, 0.3, 4.0),
 }
 
 Thresholds = Annotated[

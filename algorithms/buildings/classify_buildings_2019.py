@@ -49,11 +49,11 @@ def classify_buildings_2019(
     two_classes: Annotated[
         str,
         Param(
-            "How the mean entropies are separated: 'exact' tries every gap between them; 'k-means' is scikit-learn's, "
-            "from ten random starts.",
-            choices=("exact", "k-means"),
+            "How the mean entropies are separated: 'k-means' is scikit-learn's, from ten random starts; 'exact' tries "
+            "every gap between them.",
+            choices=("k-means", "exact"),
         ),
-    ] = "exact",
+    ] = "k-means",
     density: PointDensity = None,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -97,7 +97,7 @@ def classify_buildings_2019(
     Equations 5 to 11 of the paper, with N = Ar_min d (the paper has N = 50 and 16 at 12.5 and 4 points per m², which
     'Thresholds' takes whatever the density of the cloud is).
     Neighbors are clustered points, and points equally far away at rank N share its weight, so that the order of the
-    points decides nothing. The two means are the optimum that K-means approaches: in one dimension sorting finds it.
+    points decides nothing. 'exact' finds the optimum that K-means approaches: in one dimension by sorting.
 
     A single cluster, or clusters of one entropy, leave nothing to separate: none is called a building then, and the
     log says so. Clusters of one kind only are split in two nevertheless; 'Classify buildings' is not misled by that.

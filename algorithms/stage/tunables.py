@@ -134,8 +134,7 @@ class Tunable:
     def range(self) -> str:
         """Allowed values in words, empty when there is no bound."""
         if self.param.choices:
-            separator = "; " if any("," in choice for choice in self.param.choices) else ", "
-            return f"{'any' if self.type is tuple else 'one'} of {separator.join(self.param.choices)}"
+            return f"{'any' if self.type is tuple else 'one'} of {', '.join(self.param.choices)}"
         return self.param.bounds
 
     def check(self, value: Any, called: str = "") -> Any:

@@ -299,6 +299,8 @@ def test_every_tunable_has_its_type_bounds_and_choices(stage, algorithm):
             assert tuple(definition.options()) == tunable.param.choices
             assert definition.usesStaticStrings()
             assert definition.allowMultiple() == (tunable.type is tuple)
+            # QGIS takes a comma for the end of a choice and refuses what has one.
+            assert all(definition.checkValueIsAcceptable(choice) for choice in tunable.param.choices)
         if isinstance(definition, QgsProcessingParameterNumber):
             kind = Qgis.ProcessingNumberParameterType
             assert definition.dataType() == (kind.Integer if tunable.type is int else kind.Double)

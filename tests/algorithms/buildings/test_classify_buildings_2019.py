@@ -93,7 +93,7 @@ def test_neighbors_are_area_times_density(garden, min_area, density, expected):
     np.testing.assert_array_equal(by_density[1], by_hand[1])
 
 
-@pytest.mark.parametrize(("thresholds", "expected"), [("table 2, 12.5 points/m²", 50), ("table 2, 4 points/m²", 16)])
+@pytest.mark.parametrize(("thresholds", "expected"), [("12.5 points/m² (table 2)", 50), ("4 points/m² (table 2)", 16)])
 def test_neighbors_of_the_papers_surveys(garden, thresholds, expected):
     xyz, cluster_id = garden
     monitor = Monitor()

@@ -156,7 +156,7 @@ def test_the_height_difference_is_between_those_of_the_paper(noise, distance, rn
 
 @pytest.mark.parametrize(
     ("thresholds", "distances", "points"),
-    [("table 2, 12.5 points/m²", (0.6, 0.2), 50), ("table 2, 4 points/m²", (1.4, 0.3), 16)],
+    [("12.5 points/m² (table 2)", (0.6, 0.2), 50), ("4 points/m² (table 2)", (1.4, 0.3), 16)],
 )
 def test_thresholds_of_the_paper_whatever_the_cloud_is_like(thresholds, distances, points):
     """Rows of points, each as dense as the others, of which those with T_Np points and more are regions."""
