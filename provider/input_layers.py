@@ -224,6 +224,7 @@ def read_input_layer(
     """
     transform = _transform(input_layer, layer, place.crs, context, monitor)
     geometries: list = []
+    sources: list = []
     rows: list = []
     count = left_out = 0
     request = QgsFeatureRequest()
@@ -232,6 +233,7 @@ def read_input_layer(
             monitor.progress(min(1.0, count / max(1, layer.featureCount())))
         parts = _parts(feature.geometry(), input_layer, transform, place)
         geometries += parts
+        sources += _as_read(feature.geometry(), transform, len(parts))
         rows += [feature.attributes()] * len(parts)
         count += 1
         left_out += not parts
@@ -246,7 +248,8 @@ def read_input_layer(
             f"they have no valid geometry of {input_layer.objects}."
         )
     names = layer.fields().names()
-    return LayerFeatures(geometries, {name: _column([row[i] for row in rows]) for i, name in enumerate(names)})
+    columns = {name: _column([row[i] for row in rows]) for i, name in enumerate(names)}
+    return LayerFeatures(geometries, columns, sources)
 
 
 def _transform(
@@ -289,6 +292,13 @@ def _parts(geometry: QgsGeometry, input_layer: InputLayer, transform: QgsCoordin
     if not all(len(rings) and all(_is_sound(ring, kind) for ring in rings) for rings in parts):
         return []
     return [_SHAPES[kind](rings) for rings in parts]
+
+
+def _as_read(geometry: QgsGeometry, transform: QgsCoordinateTransform, count: int) -> list:
+    """Return the parts of a geometry as they are, None for each of ``count`` of one that is transformed or has arcs."""
+    parts = geometry.asGeometryCollection()
+    is_same = transform.isShortCircuited() and len(parts) == count and not QgsWkbTypes.isCurvedType(geometry.wkbType())
+    return parts if is_same else [None] * count
 
 
 def _is_sound(vertices: np.ndarray, kind: str) -> bool:

@@ -135,7 +135,8 @@ def qgis_features(
     columns = [_column(declared, features, to_map) for declared in _all_fields(layer, features)]
     for row, geometry in enumerate(features.geometries):
         feature = QgsFeature(fields)
-        feature.setGeometry(QgsGeometry(make(geometry, to_map)))
+        source = features.sources[row] if features.sources else None
+        feature.setGeometry(source or QgsGeometry(make(geometry, to_map)))
         feature.setAttributes([plain(column[row]) for column in columns])
         yield feature
 

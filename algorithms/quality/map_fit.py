@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..geometry.groups import components
+from ..geometry.line_segments import is_valid
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import Polygons
 from ..geometry.rings import along_sides
@@ -59,7 +60,7 @@ class MapFit:
     shift: np.ndarray  #: (2,), m: from the map to the new outlines
     overhang: float  #: How far new outlines lie outside of the walls of the map, m
     deviation: float  #: Median distance of the walls of both maps after that, m
-    moved: np.ndarray  #: (n, 2), m: shift of each building against the others, 0 where it is none
+    moved: np.ndarray  #: (n, 2), m: shift of each building against the others, 0 of one that stays
 
 
 def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
@@ -100,7 +101,8 @@ def in_frame(new: BuildingMap, fit: MapFit) -> list:
             by = -fit.overhang * np.column_stack([np.roll(is_outer[rows], 1), is_outer[rows]])
             corners = sides[rows, 0] - fit.shift + (np.linalg.pinv(across, _PARALLEL) @ by[..., None])[..., 0]
             own.append(np.concatenate([corners, corners[:1]]))
-        made.append(own)
+        # Edges shorter than the overhang may turn around.
+        made.append(own if is_valid(own) else [ring - fit.shift for ring in rings])
     return made
 
 
@@ -138,7 +140,7 @@ class _Walls:
     def fit(self, usual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return shift east and north and overhang (groups, 3), m, of each group, and the distances (p,) after that.
 
-        ``usual`` (3,) holds where its walls do not tell.
+        ``usual`` (3,) holds where its walls do not show it.
         """
         fits = np.tile(usual, (self.count, 1))
         factors = np.column_stack([self.outward, np.ones(len(self.outward))])
@@ -159,7 +161,7 @@ class _Walls:
         return fits, self._apart(fits)
 
     def _apart(self, fits: np.ndarray) -> np.ndarray:
-        """Return how far (p,), m, new walls lie outside of the shifted ones, NaN where there is none."""
+        """Return how far (p,), m, new walls lie outside of the shifted ones, NaN where none is found."""
         moved = self.position + fits[self.group, :2]
         _, near = self.tree.query(moved, _NEAREST, distance_upper_bound=_FARTHEST)
         near = np.minimum(near, len(self.there))

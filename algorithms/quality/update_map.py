@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Optional
+from typing import Annotated, Any, Callable, Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
+from ..cloud.asprs import NOISE, PointClass
 from ..footprints.extract_footprints import extract_footprints
 from ..footprints.soft_shares import Lattice
 from ..geometry.groups import components, split_groups
@@ -29,10 +29,12 @@ from .map_drawing import draw_labels
 from .map_fit import MapFit, fit_map, in_frame
 
 UNCHANGED, MOVED, CHANGED = "unchanged", "moved", "changed"
+HEIGHTENED, LOWERED = "heightened", "lowered"
 NEW, GONE, UNSEEN, DOUBTFUL = "new", "gone", "not seen", "doubtful"
 
 # Colors of the page that differ in all color visions (Tol's high-contrast and bright schemes).
-COLORS = {UNCHANGED: BLUE, MOVED: "#66ccee", CHANGED: "#aa3377", NEW: RED, GONE: YELLOW, UNSEEN: GRAY, DOUBTFUL: "#222"}
+COLORS = {UNCHANGED: BLUE, MOVED: "#66ccee", CHANGED: "#aa3377", HEIGHTENED: "#228833", LOWERED: "#ccbb44", NEW: RED}
+COLORS.update({GONE: YELLOW, UNSEEN: GRAY, DOUBTFUL: "#222"})
 
 
 @dataclass(frozen=True)
@@ -47,9 +49,11 @@ class _Rules:
     gone: float = 0.15  #: Share of a building up to which the new outlines may cover one that is gone
     there: float = 0.5  #: Share that these cover of one that is still there
     shown: float = 0.5  #: Share of an area where points must lie, or ground, for it to be seen, or to be empty
-    new: float = 0.25  #: Share of new outlines up to which the map may have them for a building to be new
+    new: float = 0.4  #: Share of new outlines up to which the map may have them for a building to be new
+    strip: float = 1.5  #: Depth of a strip along the wall of a row, in widths of a change
     low: float = 1.0  #: Points up to this height (m) above the ground nearest to them show that no roof is there
-    reach: float = 2.0  #: Points show what lies around them, up to so many times their distance
+    rise: float = 1.0  #: Roofs that rose or fell by more in the median (m) were heightened or lowered
+    reach: float = 2.0  #: Points show the surroundings up to this multiple of their distance
 
 
 RULES = _Rules()
@@ -58,7 +62,8 @@ _FIELDS = (
     Field(
         "status",
         str,
-        f"{UNCHANGED}; {MOVED}: misdrawn as a whole; {CHANGED}: parts added or cut; {NEW}; {UNSEEN}: no points; "
+        f"{UNCHANGED}; {MOVED}: misdrawn as a whole; {CHANGED}: parts added or cut; {HEIGHTENED}, {LOWERED}: "
+        f"since the earlier survey; {NEW}; {UNSEEN}: no points; "
         f"{DOUBTFUL}: kept as it was, though the points don't show it well",
     ),
     Field("confidence", float, "share of it on which map and points agree, 0 to 1"),
@@ -66,6 +71,7 @@ _FIELDS = (
     Field("removed", float, "area of the parts cut off", "m²"),
     Field("shift_east", float, "how far it was shifted to the east", "m"),
     Field("shift_north", float, "how far it was shifted to the north", "m"),
+    Field("height_change", float, "how far its roof has risen since the earlier survey, in the median", "m"),
 )
 _GONE_FIELDS = (Field("confidence", float, "share of it where points show the ground, 0 to 1"),)
 _MEASURES = (
@@ -97,12 +103,16 @@ _MEASURES = (
         Layer("buildings_gone", "Buildings gone", "Polygon", _GONE_FIELDS),
     ),
     measures=_MEASURES,
+    reference_title="Earlier point cloud",
+    reference="A survey before this one, to find roofs that have risen or fallen since.",
     cost=20.0,
 )
 def update_map(
     xyz,
     classification,
     cluster_id=None,
+    reference_xyz=None,
+    reference_classification=None,
     old_map=None,
     footprints=None,
     *,
@@ -135,6 +145,10 @@ def update_map(
         Classes; points of class 6 are of buildings, those of class 2 are the ground.
     cluster_id : ndarray of shape (n,), optional
         Building of each point, from 1, to extract footprints.
+    reference_xyz : ndarray of shape (m, 3), optional
+        Coordinates (m) of the points of an earlier survey.
+    reference_classification : ndarray of shape (m,), optional
+        Their classes; where none has class 6, every point but noise may be of a roof.
     old_map : LayerFeatures
         Buildings of the map.
     footprints : LayerFeatures, optional
@@ -188,7 +202,8 @@ def update_map(
     ([7], ['unchanged'], [8])
     """
     require_ground(classification)
-    names = feature_names(old_map, id_field)
+    # Refuses an attribute that the map does not have.
+    feature_names(old_map, id_field)
     old = clean_map(old_map, "buildings of the old map", monitor)
     if footprints is None:
         extracting = monitor.part(0.0, 0.5)
@@ -201,11 +216,21 @@ def update_map(
         monitor.resolved(least_width=least_width)
     update = _Update.of(old, new, fit)
     points = _Points.of(xyz, classification, fit, sampling)
+    roofs = [_roofs(xyz, classification, fit)]
+    roofs += [] if reference_xyz is None else [_roofs(reference_xyz, reference_classification, fit)]
     blocks = update.blocks(least_width)
     for number, (olds, news) in enumerate(blocks):
-        _Block(update, points, olds, news, least_width, min_area).decide()
+        _Block(update, points, olds, news, least_width, min_area).decide(roofs)
         monitor.progress(0.5 + 0.5 * (number + 1) / len(blocks))
-    return _results(update, old_map, old, footprints, new, _new_ids(old_map, names, id_field), fit, monitor)
+    sure = footprints.columns.get("confidence")
+    result = _Result.of(
+        update, old_map, old.rows.tolist(), None if sure is None else np.array(sure)[new.rows], id_field
+    )
+    updated = result.layer(_FIELDS, lambda status: status != GONE)
+    gone = result.layer(_GONE_FIELDS, lambda status: status == GONE)
+    report = _report(update, updated, gone, fit)
+    monitor.inform(_summary(report.values))
+    return updated, gone, report
 
 
 @dataclass
@@ -221,6 +246,7 @@ class _Update:
     added: np.ndarray
     removed: np.ndarray
     shift: np.ndarray  #: (n, 2), m
+    rise: np.ndarray  #: (n,), m: rise of the roof since the earlier survey, NaN where unknown
     drawn: dict[int, list] = field(default_factory=dict)  #: Polygons of changed buildings, by row
     built: list[tuple[int, list]] = field(default_factory=list)  #: New buildings: row of the outline, rings
 
@@ -240,7 +266,7 @@ class _Update:
         is_new = (overlap.other_covered <= RULES.new) & (is_other == 0)
         status = [MOVED if by.any() else UNCHANGED for by in fit.moved]
         confidence, added, removed = np.zeros((3, n))
-        return cls(rings, outlines, covered, is_new, status, confidence, added, removed, fit.moved)
+        return cls(rings, outlines, covered, is_new, status, confidence, added, removed, fit.moved, np.full(n, np.nan))
 
     def blocks(self, width: float) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return the rows of old buildings and of new outlines whose boxes lie within a width (m) of each other."""
@@ -278,6 +304,14 @@ class _Points:
         return cls(xyz - np.append(fit.shift, 0.0), is_low, sampling.spacing)
 
 
+def _roofs(xyz: np.ndarray, classification: Optional[np.ndarray], fit: MapFit) -> np.ndarray:
+    """Return the points (k, 3), m, that may be of roofs in the order of their eastings, in the frame of the map."""
+    kinds = np.zeros(len(xyz)) if classification is None else classification
+    is_roof = kinds == PointClass.BUILDING
+    own = xyz[is_roof if is_roof.any() else ~np.isin(kinds, NOISE)]
+    return own[np.argsort(own[:, 0], kind="stable")] - np.append(fit.shift, 0.0)
+
+
 class _Block:
     """Old buildings and new outlines that lie together, on a lattice; the decisions go into the update."""
 
@@ -294,8 +328,8 @@ class _Block:
         self.lattice = Lattice.around(np.array([low - 2 * width, high + 2 * width]), 2 * RULES.step)
         self.old, self.own = self._painted(self.olds, update.rings)
         self.new, _ = self._painted(self.news, update.outlines)
-        box = [np.array([low - 2 * width, high + 2 * width])]
-        near = rows_near(points.xyz, box)
+        self.box = [np.array([low - 2 * width, high + 2 * width])]
+        near = rows_near(points.xyz, self.box)
         reach = max(RULES.reach * points.spacing, RULES.step)
         self.is_seen = self._around(points.xyz[near], reach)
         self.is_low = self._around(points.xyz[near[points.is_low[near]]], reach)
@@ -320,14 +354,34 @@ class _Block:
         hit[self.lattice.nearest(xyz[:, :2])] = True
         return _within(hit, reach / RULES.step)
 
-    def decide(self) -> None:
-        """Decide on all buildings, and draw those that have changed or are new."""
+    def decide(self, roofs: list[np.ndarray]) -> None:
+        """Decide on all buildings, and draw those that have changed or are new; ``roofs`` are those of each survey."""
         self.wanted = np.full(self.lattice.shape, 0)
         self.labels: list[tuple[str, int]] = []
         for row in self.olds:
             self._decide_old(row)
         self._add_parts()
         self._draw()
+        if len(roofs) > 1:
+            self._compare_heights(*(self._surface(own[rows_near(own, self.box)]) for own in roofs))
+
+    def _surface(self, xyz: np.ndarray) -> np.ndarray:
+        """Return the highest elevation (rows, columns), m, around each node of the lattice, NaN without points."""
+        top = np.full(self.lattice.shape, -np.inf)
+        np.maximum.at(top, self.lattice.nearest(xyz[:, :2]), xyz[:, 2])
+        top = ndimage.maximum_filter(top, round(RULES.rise / RULES.step))
+        return np.where(np.isfinite(top), top, np.nan)
+
+    def _compare_heights(self, new: np.ndarray, old: np.ndarray) -> None:
+        """Measure how far the roofs that are still there have risen from one surface (rows, columns), m, to another."""
+        update, risen = self.update, new - old
+        for row in self.olds:
+            window, mask = self.own[row]
+            known = risen[window][mask & (self.new[window] >= 0) & np.isfinite(risen[window])]
+            if len(known) and update.status[row] in (UNCHANGED, MOVED, CHANGED):
+                update.rise[row] = by = float(np.median(known))
+                if update.status[row] == UNCHANGED and abs(by) > RULES.rise:
+                    update.status[row] = HEIGHTENED if by > 0 else LOWERED
 
     def _decide_old(self, row: int) -> None:
         """Decide whether an old building is there, and which parts of it are gone."""
@@ -396,15 +450,18 @@ class _Block:
         update = self.update
         if update.is_new[outline]:
             return "new", outline
-        near = _within(mask, self.width / RULES.step)
+        near, least = _within(mask, self.width / RULES.step), RULES.step**2
         may = [row for row in update.covered[outline] if update.status[row] in (UNCHANGED, MOVED)]
-        border = [np.sum(self.old[near] == row) if size < polygon_area(update.rings[row]) else 0 for row in may]
-        new = [number for number, (kind, _) in enumerate(self.labels) if kind == "new"]
-        border += [np.sum(self.wanted[near] == number + 1) for number in new]
-        best = int(np.argmax(border)) if any(border) else -1
-        if best < 0:
-            return "new", outline
-        return ("old", may[best]) if best < len(may) else self.labels[new[best - len(may)]]
+        may = [row for row in may if size < polygon_area(update.rings[row])]
+        new = [number for number, (kind, _) in enumerate(self.labels, start=1) if kind == "new"]
+        # Areas beside the part: the length of the border times the width of a change.
+        old_side, row = max(((np.sum(self.old[near] == row) * least, row) for row in may), default=(0.0, -1))
+        new_side, number = max(((np.sum(self.wanted[near] == one) * least, one) for one in new), default=(0.0, 0))
+        # Walls of the map are known better than those that a survey has between roofs: a strip along one is the new
+        # building's beyond.
+        if new_side > old_side or (new_side and size < RULES.strip * old_side):
+            return self.labels[number - 1]
+        return ("old", row) if old_side else ("new", outline)
 
     def _draw(self) -> None:
         """Draw all buildings that have changed or are new, those that lie together at once."""
@@ -471,63 +528,60 @@ def _opened(mask: np.ndarray, radius: float) -> np.ndarray:
     return _within(ndimage.distance_transform_edt(mask) > radius, radius)
 
 
-def _new_ids(old_map: LayerFeatures, names: list[str], id_field: str) -> Any:
-    """Return the attribute that identifies buildings, and a function that gives the next values of it."""
+def _new_ids(old_map: LayerFeatures, id_field: str, count: int) -> tuple[str, list]:
+    """Return the attribute that identifies buildings, "" without one, and the values of it for some new buildings."""
     columns = {name.lower(): name for name in old_map.columns}
     name = id_field or columns.get("id", columns.get("fid", ""))
-    values = old_map.columns.get(name, [])
+    values = list(old_map.columns.get(name, []))
     numbers = [value for value in values if isinstance(value, (int, float, np.number)) and np.isfinite(value)]
-    is_number = len(numbers) > 0 or not len(values)
+    if values and not numbers:
+        return name, [f"new-{number}" for number in range(1, count + 1)]
     first = int(max(numbers, default=0)) + 1
-    return name, (lambda k: first + k) if is_number else (lambda k: f"new-{k + 1}")
+    return name, list(range(first, first + count))
 
 
-def _results(
-    update: _Update,
-    old_map: LayerFeatures,
-    old: BuildingMap,
-    footprints: LayerFeatures,
-    new: BuildingMap,
-    new_id: Any,
-    fit: MapFit,
-    monitor: Monitor,
-) -> tuple[LayerFeatures, LayerFeatures, Report]:
-    """Return the updated map, the buildings gone, and the report."""
-    rings, rows = [], []
-    for row, status in enumerate(update.status):
-        if status != GONE:
-            own = update.drawn.get(row, [old_map.geometries[old.rows[row]] if status != MOVED else update.rings[row]])
-            rings += own
-            rows += [row] * len(own)
-    gone = [row for row, status in enumerate(update.status) if status == GONE]
-    n_new = len(update.built)
-    sure = footprints.columns.get("confidence")
-    of_new = [np.nan if sure is None else sure[new.rows[outline]] for outline, _ in update.built]
-    nothing = np.zeros(n_new)
-    area = [polygon_area(one) for _, one in update.built]
-    shown = {
-        "status": [update.status[row] for row in rows] + [NEW] * n_new,
-        "confidence": np.append(update.confidence[rows], of_new),
-        "added": np.append(update.added[rows], area),
-        "removed": np.append(update.removed[rows], nothing),
-        "shift_east": np.append(update.shift[rows, 0], nothing),
-        "shift_north": np.append(update.shift[rows, 1], nothing),
-    }
-    kept = old_map.kept(old.rows[rows].tolist(), _FIELDS)
-    key, next_id = new_id
-    names = dict(zip(old_map.columns, kept))
-    values = {
-        name: [*column, *([next_id(k) for k in range(n_new)] if name == names.get(key) else [None] * n_new)]
-        for name, column in kept.items()
-    }
-    updated = LayerFeatures([*rings, *(one for _, one in update.built)], {**shown, **values})
-    lost = LayerFeatures(
-        [old_map.geometries[old.rows[row]] for row in gone],
-        {"confidence": update.confidence[gone], **old_map.kept(old.rows[gone].tolist(), _GONE_FIELDS)},
-    )
-    report = _report(update, updated, lost, fit)
-    monitor.inform(_summary(report.values))
-    return updated, lost, report
+@dataclass(frozen=True)
+class _Result:
+    """All buildings: those of the old map, then the new ones."""
+
+    polygons: list  #: Polygons of each, as rings
+    sources: list  #: Its geometry as it was read, None where it is another one now
+    table: dict[str, Any]  #: What was found out on each, by field
+    old_map: LayerFeatures
+    rows: list[int]  #: Rows of the old buildings in their layer
+    new_ids: tuple[str, list]  #: Attribute that identifies buildings, and those of the new ones
+
+    @classmethod
+    def of(cls, update: _Update, old_map: LayerFeatures, rows: list[int], sure: Any, id_field: str) -> _Result:
+        """Return the result of an update; ``sure`` are the confidences of the new outlines, None if unknown."""
+        new = [rings for _, rings in update.built]
+        is_kept = [status not in (MOVED, CHANGED) for status in update.status]
+        outlines = [old_map.geometries[at] if kept else own for at, own, kept in zip(rows, update.rings, is_kept)]
+        sources = [old_map.sources[at] if kept and old_map.sources else None for at, kept in zip(rows, is_kept)]
+        zero, shift = [0.0] * len(new), np.where(np.array(is_kept)[:, None], 0.0, update.shift)
+        table = {
+            "status": update.status + [NEW] * len(new),
+            "confidence": [*update.confidence, *(np.nan if sure is None else sure[one] for one, _ in update.built)],
+            "added": [*update.added, *map(polygon_area, new)],
+            "removed": [*update.removed, *zero],
+            "shift_east": [*shift[:, 0], *zero],
+            "shift_north": [*shift[:, 1], *zero],
+            "height_change": [*update.rise, *[np.nan] * len(new)],
+        }
+        polygons = [update.drawn.get(row, [own]) for row, own in enumerate(outlines)] + [[own] for own in new]
+        return cls(polygons, sources + [None] * len(new), table, old_map, rows, _new_ids(old_map, id_field, len(new)))
+
+    def layer(self, fields: tuple[Field, ...], is_wanted: Callable[[str], bool]) -> LayerFeatures:
+        """Return the buildings whose status is wanted, with some fields and the attributes of the map."""
+        chosen = [row for row, status in enumerate(self.table["status"]) if is_wanted(status)]
+        parts = [row for row in chosen for _ in self.polygons[row]]
+        columns = {one.name: [self.table[one.name][row] for row in parts] for one in fields}
+        key, ids = self.new_ids
+        for known, (name, values) in zip(self.old_map.columns, self.old_map.kept(self.rows, fields).items()):
+            of_all = values + (ids if known == key else [None] * len(ids))
+            columns[name] = [of_all[row] for row in parts]
+        polygons = [rings for row in chosen for rings in self.polygons[row]]
+        return LayerFeatures(polygons, columns, [self.sources[row] for row in parts])
 
 
 def _report(update: _Update, updated: LayerFeatures, lost: LayerFeatures, fit: MapFit) -> Report:

@@ -109,6 +109,8 @@ class LayerFeatures:
 
     geometries: list
     columns: dict[str, Any]
+    #: Of an input layer the geometries as its file has them; one that is given back among the results is written so
+    sources: Optional[list] = None
 
     def __len__(self) -> int:
         return len(self.geometries)

@@ -5,9 +5,11 @@
       <category symbol="0" value="unchanged" label="Unchanged" render="true" type="string"/>
       <category symbol="1" value="moved" label="Moved" render="true" type="string"/>
       <category symbol="2" value="changed" label="Changed" render="true" type="string"/>
-      <category symbol="3" value="new" label="New" render="true" type="string"/>
-      <category symbol="4" value="not seen" label="Not seen" render="true" type="string"/>
-      <category symbol="5" value="doubtful" label="Doubtful" render="true" type="string"/>
+      <category symbol="3" value="heightened" label="Heightened" render="true" type="string"/>
+      <category symbol="4" value="lowered" label="Lowered" render="true" type="string"/>
+      <category symbol="5" value="new" label="New" render="true" type="string"/>
+      <category symbol="6" value="not seen" label="Not seen" render="true" type="string"/>
+      <category symbol="7" value="doubtful" label="Doubtful" render="true" type="string"/>
     </categories>
     <symbols>
       <symbol name="0" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
@@ -58,6 +60,36 @@
       <symbol name="3" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
         <layer class="SimpleFill" pass="0" enabled="1" locked="0">
           <Option type="Map">
+            <Option name="color" value="34,136,51,170" type="QString"/>
+            <Option name="joinstyle" value="miter" type="QString"/>
+            <Option name="offset" value="0,0" type="QString"/>
+            <Option name="offset_unit" value="MM" type="QString"/>
+            <Option name="outline_color" value="25,102,38,255" type="QString"/>
+            <Option name="outline_style" value="solid" type="QString"/>
+            <Option name="outline_width" value="0.5" type="QString"/>
+            <Option name="outline_width_unit" value="MM" type="QString"/>
+            <Option name="style" value="solid" type="QString"/>
+          </Option>
+        </layer>
+      </symbol>
+      <symbol name="4" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
+        <layer class="SimpleFill" pass="0" enabled="1" locked="0">
+          <Option type="Map">
+            <Option name="color" value="204,187,68,170" type="QString"/>
+            <Option name="joinstyle" value="miter" type="QString"/>
+            <Option name="offset" value="0,0" type="QString"/>
+            <Option name="offset_unit" value="MM" type="QString"/>
+            <Option name="outline_color" value="153,140,51,255" type="QString"/>
+            <Option name="outline_style" value="solid" type="QString"/>
+            <Option name="outline_width" value="0.5" type="QString"/>
+            <Option name="outline_width_unit" value="MM" type="QString"/>
+            <Option name="style" value="solid" type="QString"/>
+          </Option>
+        </layer>
+      </symbol>
+      <symbol name="5" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
+        <layer class="SimpleFill" pass="0" enabled="1" locked="0">
+          <Option type="Map">
             <Option name="color" value="187,85,102,170" type="QString"/>
             <Option name="joinstyle" value="miter" type="QString"/>
             <Option name="offset" value="0,0" type="QString"/>
@@ -70,7 +102,7 @@
           </Option>
         </layer>
       </symbol>
-      <symbol name="4" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
+      <symbol name="6" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
         <layer class="SimpleFill" pass="0" enabled="1" locked="0">
           <Option type="Map">
             <Option name="color" value="136,136,136,90" type="QString"/>
@@ -85,7 +117,7 @@
           </Option>
         </layer>
       </symbol>
-      <symbol name="5" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
+      <symbol name="7" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="fill">
         <layer class="SimpleFill" pass="0" enabled="1" locked="0">
           <Option type="Map">
             <Option name="color" value="34,34,34,90" type="QString"/>

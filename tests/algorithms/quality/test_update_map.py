@@ -11,6 +11,8 @@ from lidar_buildings.algorithms.quality.update_map import (
     CHANGED,
     DOUBTFUL,
     GONE,
+    HEIGHTENED,
+    LOWERED,
     MOVED,
     NEW,
     UNCHANGED,
@@ -65,6 +67,7 @@ def iou(one, other):
 
 
 def test_what_is_right_stays_as_it_is_to_the_byte():
+    """As read is what is written: files wind their rings in both ways, and transforming back would round."""
     old = [house(0, 0), house(0.3, 12.2)]
     rows, gone, report = updated(old, [house(0, 0), house(0, 12)], columns={"id": [7, 9], "street": ["A", None]})
     assert [(row["status"], row["street"]) for (row,) in rows.values()] == [(UNCHANGED, "A"), (UNCHANGED, None)]
@@ -193,6 +196,26 @@ def test_buildings_of_the_map_neither_overlap_nor_part_where_one_is_drawn_anew()
     assert sum(map(polygon_area, rings)) == pytest.approx(280, abs=1)
     for corner in [(10, 0), (10, 8), (20, 0), (20, 8)]:
         assert (rings[1][0] == corner).all(axis=1).any()
+
+
+@pytest.mark.parametrize("is_classified", [True, False])
+def test_roofs_that_have_risen_or_fallen_since_an_earlier_survey(is_classified):
+    houses = [house(0, 0), house(20, 0), house(0, 15), annexed(20, 15)]
+    xyz, classes = cloud(houses)
+    earlier = np.column_stack([xyz[:, :2], xyz[:, 2] * 0.9])
+    for (rings,), height in zip((houses[1], houses[2]), (2.0, 8.0)):
+        earlier[are_within(xyz[:, :2], sides_of_rings([rings])), 2] = height
+    made, _, report = update_map(
+        xyz,
+        classes,
+        reference_xyz=earlier,
+        reference_classification=classes if is_classified else np.ones_like(classes),
+        old_map=LayerFeatures([*houses[:3], house(20, 15)], {"id": [1, 2, 3, 4]}),
+    )
+    assert made.columns["status"] == [UNCHANGED, HEIGHTENED, LOWERED, CHANGED]
+    assert made.columns["height_change"] == pytest.approx([0.5, 3.0, -3.0, 0.5])
+    assert (report.values["heightened"], report.values["lowered"]) == (1, 1)
+    assert [made.geometries[row] is houses[row] for row in range(3)] == [True] * 3
 
 
 def test_points_without_ground_are_refused():
