@@ -258,7 +258,7 @@ class EptOctree:
         zstandard, found = packages.zstandard() if self.ept.kind == "zstandard" else None, bytearray()
         errors = (zstandard.ZstdError, EOFError) if zstandard else (EOFError,)
         try:
-            # What is asked for at once is allocated, whatever there is.
+            # A stream allocates as much as one call asks for.
             stream = zstandard.open(stream) if zstandard else stream
             while len(found) <= size and (piece := stream.read(_PIECE)):
                 found += piece

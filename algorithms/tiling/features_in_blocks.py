@@ -21,8 +21,9 @@ _ROW = "row of the layer"
 def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor: Monitor) -> LayerFeatures:
     """Return what a stage makes of the features of a layer that touch a survey, in their order.
 
-    The values are those of one run on all points where nothing beyond the reach of the stage decides on a feature, but
-    for what it measures of the whole. Memory: the points of one block.
+    The values don't depend on the blocks where nothing beyond the reach of the stage decides on a feature. They are
+    those of one run but for measures that are taken on parts of large surveys, see :func:`.samplings_of`. Memory: the
+    points of one block.
 
     Parameters
     ----------
