@@ -8,9 +8,11 @@ from ..footprints.soft_shares import Lattice
 from ..geometry.cell_polygons import cell_polygons
 from ..geometry.line_segments import is_valid
 from ..geometry.points_in_polygons import are_within
-from ..geometry.rings import polygon_area
+from ..geometry.polygon_overlap import as_polygons, overlaps
+from ..geometry.rings import perimeter, polygon_area, sides_of_rings
 from ..geometry.subdivision import Subdivision
 from ..packages import spatial
+from ..stage import Monitor
 
 # Cuts along old walls pass vertices this closely (m). Maps have details of a centimeter; where lines nearly coincide,
 # coarser cuts are sound.
@@ -25,12 +27,16 @@ _NEW_SNAP = 0.3
 # Area of a cell as a share (m) of the length around it below which it is a seam: a strip 5 cm wide.
 _THIN = 0.025
 
+# Greatest overlap (m²) with a building that stays, and difference in area from the nodes wanted, in widths of a change
+# along the outline: more is a wall that was not cut.
+_OVERLAP, _MOST_OFF = 0.01, 0.25
+
 # Sine of the greatest angle between a new wall and the old one that it is part of, 10°.
 _PARALLEL = 0.17
 
 
 def draw_labels(
-    lattice: Lattice, wanted: np.ndarray, old: np.ndarray, fixed: np.ndarray, new: np.ndarray, width: float
+    lattice: Lattice, wanted: np.ndarray, old: list, fixed: list, new: list, width: float
 ) -> dict[int, list[list[np.ndarray]]]:
     """Return the polygons of each label from 1 on, as rings, m, the largest polygon first.
 
@@ -40,22 +46,38 @@ def draw_labels(
         Nodes in and around these buildings.
     wanted : ndarray of shape (rows, columns), int64
         Label of the building that each node is to be of: 0 the ground, -1 what stays.
-    old, fixed, new : ndarray of shape (k, 2, 2)
-        Walls of old buildings that are drawn, of those that stay as they are, and new ones: start and end, m.
+    old, fixed, new : list of list of ndarray
+        Old buildings that are drawn, those that stay as they are, and new outlines, as rings, m.
     width : float
         Least width of a change, m. New walls nearer to the line of an old one go on along it.
 
     Returns
     -------
     dict of int to list of list of ndarray
-        They overlap neither each other nor what stays, and where they keep an old wall they have its vertices.
+        They overlap neither each other nor what stays, and where they keep an old wall they have its vertices. Labels
+        that can't be drawn so are left out.
     """
-    new = _along_old(new, np.concatenate([old, fixed]), width)
+    there, stays, built = (
+        sides_of_rings([ring for rings in polygons for ring in rings]) for polygons in (old, fixed, new)
+    )
+    built = _along_old(built, np.concatenate([there, stays]), width)
+    best: dict[int, list] = {}
     for snap in _OLD_SNAPS:
-        drawn = _drawn(lattice, wanted, old, fixed, new, (snap, _NEW_SNAP * width))
-        if all(is_valid(rings) for polygons in drawn.values() for rings in polygons):
+        drawn = _drawn(lattice, wanted, there, stays, built, (snap, _NEW_SNAP * width))
+        sound = {one: own for one, own in drawn.items() if _is_sound(own, (wanted == one).sum(), lattice, fixed, width)}
+        if len(sound) == len(drawn):
             return drawn
-    return {number: [rings for rings in polygons if is_valid(rings)] for number, polygons in drawn.items()}
+        best = max(best, sound, key=len)
+    return best
+
+
+def _is_sound(polygons: list, count: int, lattice: Lattice, fixed: list, width: float) -> bool:
+    """Return whether polygons are valid, about as large as that many nodes, and overlap nothing that stays."""
+    edges = as_polygons(polygons)
+    around = sum(perimeter(ring) for rings in polygons for ring in rings)
+    is_sized = abs(edges.area.sum() - count * lattice.step**2) <= _MOST_OFF * width * around
+    shared = overlaps(edges, as_polygons(fixed), Monitor())[2]
+    return is_sized and bool((shared <= _OVERLAP).all()) and all(map(is_valid, polygons))
 
 
 def _drawn(

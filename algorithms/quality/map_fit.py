@@ -75,6 +75,8 @@ def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
     first, _ = walls.fit(np.zeros(3))
     usual = np.median(first, axis=0)
     fits, _ = walls.fit(usual)
+    # A shift with an overhang of its own would be that of a part that was built or torn down.
+    fits[:, 2] = usual[2]
     off, found = walls.deviations(fits)
     before, _ = walls.deviations(np.tile(usual, (count, 1)))
     apart = np.hypot(*(fits - usual)[:, :2].T)

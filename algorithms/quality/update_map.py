@@ -230,6 +230,8 @@ def update_map(
     gone = result.layer(_GONE_FIELDS, lambda status: status == GONE)
     report = _report(update, updated, gone, fit)
     monitor.inform(_summary(report.values))
+    if update.undrawn:
+        monitor.warn(f"{update.undrawn} new buildings are left out: they can't be drawn beside those of the map.")
     return updated, gone, report
 
 
@@ -248,6 +250,7 @@ class _Update:
     shift: np.ndarray  #: (n, 2), m
     rise: np.ndarray  #: (n,), m: rise of the roof since the earlier survey, NaN where unknown
     drawn: dict[int, list] = field(default_factory=dict)  #: Polygons of changed buildings, by row
+    undrawn: int = 0  #: New buildings that could not be drawn
     built: list[tuple[int, list]] = field(default_factory=list)  #: New buildings: row of the outline, rings
 
     @classmethod
@@ -503,8 +506,8 @@ class _Block:
         around = np.array([[-self.width], [self.width]]) + lattice.positions[[0, -1]]
         here = meeting_boxes(around[None], as_polygons([update.rings[row] for row in stays]).box)[1]
         fixed = np.setdiff1d(np.array(stays, int)[here], changed).tolist()
-        groups = (update.rings, changed), (update.rings, fixed), (update.outlines, sorted(set(used)))
-        old, kept, new = (sides_of_rings([ring for row in rows for ring in polygons[row]]) for polygons, rows in groups)
+        old, kept = ([update.rings[row] for row in rows] for rows in (changed, fixed))
+        new = [update.outlines[row] for row in sorted(set(used))]
         return draw_labels(lattice, wanted, old, kept, new, self.width)
 
     def _keep(self, kind: str, row: int, drawn: list) -> None:
@@ -512,6 +515,7 @@ class _Block:
         update, polygons = self.update, [rings for rings in drawn if polygon_area(rings) >= self.min_area]
         if kind == "new":
             update.built += [(row, rings) for rings in polygons]
+            update.undrawn += not polygons
         elif polygons:
             update.drawn[row], update.status[row] = polygons, CHANGED
         else:
