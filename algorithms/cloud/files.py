@@ -236,7 +236,17 @@ def open_named(
     box: Optional[np.ndarray] = None,
     spacing: Optional[np.ndarray] = None,
 ) -> tuple[list[Path], list[Header]]:
-    """Return those of some files that have points, and their headers, with CRS of each, box as reach and spacing."""
+    """Return those of some files that have points, and their headers.
+
+    Parameters
+    ----------
+    named : dict of Path to Named
+        The files, with the CRS that a catalog gives each.
+    monitor : Monitor, optional
+        Receives progress.
+    box, spacing
+        As of :func:`read_cloud`.
+    """
     files, headers = open_headers(list(named), monitor)
     return files, [
         replace(header, named=named[file].crs, reach=box, spacing=spacing) for file, header in zip(files, headers)
