@@ -13,6 +13,8 @@ pytest.importorskip("qgis.core")
 
 from qgis.core import QgsProcessingUtils, QgsVectorLayer
 
+from lidar_buildings.provider.review import is_reviewable
+
 CORNER = np.array([84_000.123, 447_000.456])
 
 
@@ -40,6 +42,7 @@ def test_outlines_that_stay_are_written_as_they_were_read(context, log, tmp_path
         layer = QgsProcessingUtils.mapLayerFromString(made[name], context)
         assert isinstance(layer, QgsVectorLayer)
         assert layer.crs().authid() == crs
+        assert is_reviewable(layer)
         found[name] = {feature["id"]: bytes(feature.geometry().asWkb()) for feature in layer.getFeatures()}
     assert found["UPDATED_MAP"] == {key: source[key] for key in (7, 8)}
     assert found["BUILDINGS_GONE"] == {9: source[9]}
