@@ -41,7 +41,7 @@ _USUAL = np.array([0.005, 0.005, 0.05])
 _FOUND = 0.6
 
 # A building that is moved lies this much nearer to its counterpart afterwards: least ratio of the deviations.
-_NEARER = 0.5
+_NEARER = 0.35
 
 # Shifts are of a building if they are greater than this multiple of the median one; least and greatest tolerance (m).
 _DEVIATIONS, _LEAST_SHIFT, _MOST_SHIFT = 3.0, 0.75, 2.0
