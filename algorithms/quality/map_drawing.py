@@ -29,7 +29,7 @@ _THIN = 0.025
 
 # Greatest overlap (m²) with a building that stays, and difference in area from the nodes wanted, in widths of a change
 # along the outline: more is a wall that was not cut.
-_OVERLAP, _MOST_OFF = 0.01, 0.25
+_OVERLAP, _MOST_OFF = 0.01, 0.5
 
 # Sine of the greatest angle between a new wall and the old one that it is part of, 10°.
 _PARALLEL = 0.17
