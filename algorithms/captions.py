@@ -53,6 +53,7 @@ _CAPTIONS = {
     "classifybuildings": "Confidence that a cluster is a building, from blue, low, to red, high.",
     "classifyvegetation": "Crowns, hedges and bushes in green, the darker the higher; buildings red, walls gray.",
     "keepclasses": "A simulated town in the colors of the classes that it came with.",
+    "classifysegments": "Segments of the terrain, picked by area, as ground in brown; all else gray.",
     "classifywater": "The river of a simulated town in blue, below its bridges.",
     "classifywires": "A simulated transmission line and a line along houses: wires yellow, masts brown.",
     "completebuildings": "Whole buildings in red, with walls, dormers and edges.",

@@ -53,6 +53,7 @@ _MODULES = (
     "landcover.keep_classes",
     "landcover.restore_classes",
     "landcover.recode_classes",
+    "landcover.classify_segments",
     "footprints.extract_footprints",
     "footprints.regularize_polygons",
     "walls.classify_roofs",

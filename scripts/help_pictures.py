@@ -152,6 +152,9 @@ SCENES = {
         LINES, (*BUILDINGS, "classify_wires", "classify_vegetation"), color="classification", azimuth=-30.0, tilt=75.0
     ),
     "keepclasses": Scene(TOWN, (("keep_classes", {"keep": "all"}),), color="classification", keeps_classes=True),
+    "classifysegments": Scene(
+        TOWN, (NOISE, "segment_surfaces", ("classify_segments", {"min_area": 1000.0})), color="classification"
+    ),
     "completebuildings": Scene(TOWN, BUILDINGS, color="classification"),
     "refinebuildings": Scene(TOWN, (*BUILDINGS, "refine_buildings"), color="building_probability"),
     "extractfootprints": Scene(TOWN, (*BUILDINGS, "extract_footprints"), color="classification", lines="footprints"),

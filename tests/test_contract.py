@@ -103,6 +103,7 @@ STAGE_IDS = {
     "exportforroofer",
     "exportmodels",
     "regularizepolygons",
+    "classifysegments",
     "assessbuildings",
     "reportbuildings",
     "assessground",

@@ -37,22 +37,24 @@ NOISE = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
 VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
 
 
-def parse_classes(text: str, label: str = "Ignored classes") -> np.ndarray:
+def parse_classes(text: str, label: str = "Ignored classes", most: int = 255) -> np.ndarray:
     """Return the class numbers of a text such as ``"7, 18, 64-67"``, ascending; ``label`` is named in errors.
+
+    Other numbers than classes, too, with ``most`` the greatest.
 
     Raises
     ------
     ValueError
-        If the text is anything else than numbers from 0 to 255 and ranges of them.
+        If the text is anything else than numbers from 0 to ``most`` and ranges of them.
     """
     classes: set[int] = set()
     for part in filter(None, (piece.strip() for piece in text.split(","))):
         ends = [end.strip() for end in part.split("-")]
         if (
             len(ends) > 2
-            or not all(end.isdecimal() and int(end) <= 255 for end in ends)
+            or not all(end.isdecimal() and int(end) <= most for end in ends)
             or int(ends[0]) > int(ends[-1])
         ):
-            raise ValueError(f"{label} must be numbers from 0 to 255 and ranges such as 64-67, got {part!r}.")
+            raise ValueError(f"{label} must be numbers from 0 to {most} and ranges such as 64-67, got {part!r}.")
         classes.update(range(int(ends[0]), int(ends[-1]) + 1))
     return np.array(sorted(classes), dtype=np.int64)

@@ -124,23 +124,37 @@ def filter_points(
     if height_above_ground is None and (min_height is not None or max_height is not None):
         raise ValueError("Limits of the height need HeightAboveGround; run 'Height above ground' first or set none.")
     if height_above_ground is not None:
-        kept &= _within(height_above_ground, min_height, max_height, ("min_height", "max_height"), monitor)
+        kept &= within_limits(height_above_ground, min_height, max_height, ("min_height", "max_height"), monitor)
     monitor.progress(0.6)
     if values is None and (low is not None or high is not None):
         raise ValueError(
             "Minimum and maximum value are limits of a dimension; name it (Intensity, NormalZ) or set none."
         )
     if values is not None:
-        kept &= _within(values, low, high, ("low", "high"), monitor)
+        kept &= within_limits(values, low, high, ("low", "high"), monitor)
     return np.flatnonzero(~kept if invert else kept)
 
 
-def _within(
+def within_limits(
     values: np.ndarray, low: Optional[float], high: Optional[float], names: tuple[str, str], monitor: Monitor
 ) -> np.ndarray:
-    """Return which values (n,) lie between two limits, all without limits; log the range that they have.
+    """Find values between two limits, all without limits; log the range that they have.
 
-    ``names`` are those of the limits. One that is not set is logged as the least or the greatest value.
+    Parameters
+    ----------
+    values : ndarray of shape (n,)
+        Values, NaN where undefined: these are within no limit.
+    low, high : float, optional
+        Limits that are set.
+    names : tuple of str
+        Their names; one that is not set is logged as the least or the greatest value.
+    monitor : Monitor
+        Receives the log.
+
+    Returns
+    -------
+    ndarray of shape (n,), bool
+        Which are within the limits.
     """
     defined = values[np.isfinite(values)]
     for name, limit, found in zip(names, (low, high), (defined.min, defined.max)):

@@ -40,7 +40,7 @@ def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray
     ndarray of shape (group.max() + 1,)
         Occupied cells times their area.
     """
-    grid, owner, _ = _occupied(xyz, group, density)
+    grid, owner, _ = occupied_cells(xyz, group, density)
     return np.bincount(owner, minlength=int(group.max()) + 1) * grid.size**2
 
 
@@ -117,7 +117,7 @@ def adjacent_groups(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, dens
     ndarray of shape (group.max() + 1,), int32
         Numbers from 0. Groups are adjacent when a cell of one is a cell of the other or next to one.
     """
-    grid, owner, cell = _occupied(xyz, group, density)
+    grid, owner, cell = occupied_cells(xyz, group, density)
     owner, cell = (values[chosen[owner]] for values in (owner, cell))
     cells, which = distinct(cell)
     connected = connected_cells(grid, cells)[1][which]
@@ -158,8 +158,11 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     return np.bincount(owner, (chosen_around / around)[which], len(chosen)) / np.maximum(size, 1)
 
 
-def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:
-    """Return the grid that area is counted in, and group and cell of each cell of a group (m,), sorted by groups."""
+def occupied_cells(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:
+    """Return the grid that area is counted in, and group and cell of each cell of a group (m,), sorted by both.
+
+    Arguments as of :func:`plan_areas`; points of negative groups are left out.
+    """
     grid = fixed_grid_over(xyz, _cell_size(density))
     member = group >= 0
     # Numbers of occupied cells are small, those of cells between far points times the groups may be too large.

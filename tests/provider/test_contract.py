@@ -90,6 +90,7 @@ IDS = {
     "exportforroofer",
     "exportmodels",
     "regularizepolygons",
+    "classifysegments",
     "simulatetown",
     "simulateflight",
     "simulatevillage",

@@ -11,6 +11,7 @@ from qgis.core import (
     QgsFeatureRequest,
     QgsPointCloudLayer,
     QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
     QgsProcessingOutputLayerDefinition,
     QgsProcessingUtils,
     QgsProject,
@@ -477,3 +478,21 @@ def test_pages_are_named_after_their_algorithm_where_all_runs_are_listed(provide
         algorithm = provider.algorithm(name).create()
         assert algorithm.outputDefinition("REPORT").description() == f"Report ({title})"
         assert algorithm.parameterDefinition("REPORT").description() == "Report"
+
+
+def test_outlines_that_are_selected_in_the_map_are_the_segments_that_get_the_class(provider, context, log, tmp_path):
+    x, y = np.mgrid[0:20:0.5, 0:20:0.5].reshape(2, -1)
+    segment = 1 + (x > 10) + 2 * (y > 10)
+    arrays = {"xyz": np.column_stack([x, y, 3.0 * segment]), "segment_id": segment.astype(np.int32)}
+    write_cloud(create_cloud(arrays, "EPSG:28992"), tmp_path / "in.las")
+    given = {"INPUT": str(tmp_path / "in.las"), "OUTPUT": str(tmp_path / "classes.las")}
+    path = run("classifysegments", {**given, "SEGMENTS": str(tmp_path / "s.gpkg")}, context, log)["SEGMENTS"]
+    assert not np.any(read_cloud(given["OUTPUT"]).get("classification") == 2)
+    layer = QgsVectorLayer(path, "Segments", "ogr")
+    layer.selectByExpression("id in (2, 3)")
+    QgsProject.instance().addMapLayer(layer)
+    selected = QgsProcessingFeatureSourceDefinition(layer.id(), selectedFeaturesOnly=True)
+    run("classifysegments", {**given, "SELECTION": selected}, context, log)
+    QgsProject.instance().removeMapLayer(layer)
+    classes = read_cloud(given["OUTPUT"]).get("classification")
+    np.testing.assert_array_equal(classes == 2, np.isin(segment, (2, 3)))
