@@ -1,4 +1,4 @@
-"""Segments that a person picks, by their numbers, in the map or by what is measured on them, as a class."""
+"""Segments that a person picks, by their numbers, in the map or by their measures, as a class."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def classify_segments(
 
     Run it first with nothing set: no class changes, and *Segments* has the outline of each segment with its number and
     measures. Select the terrain there, say, and run it again with these outlines as *Segments to pick* and *Selected
-    features only*. A segment must have one of the numbers, be in that layer and be within all limits, of what is set.
+    features only*. A segment must have one of the numbers, be in that layer and be within all limits that are set.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def _numbers(selection: LayerFeatures) -> np.ndarray:
 def _measured(
     points: np.ndarray, which: np.ndarray, heights: np.ndarray, density: float, monitor: Monitor
 ) -> tuple[dict[str, np.ndarray], list]:
-    """Return what is measured on segments ``which`` (n,) from 0, by fields of the layer, and their outlines."""
+    """Return the measures of segments ``which`` (n,) from 0, by fields of the layer, and their outlines."""
     grid, owner, cell = occupied_cells(points, which, density)
     planes = planes_of(points, which, int(which.max()) + 1)
     known = np.isfinite(heights)

@@ -1,4 +1,4 @@
-"""Segments picked by number, in the map and by what is measured on them: a scene whose measures are known."""
+"""Segments picked by number, in the map and by their measures: a scene whose measures are known."""
 
 import numpy as np
 import pytest
