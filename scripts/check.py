@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Check in half a minute what differs from main: style, types, imports, and the tests of the modules that changed.
 
-These are the tests of their names, those of their rooms that import them, their examples, and the contract of stages.
+These are the tests of their names, tests of their rooms that import them, their examples, and the contract of stages.
 Tests marked as slow are left out, and after 20 seconds no further ones begin, as is said then; ``make test`` runs
 everything.
 """
@@ -36,7 +36,7 @@ def git(*words: str) -> list[str]:
 
 
 def changed() -> list[Path]:
-    """Return the modules that differ from those of main where this branch began, new ones too."""
+    """Return the modules that differ from main where this branch began, new ones too."""
     (base,) = git("merge-base", "main", "HEAD")
     names = {*git("diff", "--name-only", base), *git("ls-files", "--others", "--exclude-standard")}
     return sorted(path for path in map(Path, names) if path.suffix == ".py" and (ROOT / path).is_file())

@@ -36,7 +36,7 @@ from .units import (
 _WKT = ((PROJECTION, 2112), (b"liblas", 2112))
 # WKT of real systems has some thousand bytes; a longer one takes seconds to parse and is taken for damage.
 _LONGEST_WKT = 1_000_000
-# Scale of the map, as a difference from 1, that a warning names: twice that of the edges of UTM's zones.
+# Difference of the map's scale from 1 above which a warning names it: twice the difference at the edges of UTM zones.
 _NAMED_SCALE = 0.001
 # Scale, as a difference from 1, at which meters are those on the ground: no system for surveys has such a one within
 # its area, and world Mercator has it from 8 degrees of latitude on.
@@ -51,7 +51,7 @@ _APART, _CROSS = 50.0, np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
 # Semi-major axis (m) and squared eccentricity of the ellipsoid of GRS 1980: all others are within 0.02 % of it.
 _AXIS, _ECCENTRICITY = 6378137.0, 0.00669438
 
-# A code, with that of the heights.
+# A code, and the code of the vertical system.
 _CODE = re.compile(r"[A-Za-z]{3,}:\w+(\+\d+)?")
 # Units of two readings of a system are one if they differ by no more than this share: US and international feet are.
 _SAME_UNIT = 1e-5
@@ -167,7 +167,7 @@ def _crs_of_keys(header: Header, authority: Optional[Authority]) -> Crs:
     code = code_of_keys(keys)
     known = authority.define("", geokey_records(header)) if authority else None
     if authority and known is None and code:
-        # Many files have the code of a datum in place of that of the heights.
+        # Many files have the code of a vertical datum in place of the code of a vertical system.
         known = authority.define(text_of_keys(keys)) or authority.define(f"EPSG:{code}")
     of_system = units_of_wkt(known.wkt) if known else None
     units, warnings = units_of_geokeys(keys, of_system)
@@ -216,7 +216,7 @@ def _identity(known: Optional[Definition], text: str) -> str:
 
 
 def _on_the_ground(crs: Crs, header: Header, authority: Authority) -> Crs:
-    """Return the system with meters on the ground where those of the map are others, by the scale in the middle."""
+    """Return the system with its unit in meters on the ground: corrected by the scale of the map in the middle."""
     if not (header.low.any() or header.high.any()) or not np.isfinite([header.low, header.high]).all():
         return crs
     middle, step = (header.low[:2] + header.high[:2]) / 2, _APART / crs.horizontal
@@ -247,7 +247,7 @@ def _on_the_ground(crs: Crs, header: Header, authority: Authority) -> Crs:
 
 
 def common_crs(systems: Sequence[Crs], names: Sequence[str], monitor: Monitor, whole: bool = True) -> Crs:
-    """Return the system of several clouds: that of the first that names one, which the others are taken to have.
+    """Return the system of several clouds: the first that is named; clouds that name none are taken to have it.
 
     Parameters
     ----------

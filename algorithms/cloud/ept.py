@@ -23,13 +23,13 @@ from .web_file import WebFile, fetch_files, is_on_web
 
 # How nodes are stored, by what their files end in: zstandard packs what binary nodes are.
 _ENDINGS = {"laszip": "laz", "binary": "bin", "zstandard": "zst"}
-# Most nodes and pages of one hierarchy: ten times those of the largest known data sets.
+# Most nodes and pages of one hierarchy: ten times as many as the largest known data sets have.
 _MOST_NODES, _MOST_PAGES = 5_000_000, 20_000
 # In place of a number of points: the node begins a page of its own.
 _PAGE = -1
 # Most points of a node.
 _MOST_POINTS = 2**31 - 1
-# Most bytes of the points of a node, unpacked: a thousand times those of the largest known. They are read in pieces.
+# Most bytes of the points of a node, unpacked: a thousand times the largest known node. They are read in pieces.
 _MOST_BYTES, _PIECE = 2**30, 2**20
 _KEY = re.compile(r"\d{1,2}(?:-\d{1,12}){3}")
 # Kinds of numbers by their names in a schema, with the numbers of bytes that they may have.
@@ -38,14 +38,14 @@ _KINDS = {"signed": ("i", (1, 2, 4, 8)), "unsigned": ("u", (1, 2, 4, 8)), "float
 _LONGEST_NAME, _MOST_DIMENSIONS = 31, 300
 # Scale (units of the file) of coordinates that are stored as floating numbers.
 _SCALE = 0.001
-# Names of standard fields that are not those of laspy in capitals.
+# Names of standard fields that differ from laspy's names in capitals.
 _NAMES = {"ScanAngleRank": "scan_angle", "ScanAngle": "scan_angle", "Infrared": "nir", "ScanChannel": "scanner_channel"}
 # Compact form of a name: without what PDAL and laspy write in different ways.
 _FLAT = str.maketrans("", "", "_")
 
 
 def is_ept(path: Path) -> bool:
-    """Whether a path or address is that of a description of Entwine point tiles."""
+    """Whether a path or address names a description of Entwine point tiles."""
     return kind_of(path) == EPT
 
 
@@ -185,7 +185,7 @@ def _field(one: dict) -> tuple[str, np.dtype, float, float]:
     letter, sizes = _KINDS[one["type"]]
     if size not in sizes or not 0 < len(name.encode()) <= _LONGEST_NAME or not np.isfinite([scale, offset]).all():
         raise ValueError(name)
-    # A scale of 1 and no offset are those of plain numbers.
+    # Plain numbers have a scale of 1 and no offset.
     is_plain = (scale, offset) == (1.0, 0.0) and name not in ("X", "Y", "Z")
     return name, np.dtype(f"<{letter}{size}"), 0.0 if is_plain else scale, offset
 
@@ -222,7 +222,7 @@ class EptOctree:
         self.chunks = np.column_stack([counts * 0, counts * self._size(), counts]).astype(np.int64)
 
     def _size(self) -> float:
-        """Return the bytes of a point: packed, those of the root node, as only asking for a file shows its size."""
+        """Return the bytes of a point; if packed, of the root node, as only asking for a file shows its size."""
         if self.ept.kind == "binary":
             return self.ept.record.itemsize
         at = (self.keys == 0).all(axis=1).argmax() if len(self.keys) else 0

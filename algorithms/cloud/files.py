@@ -236,7 +236,7 @@ def open_named(
     box: Optional[np.ndarray] = None,
     spacing: Optional[np.ndarray] = None,
 ) -> tuple[list[Path], list[Header]]:
-    """Return those of some files that have points, and their headers.
+    """Return the files that have points, and their headers.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ _DATA_ROLE = "data"
 # How a URI of a file begins, up to the path on this computer; and the slash before a drive of Windows in it.
 _FILE = re.compile("^file:(?://(?:localhost)?(?=/))?", re.IGNORECASE)
 _BEFORE_DRIVE = re.compile("^/(?=[A-Za-z]:/)")
-# Most files that STAC items come in, and most items: ten times those of the largest survey that is run as one.
+# Most files that STAC items come in, and most items: ten times as many as the largest survey that is run as one.
 _MOST_PAGES, _MOST_ITEMS = 500, 50_000
 # Links of a page or a collection that lead to more items.
 _LEADS = ("next", "items", "item")

@@ -32,7 +32,7 @@ def read_cityjson(text: str) -> tuple[LayerFeatures, str]:
     """Return the faces of the buildings in a file, in its coordinates, and the code of its CRS, "" without one.
 
     Each face has its building, level of detail and kind; the first ground of a building, or else its first face, has
-    the building's attributes, with those of its parents. Footprints (level 0) are left out.
+    the attributes of the building and of its parents. Footprints (level 0) are left out.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def read_cityjson(text: str) -> tuple[LayerFeatures, str]:
 
 
 def _documents(text: str) -> list[dict]:
-    """Return the objects of a file: one, or those of the lines of CityJSONSeq."""
+    """Return the objects of a file: one, or one for each line of CityJSONSeq."""
     try:
         return [json.loads(text)]
     except json.JSONDecodeError:

@@ -28,7 +28,7 @@ _ALIGNED = 8
 # Value of numbers that an object has no attribute for.
 _NO_DATA = -9999
 
-# From the axes of maps (east, north, up) to those of glTF (right, up, towards the viewer).
+# From the axes of maps (east, north, up) to the axes of glTF (right, up, towards the viewer).
 _Y_UP = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
@@ -82,7 +82,7 @@ def glb(
 
 
 def _material(kind: str) -> dict[str, Any]:
-    # The format has linear shares of light, screens and styles those of the sRGB curve.
+    # glTF stores linear light; screens and styles use the sRGB curve.
     shares = ((np.array(_COLORS[kind]) / 255 + 0.055) / 1.055) ** 2.4
     surface = {"baseColorFactor": [*np.round(shares, 4).tolist(), 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9}
     return {"name": kind, "pbrMetallicRoughness": surface, "doubleSided": True}

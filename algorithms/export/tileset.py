@@ -147,7 +147,7 @@ def _levels(models: Sequence[ExportedModel], boxes: np.ndarray, name: str, site:
 
 
 def _error(model: ExportedModel, level: str) -> float:
-    """Return how far (m) corners of the best roof lie above or below the nearest corner height of that of a level."""
+    """Return how far (m) corners of the best roof lie above or below the nearest corner height of a level."""
     best, coarse = (np.unique(_roof_heights(faces)) for faces in (model.best, model.at(level)))
     if not len(best) or not len(coarse):
         return 0.0

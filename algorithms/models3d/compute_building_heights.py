@@ -56,7 +56,7 @@ _ON_PLANES = 0.5
 # Distance (m) from an outline within which its ground and its neighbors are: a wide building has none nearer.
 _REACH = 100.0
 
-# What parts of a cloud take of the whole: whether points have class 6, and the spacing (m) of those of roofs.
+# What parts of a cloud take of the whole: whether points have class 6, and the spacing (m) of roof points.
 _ARE_CLASSIFIED, _ROOF_SPACING = "are_classified", "building_spacing"
 
 # Adjusted standard GPS time is counted from this day, less 10⁹ s. Times of a week have no date.
@@ -119,9 +119,9 @@ def compute_building_heights(
 ):
     """Measure the heights, volume and roof type of the buildings of a map, without models.
 
-    Every polygon that touches the extent of the points keeps its outline and attributes, and gets those of its roof. An
-    attribute says where the roof was not seen, or where trees hide it. Clouds of any size will do: those of more than
-    10 million points, surveys of many tiles too, are read and worked on block by block.
+    Every polygon that touches the extent of the points keeps its outline and attributes, and gets the attributes of its
+    roof. An attribute says where the roof was not seen, or where trees hide it. Clouds of any size will do: with more
+    than 10 million points, surveys of many tiles too, they are read and worked on block by block.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def _outlines(footprints: LayerFeatures, xyz: np.ndarray, monitor: Monitor) -> t
 
 @dataclass(frozen=True)
 class _Points:
-    """The points of a cloud in the order of their eastings, and those of them that are ground."""
+    """The points of a cloud in the order of their eastings, and the ground points among them."""
 
     xyz: np.ndarray
     classification: np.ndarray

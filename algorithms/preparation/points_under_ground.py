@@ -1,7 +1,7 @@
 """Isolated points under the ground: echoes of pulses that took a detour.
 
 A laser pulse does not pass the ground, so that points under it on all sides are no part of the scene, unless they are a
-floor. Points of multipath come at all depths, those of a floor agree.
+floor. Points of multipath come at all depths, points of a floor at one.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ UNDER_GROUND = UnderGroundRules()
 
 
 def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor) -> np.ndarray:
-    """Return which points (n,) lie under the ground, alone or without a common level.
+    """Return the mask (n,) of the points under the ground, alone or without a common level.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
 
 
 def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: np.ndarray) -> np.ndarray:
-    """Return which elevations (m) below the surface close by are below the ground, too."""
+    """Return the mask of elevations (m) below the surface close by that are below the ground, too."""
     lowest = around[:, 0]
     # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
     lowest_ground = np.where(is_smooth, lowest, 2 * lowest - around[:, 2])
@@ -224,7 +224,7 @@ def _middle(values: np.ndarray) -> np.ndarray:
 
 
 def _on_floor(low: np.ndarray, noise: float) -> np.ndarray:
-    """Return which low points (n, 3), m, lie on a floor that is seen here and there; ``noise`` (m) is that of surfaces.
+    """Return the mask of low points (n, 3), m, on a floor seen here and there; ``noise``, m, is of surfaces.
 
     Points of a floor differ by noise alone, and most low points around are on it. Multipath comes at all depths.
     """

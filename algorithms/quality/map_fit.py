@@ -75,7 +75,7 @@ def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
     first, _ = walls.fit(np.zeros(3))
     usual = np.median(first, axis=0)
     fits, _ = walls.fit(usual)
-    # A shift with an overhang of its own would be that of a part that was built or torn down.
+    # A building that shifts and has another overhang was not misdrawn: a part of it was built or torn down.
     fits[:, 2] = usual[2]
     off, found = walls.deviations(fits)
     before, _ = walls.deviations(np.tile(usual, (count, 1)))
@@ -129,7 +129,7 @@ def _polygon_of(side: np.ndarray, polygons: Polygons) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Walls:
-    """Positions (p, 2) along the outer walls of groups of buildings, m, and those of new outlines."""
+    """Positions (p, 2) along the outer walls of groups of buildings, m, and along new outlines."""
 
     position: np.ndarray
     outward: np.ndarray  #: (p, 2): unit vectors out of the walls

@@ -358,7 +358,7 @@ class _Block:
         return _within(hit, reach / RULES.step)
 
     def decide(self, roofs: list[np.ndarray]) -> None:
-        """Decide on all buildings, and draw those that have changed or are new; ``roofs`` are those of each survey."""
+        """Decide on all buildings, draw the changed and the new ones; ``roofs`` are the roof points of each survey."""
         self.wanted = np.full(self.lattice.shape, 0)
         self.labels: list[tuple[str, int]] = []
         for row in self.olds:
@@ -457,7 +457,7 @@ class _Block:
         may = [row for row in update.covered[outline] if update.status[row] in (UNCHANGED, MOVED)]
         may = [row for row in may if size < polygon_area(update.rings[row])]
         new = [number for number, (kind, _) in enumerate(self.labels, start=1) if kind == "new"]
-        # Areas beside the part: the length of the border times the width of a change.
+        # Areas next to the part: the length of the border times the width of a change.
         old_side, row = max(((np.sum(self.old[near] == row) * least, row) for row in may), default=(0.0, -1))
         new_side, number = max(((np.sum(self.wanted[near] == one) * least, one) for one in new), default=(0.0, 0))
         # Walls of the map are known better than those that a survey has between roofs: a strip along one is the new
@@ -546,14 +546,14 @@ def _new_ids(old_map: LayerFeatures, id_field: str, count: int) -> tuple[str, li
 
 @dataclass(frozen=True)
 class _Result:
-    """All buildings: those of the old map, then the new ones."""
+    """All buildings: of the old map first, then the new ones."""
 
     polygons: list  #: Polygons of each, as rings
     sources: list  #: Its geometry as it was read, None where it is another one now
     table: dict[str, Any]  #: What was found out on each, by field
     old_map: LayerFeatures
     rows: list[int]  #: Rows of the old buildings in their layer
-    new_ids: tuple[str, list]  #: Attribute that identifies buildings, and those of the new ones
+    new_ids: tuple[str, list]  #: Attribute that identifies buildings, and its values for the new ones
 
     @classmethod
     def of(cls, update: _Update, old_map: LayerFeatures, rows: list[int], sure: Any, id_field: str) -> _Result:

@@ -21,14 +21,14 @@ _ROW = "row of the layer"
 def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor: Monitor) -> LayerFeatures:
     """Return what a stage makes of the features of a layer that touch a survey, in their order.
 
-    The values don't depend on the blocks where nothing beyond the reach of the stage decides on a feature. They are
-    those of one run but for measures that are taken on parts of large surveys, see :func:`.samplings_of`. Memory: the
+    The values don't depend on the blocks where nothing beyond the reach of the stage decides on a feature. One run
+    gives the same, but for measures that are taken on parts of large surveys, see :func:`.samplings_of`. Memory: the
     points of one block.
 
     Parameters
     ----------
     stage : Stage
-        One without tunables, which makes one feature each of those of a layer (``each``).
+        A stage without tunables that makes one feature of each feature of a layer (``each``).
     survey : Survey
         The points.
     given : LayerFeatures

@@ -337,7 +337,7 @@ def _named_files(paths: Iterable[Union[str, Path]]) -> dict[Path, Named]:
 
 
 def _is_of_survey(path: Path) -> bool:
-    """Whether a name in the folder of a survey is that of a point cloud; JSON there is of many kinds."""
+    """Whether a name in the folder of a survey is of a point cloud; JSON there is of many kinds."""
     return kind_of(path) not in ("", STAC) and path.is_file()
 
 
