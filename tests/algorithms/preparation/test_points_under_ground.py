@@ -103,6 +103,27 @@ def test_points_at_all_depths_under_a_surface_that_reflects_are_no_floor(rng, de
     assert not found[:-60].any()
 
 
+def test_a_group_at_nearly_one_height_is_no_floor(rng):
+    """Points of a floor differ by noise (2 cm), these by 10 cm each."""
+    group = np.column_stack([rng.uniform(30, 32, (6, 2)), -2 - 0.1 * np.arange(6)])
+    found = under_ground(np.concatenate([plain(rng, 16.0, 60.0), group]), 0.25, 0.02, Monitor())
+    assert found[-6:].all()
+    assert not found[:-6].any()
+
+
+def test_another_run_on_the_result_finds_hardly_anything():
+    """Points found before are counted as companions of others no more."""
+    first = again = 0
+    for seed in (21, 22):
+        town = noisy_town(seed=seed, density=2.0)
+        xyz = town.xyz[town.kind != "far"]
+        found = under_ground(xyz, 2.0**-0.5, 0.02, Monitor())
+        first += found.sum()
+        again += under_ground(xyz[~found], 2.0**-0.5, 0.02, Monitor()).sum()
+    assert first > 200
+    assert again <= 0.02 * first
+
+
 @pytest.mark.parametrize("height_step", [0.0, 0.3])
 def test_order_changes_nothing_where_heights_are_equal(rng, height_step):
     town = noisy_town(density=4.0, size=80.0, seed=5)
