@@ -231,7 +231,7 @@ def update_map(
     report = _report(update, updated, gone, fit)
     monitor.inform(_summary(report.values))
     if update.undrawn:
-        monitor.warn(f"{update.undrawn} new buildings are left out: they can't be drawn beside those of the map.")
+        monitor.warn(f"New buildings left out, as no outline fits between the buildings of the map: {update.undrawn}.")
     return updated, gone, report
 
 
