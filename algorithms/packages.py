@@ -55,6 +55,11 @@ def zstandard() -> Any:
     return importlib.import_module(found[0]) if found else None
 
 
+def pyogrio() -> Any:
+    """Return the module that reads and writes vector files, None where the package is not installed."""
+    return importlib.import_module("pyogrio.raw") if importlib.util.find_spec("pyogrio") else None
+
+
 def absent(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:
     """Return all packages to install: those of the needed ones that are missing, and the one for LAZ."""
     return [*missing(needed), *([] if has_laz() else [_LAZ])]

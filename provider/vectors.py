@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any, Callable, Union
+from typing import Any, Callable
 
 import numpy as np
 from qgis.core import (
@@ -25,7 +25,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QMetaType
 
-from ..algorithms.stage import Field, Layer, LayerFeatures
+from ..algorithms.stage import Field, Layer, LayerFeatures, all_fields, column_on_map, plain
 from .memory_files import memory_folder
 
 _TYPES = {
@@ -90,7 +90,7 @@ def _holds(extension: str, kind: Qgis.ProcessingSourceType) -> bool:
 def fields_of(layer: Layer, features: LayerFeatures) -> QgsFields:
     """Return the fields of a layer, and those of other columns that its features have: attributes of a map."""
     fields = QgsFields()
-    for declared in _all_fields(layer, features):
+    for declared in all_fields(layer, features):
         fields.append(QgsField(declared.name, _type_in_qgis(declared, features.columns[declared.name])))
     return fields
 
@@ -99,18 +99,6 @@ def _type_in_qgis(declared: Field, column: Sequence) -> QMetaType.Type:
     """Return the type of a field: with 64 bits where a whole number needs them, as keys of buildings in maps do."""
     is_long = declared.type is int and any(value is not None and abs(value) >= 2**31 for value in column)
     return QMetaType.Type.LongLong if is_long else _TYPES[declared.type]
-
-
-def _all_fields(layer: Layer, features: LayerFeatures) -> list[Field]:
-    names = {declared.name for declared in layer.fields}
-    others = [Field(name, _type_of(column), "") for name, column in features.columns.items() if name not in names]
-    return [*layer.fields, *others]
-
-
-def _type_of(column: Sequence) -> type:
-    """Return the type of all values of a column, float for numbers of both types, text where they differ otherwise."""
-    types = {type(value) for value in column if value is not None}
-    return bool if types == {bool} else next((kind for kind in (int, float) if types and types <= {int, kind}), str)
 
 
 def wkb_type(layer: Layer, features: LayerFeatures) -> Qgis.WkbType:
@@ -132,33 +120,13 @@ def qgis_features(
     """
     fields = fields_of(layer, features)
     make = _GEOMETRIES[layer.geometry]
-    columns = [_column(declared, features, to_map) for declared in _all_fields(layer, features)]
+    columns = [column_on_map(declared, features, to_map) for declared in all_fields(layer, features)]
     for row, geometry in enumerate(features.geometries):
         feature = QgsFeature(fields)
         source = features.sources[row] if features.sources else None
         feature.setGeometry(source or QgsGeometry(make(geometry, to_map)))
         feature.setAttributes([plain(column[row]) for column in columns])
         yield feature
-
-
-def _column(
-    declared: Field, features: LayerFeatures, to_map: Callable[[np.ndarray], np.ndarray]
-) -> Union[list, np.ndarray]:
-    """Return the values of a field, positions in the coordinates of the cloud's CRS."""
-    column = features.columns[declared.name]
-    if declared.type is str:
-        return [None if value is None else str(value) for value in column]
-    if declared.axis is None:
-        return column
-    positions = np.zeros((len(column), 2))
-    positions[:, declared.axis] = column
-    return to_map(positions)[:, declared.axis]
-
-
-def plain(value: Any) -> Any:
-    """Return a value, a numpy scalar as Python's own (QGIS shows others as empty), NaN and infinity as NULL."""
-    value = value.item() if isinstance(value, np.generic) else value
-    return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
 def number(value: Any) -> Any:

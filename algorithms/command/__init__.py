@@ -1,0 +1,1 @@
+"""The command ``lidar-buildings``: what QGIS's toolbox has, without QGIS, made from the same declarations."""
