@@ -160,7 +160,7 @@ class GroupedPanel(ParametersPanel):
                         combo.setItemText(0, word)
 
     def _add_pickers(self, sections: list[Section]) -> None:
-        """Put buttons beside the fields for classes and dimensions."""
+        """Put buttons next to the fields for classes and dimensions."""
         for section in sections:
             for name, kind in section.pickers.items():
                 field = self._parts(name)[1] if name in self.wrappers else None

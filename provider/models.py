@@ -165,7 +165,7 @@ def _add_parameters(
     definitions: dict[str, QgsProcessingParameterDefinition],
     layout: _Layout,
 ) -> None:
-    """Add the parameters that a step is the first to take, laid out beside its box."""
+    """Add the parameters that a step is the first to take, laid out next to its box."""
     names = _first_taken(pipeline, step)
     last = layout.rows(len(names)) * layout.columns - 1
     layers = _layers_taken(pipeline, step)

@@ -47,7 +47,7 @@ _NO_FILE = re.compile(r"^[A-Za-z]{2,}:")
 _TABLE_IN_FILE = re.compile(r"^ogr:dbname='([^']+)'")
 
 # Formats that are several files, by the extension of the one that is named. Indexes and statistics of an older file
-# would be wrong beside a newer one, and what SQLite has yet to write of an older one would damage it.
+# would be wrong next to a newer one, and what SQLite has yet to write of an older one would damage it.
 _BESIDE = {
     ".shp": (".dbf", ".shx", ".prj", ".cpg", ".qix", ".sbn", ".sbx"),
     ".tab": (".dat", ".map", ".id", ".ind"),
@@ -184,7 +184,7 @@ def _check_file(path: Path) -> None:
 
 
 class Run:
-    """The outputs of a run while it is writing them: in working folders, each beside its target.
+    """The outputs of a run while it is writing them: in working folders, each next to its target.
 
     ``parameters`` are those of the run, with outputs in the working folders. Tables of databases and layers in memory
     stay.
@@ -309,8 +309,8 @@ def through_memory(
 def write_for_qgis(cloud: Cloud, target: str, context: QgsProcessingContext, monitor: Monitor) -> str:
     """Write ``cloud`` to ``target`` and return the file that QGIS is to load.
 
-    That is ``target``, or a COPC beside it where the result is to be loaded by a QGIS without PDAL. Without the package
-    lazrs the COPC is neither written nor loaded.
+    That is ``target``, or a COPC next to it where the result is to be loaded by a QGIS without PDAL. Without the
+    package lazrs the COPC is neither written nor loaded.
     """
     path = Path(target)
     needs_copc = kind_of(path) != COPC and context.willLoadLayerOnCompletion(target) and not reads_las()

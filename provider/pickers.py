@@ -1,4 +1,4 @@
-"""Buttons beside text fields that fill them in: classes by their names, dimensions of the chosen cloud."""
+"""Buttons next to text fields that fill them in: classes by their names, dimensions of the chosen cloud."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ def about_run(title: str, inputs: Sequence[Path], points: int, plane: str) -> li
 def complete_page(path: Path, rows: Iterable[Row], steps: Iterable[StepFacts], of_seconds: str = "") -> None:
     """Add to a page in a working folder the facts about its run, and the steps with their parameters.
 
-    ``of_seconds`` says beside their sum what the seconds of the steps are of.
+    ``of_seconds`` says what the seconds of the steps are of.
     """
     page = path.read_text(encoding="utf-8")
     path.write_text(with_run(page, draw_facts(rows), draw_steps(steps, of_seconds)), encoding="utf-8")

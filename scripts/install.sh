@@ -126,7 +126,7 @@ install_packages() {
     fi
     say "Profile: installing laspy and lazrs into $PROFILE_FOLDER/python"
     mkdir -p "$PROFILE_FOLDER/python"
-    # Without --no-deps pip would put a second numpy beside QGIS's own and break scipy and GDAL.
+    # Without --no-deps pip would put a second numpy next to QGIS's own and break scipy and GDAL.
     PIP_ROOT_USER_ACTION=ignore /usr/bin/python3 -m pip install --quiet --no-deps --upgrade --target "$PROFILE_FOLDER/python" \
         -r "$HERE/requirements.txt"
     has_packages || fail "laspy and lazrs were installed into $PROFILE_FOLDER/python but can't be imported by /usr/bin/python3."

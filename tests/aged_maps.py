@@ -91,7 +91,7 @@ def _widest(ring: np.ndarray) -> tuple[int, float]:
 
 
 def _withdraw(corners: np.ndarray, edge: int) -> list[int]:
-    """Move both ends of an edge inward along the edges beside it, in place, and return them."""
+    """Move both ends of an edge inward along the edges next to it, in place, and return them."""
     n = len(corners)
     for end, toward in ((edge, (edge - 1) % n), ((edge + 1) % n, (edge + 2) % n)):
         way = corners[toward] - corners[end]

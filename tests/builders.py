@@ -10,7 +10,7 @@ import numpy as np
 # Where surveys lie in UTM and national grids (m). Tests move scenes there: steps of float32 are 0.5 m at this northing.
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
-# The same for tests that demand equal results: coordinates in binary fractions stay exact beside powers of two.
+# The same for tests that demand equal results: coordinates in binary fractions stay exact next to powers of two.
 EXACT_FAR = np.array([2.0**19, 2.0**22, 0.0])
 
 # Closed outline of an L-shaped house of 20 m by 16 m, counterclockwise.

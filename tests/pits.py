@@ -1,7 +1,7 @@
 """False and true pits in simulated towns: groups of multipath points under the ground, and shafts, stairs, excavations.
 
 A detour of the beam makes the range too long: the point lies on under the surface along its beam, and other pulses
-beside it see the surface. A true pit shows its floor to every pulse that enters it.
+next to it see the surface. A true pit shows its floor to every pulse that enters it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Scene:
 
 
 def scene(density=8.0, slope=3.0, groups=40, pits=(SHAFT, STAIRS, EXCAVATION) * 3, seed=1, size=150.0, **town):
-    """Return a town with groups of multipath points, half of them beside walls, and with true pits."""
+    """Return a town with groups of multipath points, half of them next to walls, and with true pits."""
     rng = np.random.default_rng([seed, 7])
     cloud = run_stage(
         STAGES["simulate_town"], size=size, density=density, slope=slope, noise_points=0.0, seed=seed, **town
@@ -70,7 +70,7 @@ def scene(density=8.0, slope=3.0, groups=40, pits=(SHAFT, STAIRS, EXCAVATION) * 
 
 
 def _places(xyz, truth, n_pits, n_groups, rng):
-    """Return places (m, 2) on the ground: of pits on open ground, then of groups, every other one beside a wall."""
+    """Return places (m, 2) on the ground: of pits on open ground, then of groups, every other one next to a wall."""
     ground = xyz[truth == PointClass.GROUND]
     to_building = cKDTree(xyz[truth == PointClass.BUILDING, :2]).query(ground[:, :2])[0]
     to_other = cKDTree(xyz[~np.isin(truth, (PointClass.GROUND, PointClass.BUILDING)), :2]).query(ground[:, :2])[0]

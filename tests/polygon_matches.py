@@ -12,7 +12,7 @@ from lidar_buildings.algorithms.stage import Monitor
 
 @dataclass(frozen=True)
 class Matches:
-    """The polygons of one layer, each beside the one of another layer that it overlaps most."""
+    """The polygons of one layer, each with the one of another layer that it overlaps most."""
 
     #: one, other, (k,), int64: positions in the two layers
     one: np.ndarray

@@ -18,7 +18,7 @@ def test_sfcgal_sees_a_spike_through_the_bottom():
 
 
 def test_a_triangle_upright_on_a_face_is_refused():
-    """A corner 2 mm above the top and 5 mm beside another one turns a triangle by 22°."""
+    """A corner 2 mm above the top and 5 mm next to another one turns a triangle by 22°."""
     vertices = np.concatenate([CUBE, [[0.995, 1, 1.002]]])
     faces = [SIDES[0], [4, 5, 7, 8, 6], *SIDES[2:4], [3, 2, 6, 8, 7], SIDES[5]]
     with pytest.raises(AssertionError, match="a triangle turns by"):

@@ -1,4 +1,4 @@
-"""Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns beside it do not."""
+"""Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns next to it do not."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class ColumnRules:
 
     wall_reach: float = rule(1.0, "m", "physics: eaves reach out by up to this, and roof surfaces end before them")
     sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
-    bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
+    bush_share: float = rule(0.33, "share", "of the roof's height, up to which points next to a roof may be bushes")
     around: int = rule(7, "cells", "side of the square in which cells and pulses are counted, some 4 m")
     bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
 
@@ -81,7 +81,7 @@ class Columns:
         """Return the building (n,), int32, that each point belongs to; 0 if unassigned.
 
         Over a building these are the points up to ``clearance`` (m) above the roof, and where points above it are few,
-        those up to ``structure_height`` (m). Beside it they are those of walls: below the roof, and of no plant.
+        those up to ``structure_height`` (m). Next to it they are those of walls: below the roof, and of no plant.
         """
         above = points.elevation - self.top[points.cell]
         inside = points.raised & (self.building[points.cell] > 0)

@@ -148,7 +148,7 @@ def classify_buildings(
     The confidence is the geometric mean of what entropy and penetration say, and nothing with more penetration than
     the maximum is a building, with one exception. Clusters adjacent to a building (dormers, eaves, parapets) are all
     edge, and points seen past an edge are no evidence: there entropy alone decides, if few of the pulses split. A
-    cluster smaller than the minimum area is a building only beside another.
+    cluster smaller than the minimum area is a building only next to another.
 
     Where points are few, larger spots of crowns are smooth by chance. Most of the points around these are leaves, so
     clusters with too few building points around them are refused. Such spots may lie next to each other, but none of

@@ -86,7 +86,7 @@ class RoofExtent:
         return self._to_edges(wide)
 
     def _to_edges(self, core: np.ndarray) -> np.ndarray:
-        """Return roofs (rows, columns) with the cells beside them that have at least half of their height.
+        """Return roofs (rows, columns) with the cells next to them that have at least half of their height.
 
         These are at most ``MATCHING.rounded`` m away.
         """

@@ -175,7 +175,7 @@ def copc_header(header: Header) -> Header:
 def write_copc(
     stream: BinaryIO, header: Header, points: np.ndarray, take: Callable[[np.ndarray], np.ndarray], monitor: Monitor
 ) -> None:
-    """Write a whole COPC file to ``stream``; takes about 50 bytes of memory per point beside the cloud.
+    """Write a whole COPC file to ``stream``; takes about 50 bytes of memory per point in addition to the cloud.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The COPC file beside a LAS or LAZ file, which QGIS shows in its place.
+"""The COPC file next to a LAS or LAZ file, which QGIS shows in its place.
 
 A view is such a file, written here together with the LAS or LAZ file and for QGIS only. Its header carries a digest of
 both files' content. By it a view differs from any other COPC file, and from a view or a LAS file that somebody has
@@ -27,7 +27,7 @@ _BLOCK = 1 << 20
 
 
 def copc_path(path: Path) -> Path:
-    """Return the COPC file that QGIS looks for beside a LAS or LAZ file."""
+    """Return the COPC file that QGIS looks for next to a LAS or LAZ file."""
     # ".las" is as long as ".laz".
     return path.with_name(path.name[: -len(LAS)] + COPC)
 
@@ -38,16 +38,16 @@ def check_copc_beside(path: Path, sources: Iterable[Path]) -> None:
     Raises
     ------
     ValueError
-        If the COPC file beside it is one of ``sources``, or anything but the untouched view of the file at ``path``.
+        If the COPC file next to it is one of ``sources``, or anything but the untouched view of the file at ``path``.
     """
     beside = copc_path(path)
     if any(same_file(beside, source) for source in sources):
         raise ValueError(
-            f"The output {path.name} would take the place of the input {beside.name} beside it; choose another name."
+            f"The output {path.name} would take the place of the input {beside.name} next to it; choose another name."
         )
     if beside.exists() and not is_view(beside, path):
         raise ValueError(
-            f"{beside.name} lies beside the output {path.name}, and QGIS would show it instead; "
+            f"{beside.name} lies next to the output {path.name}, and QGIS would show it instead; "
             "choose another name for the output, or move that file."
         )
 

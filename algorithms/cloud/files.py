@@ -42,7 +42,7 @@ NOWHERE = np.full((2, 2), np.nan)
 # One sentence for every step of a chain.
 _WAVEFORMS_APART = (
     "The waveforms of the input are in a file of their own (.wdp), which is not copied; "
-    "copy it beside the output, under the name of that."
+    "copy it next to the output, under the name of that."
 )
 
 
@@ -325,8 +325,8 @@ def write_cloud(
     extra bytes, waveform references and every dimension that was not set. It
     appears when it is complete; after a failure or cancel nothing is left.
 
-    QGIS with PDAL shows a file x.copc.laz in place of the x.las or x.laz beside it. One that
-    was written with the very file that is replaced is replaced or removed with it; beside any
+    QGIS with PDAL shows a file x.copc.laz in place of the x.las or x.laz next to it. One that
+    was written with the very file that is replaced is replaced or removed with it; next to any
     other, nothing is written.
 
     Parameters
@@ -338,7 +338,7 @@ def write_cloud(
     monitor : Monitor, optional
         Receives progress, and warnings about what the format changed.
     copc_beside : bool
-        Also write x.copc.laz beside x.las or x.laz, for QGIS to show.
+        Also write x.copc.laz next to x.las or x.laz, for QGIS to show.
 
     Raises
     ------

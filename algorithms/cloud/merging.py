@@ -15,7 +15,7 @@ from .header import Header
 from .point_records import PointRecords, convert, find_extra, is_stored_as
 from .vpc import merged_header
 
-# Points converted at once: the memory beside the clouds and their union stays small.
+# Points converted at once: the memory in addition to the clouds and their union stays small.
 _CHUNK = 500_000
 
 

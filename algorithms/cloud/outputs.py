@@ -27,7 +27,7 @@ except ImportError:  # all others
 
 LAS, LAZ, COPC, VPC, STAC, EPT = ".las", ".laz", ".copc.laz", ".vpc", ".json", "ept.json"
 
-# Working folders, hidden beside the targets: their names, which say what computer made them. Then the file that a
+# Working folders, hidden next to the targets: their names, which say what computer made them. Then the file that a
 # running program keeps open and locked in each, and the folder in it for old files while new ones take their places.
 _PREFIX, _SUFFIX = ".lb-", ".part"
 _NAME = re.compile(r"\.lb-([0-9a-f]{8})-.+\.part")
@@ -136,10 +136,10 @@ class KeptFailure(io.FileIO):
 
 
 class ResultFiles:
-    """The files of one run: each is written in a working folder beside its target, and all are put in place together.
+    """The files of one run: each is written in a working folder next to its target, and all are put in place together.
 
     Until then older files stay as they are. Nothing is removed but what this run wrote and what it replaces. Working
-    folders that a killed run left beside a target are removed.
+    folders that a killed run left next to a target are removed.
     """
 
     def __init__(self) -> None:

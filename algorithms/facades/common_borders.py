@@ -73,7 +73,7 @@ def _edges_along(facade: Facade, point: np.ndarray, direction: np.ndarray, reach
 
 
 def _common(one: Facade, edge: int, other: Facade, edge_of_other: int, point: np.ndarray, way: np.ndarray) -> float:
-    """Return the length (m) of the line beside both edges."""
+    """Return the length (m) of the line next to both edges."""
     spans = []
     for facade, number in ((one, edge), (other, edge_of_other)):
         ends = (facade.frame.space(facade.ring[number : number + 2]) - point) @ way

@@ -20,7 +20,7 @@ from .facade_outline import Drawing
 from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
 from .segment_facade_lines import are_of_facade_lines
 
-# Plaster, joints and cladding lie this far (standard deviation, m) off the plane of a wall, beside the noise.
+# Plaster, joints and cladding lie this far (standard deviation, m) off the plane of a wall, in addition to the noise.
 _RELIEF = 0.01
 
 # Side (m) of the cells in plan in which a facade has points above one another.
@@ -35,7 +35,7 @@ ALL_POINTS = "all points"
 # The choice that searches them among the points of facade lines only.
 FACADE_LINES = "facade lines"
 
-# Distance (m) from a corner within which the border of a facade, and its outer side, depend on the facade beside it.
+# Distance (m) from a corner within which the border of a facade, and its outer side, depend on the facade next to it.
 AROUND_CORNER = 5.0
 
 # Least height of the points of a facade, as a share of its minimum height: its boundary may go on to the corner of

@@ -39,7 +39,7 @@ OPENING_FIELDS = (
     Field("from_left", float, "Distance of its left side from the left end of the facade", "m"),
     Field("sill", float, "Height of its lower side over the foot of the facade", "m"),
     Field("depth", float, "Median distance of its points behind the wall", "m"),
-    Field("enclosed", float, "Share of its outline with wall beside it"),
+    Field("enclosed", float, "Share of its outline with wall next to it"),
     Field("seen", float, "Share of its area with points"),
 )
 

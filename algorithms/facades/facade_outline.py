@@ -60,10 +60,10 @@ _SIDE_ANGLE = np.radians(4.0)
 # Part of a corner of the foot that a parked car or a bush hides, along and up the facade (m).
 _HIDDEN = (5.0, 2.5)
 
-# Times the boundary is pushed out: a corner that moves may leave a point of the edge beside it outside.
+# Times the boundary is pushed out: a corner that moves may leave a point of the edge next to it outside.
 _PUSHES = 4
 
-# A corner may move this many times as far as the edges beside it: those of less than 39° would become spikes.
+# A corner may move this many times as far as the edges next to it: those of less than 39° would become spikes.
 _MITER = 3.0
 
 # Sine of the angle below which two edges count as parallel: their lines meet too far away for an accurate position.
@@ -164,7 +164,7 @@ def _hidden_corners(
     for step in (1, -1):
         run: list[int] = []
         last, k = foot, (foot + step) % len(corners)
-        # Foot edges beside the longest one go on along it; then diagonal ones lead up to the side.
+        # Foot edges next to the longest one go on along it; then diagonal ones lead up to the side.
         while is_foot[k] and k != foot:
             last, k = k, (k + step) % len(corners)
         while not is_side[k] and len(run) < len(corners) and lids[k, 0] > 0:

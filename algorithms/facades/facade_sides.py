@@ -56,12 +56,12 @@ def facing_outside(
     Notes
     -----
     An opaque wall hides everything behind it: points off a cell of wall are before it (streets, cars, trees). Close
-    behind the wall there are only points seen through openings. Points farther off beside a gap say nothing: a gap is
+    behind the wall there are only points seen through openings. Points farther off next to a gap say nothing: a gap is
     an opening with a room behind it, or the shadow of a tree before it.
 
     A narrow wall hides little, and the side of a bay has the street on both sides. Two facades that meet at a corner
     both have the other before them, or both behind them: a reentrant corner or a salient one. Facades are decided from
-    the one with most evidence to that with least, each with those beside it that were decided before.
+    the one with most evidence to that with least, each with those next to it that were decided before.
     """
     start = xyz.min(axis=0)
     _, voxel, count = voxelize(xyz - start, _THINNED)

@@ -35,7 +35,7 @@ _LINK_CELLS = 1.5
 # Distance (m) from the points behind the wall within which the edge of the wall is a side of their opening.
 _REACH = 0.3
 
-# Share of the outline of an opening, its sill left out where it is a door, that must have wall beside it.
+# Share of the outline of an opening, its sill left out where it is a door, that must have wall next to it.
 _ENCLOSED = 0.5
 
 # Share of the cells of an opening in which points behind the wall must be seen.
@@ -73,7 +73,7 @@ class Opening:
     ring: np.ndarray  #: (m, 2): closed, counterclockwise, along and up the facade (m)
     kind: str  #: "window" or "door"
     depth: float  #: Median distance of its points behind the wall, m
-    enclosed: float  #: Share of its outline that has wall beside it, 0 to 1
+    enclosed: float  #: Share of its outline that has wall next to it, 0 to 1
     seen: float  #: Share of its area with points, 0 to 1
     points: np.ndarray  #: (k,), int: indices of its points in the cloud
 
@@ -210,14 +210,14 @@ def _opening(
 
 
 def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return a box with its sides moved to the edges of the wall, and the share (4,) of each side with wall beside it.
+    """Return a box with its sides moved to the edges of the wall, and the share (4,) of each side with wall next to it.
 
     The shares are those of the left, right, lower and upper side. A side without a straight edge stays where it is.
     """
     bounded, shares = box.copy(), np.zeros(4)
     for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1)):
         sign, other = (-1, 1)[end], 1 - axis
-        # Positions outward of the side: the wall beside the opening is the first beyond its middle.
+        # Positions outward of the side: the wall next to the opening is the first beyond its middle.
         outward = sign * (wall[:, axis] - box[end, axis])
         near = (outward > -np.ptp(box[:, axis]) / 2) & (outward <= _REACH)
         near &= (wall[:, other] >= box[0, other]) & (wall[:, other] <= box[1, other])

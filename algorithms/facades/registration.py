@@ -189,7 +189,7 @@ def _offsets(walls: PlanSegments, beside: _Beside) -> tuple[np.ndarray, np.ndarr
     off = [np.einsum("ijk,ijk->ij", ends, np.broadcast_to(normal, ends.shape)) for ends in (first, last)]
     half = walls.length[:, None] / 2
     shared = np.where(is_edge, np.minimum(along[1], half) - np.maximum(along[0], -half), 0.0)
-    # Where the wall's middle is beside the outline, or at the nearer end of the outline.
+    # Where the wall's middle is next to the outline, or at the nearer end of the outline.
     position = np.clip(-along[0] / np.maximum(along[1] - along[0], 1e-9), 0, 1)
     across = np.where(is_edge, off[0] + position * (off[1] - off[0]), np.nan)
     left, right = np.where(is_edge, along[0] + half, np.nan), np.where(is_edge, along[1] - half, np.nan)

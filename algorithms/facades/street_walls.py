@@ -149,7 +149,7 @@ def _pieces(chains: list[np.ndarray], rings: list[_Ring]) -> list[list[_Piece]]:
 
 
 def _apart(pieces: list[_Piece], ring: _Ring) -> list[_Piece]:
-    """Return pieces in their order along a ring, without those that are beside longer ones, as balconies are."""
+    """Return pieces in their order along a ring, without those that are next to longer ones, as balconies are."""
     kept: list[_Piece] = []
     for piece in sorted(pieces, key=lambda piece: -ring.between(piece.first, piece.last)):
         length = ring.between(piece.first, piece.last)
@@ -230,7 +230,7 @@ def _edges(ring: _Ring, piece: _Piece, following: _Piece) -> list[_Line]:
         if abs(off) > _RULES.eaves:
             steps[own] = [(end, outward * np.sign(off) * (1 if own == 0 else -1), end)]
             continue
-        # The wall takes the place of the edge; the edge beside it passes through the end of the wall if that is
+        # The wall takes the place of the edge; the edge next to it passes through the end of the wall if that is
         # the corner.
         del points[own]
         if beside in points and _ends_at(end, way if own == 0 else -way, points[beside], ring.way[edges[beside]]):

@@ -89,7 +89,7 @@ def draw_block(
     drawn = [(ring, directions[piece.building], how.prices(piece.building)) for piece in pieces for ring in piece.rings]
     rings = [draw_ring(*each) for each in drawn]
     # Edges on both sides of a border, or of a front that goes on, were drawn from the same points and are less than a
-    # spacing apart: they get one line. So does an edge beside a party wall, lest the house beyond gets a strip between.
+    # spacing apart: they get one line. So does an edge next to a party wall: no strip lies between.
     numbers = sorted({piece.building for piece in pieces})
     both = [ends for number in numbers if number in houses for ends in houses[number].walls]
     there_and_back = [[Edge(start, end, True), Edge(end, start, True)] for start, end in both]

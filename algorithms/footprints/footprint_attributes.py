@@ -44,7 +44,7 @@ _EAVE = 25
 # Percentile of the roof's heights that is the ridge's: chimneys rise above it.
 _RIDGE = 98
 
-# Points of the roof to which a plane is fitted beside each position on the outline.
+# Points of the roof to which a plane is fitted next to each position on the outline.
 _PLANE = 12
 
 # Least distance (spacings) from the outline of the points of such a plane: beyond points on the wall.

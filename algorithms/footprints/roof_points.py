@@ -1,4 +1,4 @@
-"""Where roofs end: which points of buildings are roof rather than wall, and which beside them are no building."""
+"""Where roofs end: which points of buildings are roof rather than wall, and which next to them are no building."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _AROUND = 2.0
 # Number of nearest roof points whose surroundings give the density of the roof.
 _NEAREST = 24
 
-# A point lies under a roof that is this share as dense around it as around its nearest roof points: beside a straight
+# A point lies under a roof that is this share as dense around it as around its nearest roof points: next to a straight
 # edge it is half. Measured on simulated roofs.
 _UNDER = 0.7
 
@@ -97,7 +97,7 @@ def edge_weights(roof: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndar
 def find_non_building_points(
     xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, spacing: float
 ) -> np.ndarray:
-    """Return the rows (m,) of non-building points beside roofs and clearly below them: there the roof has ended.
+    """Return the rows (m,) of non-building points next to roofs and clearly below them: there the roof has ended.
 
     Parameters
     ----------
@@ -139,6 +139,6 @@ def is_under_roof(positions: np.ndarray, tree: Any, spacing: float) -> np.ndarra
     nearest = nearest.reshape(len(positions), -1)
     beside, row = distinct(nearest.ravel())
     usual = tree.query_ball_point(tree.data[beside], _AROUND * spacing, return_length=True, workers=n_threads())
-    # Bushes beside a roof that are taken for it are thinner than a roof.
+    # Bushes next to a roof that are taken for it are thinner than a roof.
     least = _DENSE * np.pi * _AROUND**2
     return count > _UNDER * np.maximum(usual[row.reshape(nearest.shape)].mean(axis=1), least)

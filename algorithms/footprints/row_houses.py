@@ -25,7 +25,7 @@ class RowRules:
 
     step: float = rule(0.6, "point spacings", "step of the grid of heights, no finer than the points")
     along: float = rule(4.0, "point spacings", "heights are averaged over it along a line: enough points for a plane")
-    near: float = rule(0.3, "m", "physics: from where the roof beside a line is measured, beyond the wall itself")
+    near: float = rule(0.3, "m", "physics: from where the roof next to a line is measured, beyond the wall itself")
     far: float = rule(1.6, "m", "physics: to where the roof is measured, before the ridge of the narrowest house")
     rise: float = rule(0.25, "tangent", "physics: least slope of a roof that rises from a valley")
     parallel: float = rule(0.35, "tangent", "physics: slopes of parallel roofs differ by less")
@@ -56,7 +56,7 @@ class RowRules:
 
     @property
     def max_spacing(self) -> float:
-        """Spacing (m) up to which three samples of the grid fit in the roof beside a wall, as few as make a plane."""
+        """Spacing (m) up to which three samples of the grid fit in the roof next to a wall, as few as make a plane."""
         return self.far / (3 * self.step)
 
 
@@ -208,7 +208,7 @@ class _View:
     of_lattice: tuple[np.ndarray, np.ndarray]  #: Row and column of the grid at each node of the lattice
     in_plan: Callable  #: Returns the ends (w, 2, 2), m, of walls by their first and last rows (w, 2) and columns (w,)
     strength: np.ndarray  #: Evidence of a wall, 0 to 1
-    beside: np.ndarray  #: Height of the higher roof beside it, m; NaN where unknown
+    beside: np.ndarray  #: Height of the higher roof next to it, m; NaN where unknown
 
     @property
     def closed(self) -> int:
@@ -242,14 +242,14 @@ class _View:
         """Compute the length (m) of roofs that are not low along each run, and the length of wall (m) seen there."""
         known = self.beside[inside & np.isfinite(self.beside)]
         is_high = self.beside >= (ROWS.least_share * np.median(known) if len(known) else 0.0)
-        # A wall that is not quite along the columns is seen in one beside.
+        # A wall that is not quite along the columns is seen in a neighboring one.
         near = ndimage.maximum_filter1d(self.strength, 3, axis=1)
         return runs.sums(is_high) * self.step, runs.sums(is_high * near) * self.step
 
     def _pays(self, runs: _Runs, counted: np.ndarray, seen: np.ndarray) -> np.ndarray:
         """Compute the value of a wall along each run, in steps: the share of it that is seen, less its cost."""
         pays = seen / np.maximum(counted, ROWS.narrowest) - ROWS.wall * self.spacing
-        # The houses beside a wall that does not pay by itself would be alike, but nothing shows it.
+        # The houses next to a wall that does not pay by itself would be alike, but nothing shows it.
         is_wall = (counted >= ROWS.narrowest) & (counted <= ROWS.deepest) & (pays > 0)
         return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), -np.inf)
 
@@ -380,7 +380,7 @@ def _without_small(piece: np.ndarray, pairs: np.ndarray, shared: np.ndarray, are
 
 
 def _evidence(roof: np.ndarray, seen: np.ndarray, step: float, along: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the evidence, 0 to 1, of walls along the first axis, and the height (m) of the higher roof beside each.
+    """Return the evidence, 0 to 1, of walls along the first axis, and the height (m) of the higher roof next to each.
 
     It is 0 up to the least that counts, a half from twice as much, and near 1 from many times as much.
     """

@@ -164,7 +164,7 @@ def find_shares(
     building : ndarray of shape (n,), int64
         The building of each.
     beside : ndarray of shape (m, 2)
-        Points that are no building beside and below the roofs.
+        Points that are no building next to and below the roofs.
     beside_weight : ndarray of shape (m,)
         Weights of these, 0 to 1.
     spacing : float

@@ -1,4 +1,4 @@
-"""Cells of a raster and those beside them."""
+"""Cells of a raster and those next to them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ DIRECTIONS = ((0, 1), (1, 1), (1, 0), (1, -1))
 
 
 def adjacent_cells(dimensions: int) -> Iterator[tuple[tuple[slice, ...], tuple[slice, ...]]]:
-    """Yield the slices of an array without its last or first cells, and of the cells beside those.
+    """Yield the slices of an array without its last or first cells, and of the cells next to those.
 
     Along each axis in order, first with the cells after, then with those before.
     """

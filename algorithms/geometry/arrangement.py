@@ -19,7 +19,7 @@ _ON_SIDE = 1e-6
 class Edges:
     """Pieces of lines between two crossings, in the direction of their lines."""
 
-    #: line, start, end, left, right, (e,), int64: the line; the crossings at its ends; the cells beside it
+    #: line, start, end, left, right, (e,), int64: the line; the crossings at its ends; the cells next to it
     line: np.ndarray
     start: np.ndarray
     end: np.ndarray

@@ -12,7 +12,7 @@ from .rings import signed_area
 # Directions of a cell's sides, counterclockwise around it: the south side runs east, the east side north, …
 _EAST, _NORTH, _WEST, _SOUTH = range(4)
 
-# Part of a side that is cut off beside the neck that joins cells which touch by a corner only.
+# Part of a side that is cut off next to the neck that joins cells which touch by a corner only.
 _NECK = 0.1
 
 

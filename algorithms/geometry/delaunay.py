@@ -72,7 +72,7 @@ class Triangulation:
             spoilt[facet[inside]] = True
             around = self.neighbors[facet[inside]].ravel()
             beside = (np.repeat(position[inside], 3) * len(spoilt) + around)[around >= 0]
-            # What lies beside the facets of a step was found in that step, in the one before, or is new.
+            # What lies next to the facets of a step was found in that step, in the one before, or is new.
             pairs, before = np.setdiff1d(beside, np.concatenate([pairs, before])), pairs
         return spoilt
 

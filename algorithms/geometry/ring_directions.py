@@ -157,7 +157,7 @@ def _pieces(samples: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _peak(weights: np.ndarray, at: int) -> float:
-    """Return the angle (°) of the top of a parabola through the weight of a step and those beside it."""
+    """Return the angle (°) of the top of a parabola through the weight of a step and those next to it."""
     before, top, after = weights[[at - 1, at, (at + 1) % len(weights)]]
     bend = before - 2 * top + after
     shift = 0.5 * (before - after) / bend if bend < 0 else 0.0

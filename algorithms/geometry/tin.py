@@ -13,10 +13,10 @@ from .delaunay import Triangulation, circles, triangulate
 from .grid import plan_box
 from .scattered import scattered
 
-# Points located at once on each core: their arrays stay small beside the cloud.
+# Points located at once on each core: their arrays stay small compared with the cloud.
 _CHUNK = 100_000
 
-# Planes fitted at once on each core: their arrays, of nine neighbors each, stay small beside the cloud.
+# Planes fitted at once on each core: their arrays, of nine neighbors each, stay small compared with the cloud.
 _FIT_CHUNK = 20_000
 
 # Points that a plane needs.

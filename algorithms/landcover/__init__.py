@@ -1,1 +1,1 @@
-"""What covers the ground beside buildings: vegetation, water, wires."""
+"""What covers the ground next to buildings: vegetation, water, wires."""

@@ -57,8 +57,8 @@ def classify_wires(
     """Classify the wires of power lines (14), of high and low voltage, and the masts and poles at their ends (15).
 
     A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is ``RULES.least_length`` m
-    long at least and bent upward, with free space below and no building beside it. Spans are found by RANSAC among
-    points that lie on lines. Beside each, wires of the same masts have its direction and curve. Where spans end, the
+    long at least and bent upward, with free space below and no building next to it. Spans are found by RANSAC among
+    points that lie on lines. Next to each, wires of the same masts have its direction and curve. Where spans end, the
     slender upright object that reaches up to them is a mast. Clouds of matched images are left as they are: wires are
     thinner than their pixels.
 
@@ -115,7 +115,7 @@ def classify_wires(
     solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
     around = Surroundings(points, solid, max(RULES.least_off, RULES.noises * noise))
     spans = _spans(points, height, around, min_height, sampling.spacing, seed, monitor)
-    # Wires beside these are seen in part only, so that their ends show no masts.
+    # Wires next to these are seen in part only, so that their ends show no masts.
     for span in (*spans, *parallels_of(spans, around)):
         classes[rows[around.on_wire(span, beyond=1.0)]] = PointClass.WIRE_CONDUCTOR
     is_wire = classes[rows] == PointClass.WIRE_CONDUCTOR

@@ -74,7 +74,7 @@ def water_levels(
     body, level = _bodies(is_sparse & (is_low | ~has_ground), is_low, lowest, min_area / size**2)
     if level is None:
         return np.full(len(xyz), np.nan)
-    # Beside land, pulses that come back from it hide that water gives few.
+    # Next to land, pulses that come back from it hide that water gives few.
     with_edge = ndimage.binary_dilation(body, EIGHT, iterations=_RULES.ring)
     monitor.progress(0.9)
     return np.where(with_edge, level, np.nan)[row, column]

@@ -120,7 +120,7 @@ def _pairs(points: np.ndarray, rows: np.ndarray, tree: Any, reach: float) -> tup
 def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Return how many neighbors (n,) are on the best line through each point, and its direction (n, 3), 1 m in plan."""
     distance, gap = np.hypot(offset[:, 0], offset[:, 1]), _RULES.gap * SPAN.aside
-    # Neighbors above or below all lines count neither as on a line nor as beside one.
+    # Neighbors above or below all lines count neither as on a line nor as next to one.
     near = np.abs(offset[:, 2]) <= _RULES.steepest * distance + gap
     one, offset, distance = one[near], offset[near], distance[near]
     # Nearer neighbors give the direction of a line less accurately.

@@ -40,7 +40,7 @@ class _Rules:
     beyond: float = 5.0  #: A span goes on where its parabola meets points within this distance (m) of its ends
     below: float = 2.0  #: Height (m) under the wire in which crowns and roofs have points
     #: Largest share of the length of a span, counted in parts of 1 m, that has points that far below or buildings
-    #: beside it: masts and plants have points there
+    #: next to it: masts and plants have points there
     most_below: float = 0.25
     #: Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings
     beside: float = 1.0
@@ -115,13 +115,13 @@ class Surroundings:
         return span
 
     def is_free(self, span: Span) -> bool:
-        """Return whether a span has enough points, none below it, and no building beside it."""
+        """Return whether a span has enough points, none below it, and no building next to it."""
         rows = self._near(0, span, 1.0)
         along, aside, above = span.local(self.xyz[rows])
         is_left, aside, inside = aside > 0, np.abs(aside), (along >= span.start) & (along <= span.end)
         is_level = inside & (np.abs(above) <= self.off)
         on_wire = is_level & (aside <= RULES.aside)
-        # Wires are lines; a strip of half their width beside a line on a surface has half as many points as the line.
+        # Wires are lines; a strip of half their width next to a line on a surface has half as many points as the line.
         beside = is_level & (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside)
         sheet = max((beside & is_left).sum(), (beside & ~is_left).sum())
         # Points nearer than twice the tolerance may be of the wire itself.
@@ -133,7 +133,7 @@ class Surroundings:
         return bool(is_line and occupied <= RULES.most_below * length)
 
     def parallels(self, span: Span, is_taken: np.ndarray) -> Iterator[Span]:
-        """Yield the wires beside a span, on the same masts: of its direction and curve, up to ``RULES.line`` m away.
+        """Yield the wires next to a span, on the same masts: of its direction and curve, up to ``RULES.line`` m away.
 
         Points (n,) that ``is_taken`` are of other wires.
         """
@@ -183,7 +183,7 @@ class Surroundings:
         return on_one
 
     def _beside_buildings(self, span: Span) -> int:
-        """Return along how much of a span (m) buildings are beside it."""
+        """Return along how much of a span (m) buildings are next to it."""
         solid = self.solid[self._near(1, span, RULES.beside)]
         along, aside, above = span.local(solid)
         inside = (along >= span.start) & (along <= span.end)
@@ -240,7 +240,7 @@ def spans_of(
 
 
 def parallels_of(spans: list[Span], around: Surroundings) -> list[Span]:
-    """Return the wires beside spans, without these."""
+    """Return the wires next to spans, without these."""
     is_taken = np.zeros(len(around.xyz), bool)
     for span in spans:
         is_taken[around.on_wire(span, beyond=1.0)] = True

@@ -37,7 +37,7 @@ def pooled_histogram(grid: Grid, cell: np.ndarray, level: np.ndarray) -> Histogr
     keys = np.concatenate([own + step * levels for step in (0, *grid.around)])
     keys, which = np.unique(keys, return_inverse=True)
     pooled = np.bincount(which, np.tile(count, 9)).astype(np.int64)
-    # Empty cells beside occupied ones have no points to judge.
+    # Empty cells next to occupied ones have no points to judge.
     occupied = np.isin(keys // levels, own // levels)
     return Histogram(keys[occupied] // levels, keys[occupied] % levels, pooled[occupied])
 

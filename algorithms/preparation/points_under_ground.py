@@ -64,7 +64,7 @@ def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor
             xyz[order[start + np.minimum(rank, n_points - 1)]] for rank in (n_found, (n_found + n_points) // 2)
         )
         lowest[n_found == n_points] = np.nan
-        # Below the surface close by, below the ground around, and not beside others of the same height.
+        # Below the surface close by, below the ground around, and not next to others of the same height.
         surface.fit(grid, cells, lowest, middle, near)
         _find_deep(is_deep, xyz, which, mask_of(len(cells), near), surface)
         rows = np.flatnonzero(is_deep & ~(found | is_floor))

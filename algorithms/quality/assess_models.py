@@ -70,7 +70,7 @@ _BUILDINGS = Layer(
         Field("faces", int, "faces of its roof"),
         Field("missing", int, "planes of the points that the model lacks"),
         Field("invented", int, "faces that most of their points don't lie on"),
-        Field("volume", float, "volume between its roof and the lowest of its points or of the ground beside it", "m³"),
+        Field("volume", float, "volume between its roof and the lowest of its points or of the ground around it", "m³"),
     ),
 )
 _MEASURES = (
@@ -154,7 +154,7 @@ def assess_models(
     -----
     Distances are differences in height; those above ``RULES.farthest`` m count as ``RULES.farthest`` m. A point lies on
     a face within the tolerance across its plane. Points more than a meter below both the model and others of class 6
-    beside them are of walls and are not counted. A face without points is unseen, neither matched nor invented. The
+    next to them are of walls and are not counted. A face without points is unseen, neither matched nor invented. The
     volume is that of prisms between the faces and the lowest point of class 6 or 2 in the building's box.
 
     References
@@ -435,7 +435,7 @@ def _page(buildings: list[_Building], values: dict[str, float], tolerance: float
     planes = [
         Row("Missing planes", f"{values['missing']:,}", "Planes of the points of which most lie off the model."),
         Row("Invented faces", f"{values['invented']:,}", "Faces that most of their points don't lie on."),
-        Row("Volume", f"{values['volume']:,.0f} m³", "Between roofs and the lowest points beside them."),
+        Row("Volume", f"{values['volume']:,.0f} m³", "Between roofs and the lowest points next to them."),
     ]
     off = np.concatenate([building.off for building in buildings])
     near = off[np.abs(off) <= _SHOWN * tolerance]

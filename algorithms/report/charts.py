@@ -265,7 +265,7 @@ def _mark(mark: Mark, i: int, across: _Axis) -> str:
 
 
 def _legend(series: list[Series]) -> str:
-    """Return the names of series beside their colors."""
+    """Return the names of series next to their colors."""
     names = "".join(
         f'<span class="swatch" style="background:{one.color}"></span>{html.escape(one.name)}' for one in series
     )

@@ -26,7 +26,7 @@ def draw_facts(rows: Iterable[Row]) -> str:
 def draw_steps(steps: Iterable[StepFacts], of_seconds: str = "") -> str:
     """Return the HTML of the steps with their seconds, then of the parameters of each.
 
-    ``of_seconds`` says of what the seconds are, beside their sum.
+    ``of_seconds`` says of what the seconds are.
     """
     steps = list(steps)
     times = [

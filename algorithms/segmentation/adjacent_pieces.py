@@ -61,7 +61,7 @@ class Adjacency:
 
 
 def adjacent_pieces(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, distance: float, monitor: Monitor) -> Adjacency:
-    """Find the pieces beside each other on adjacent lines.
+    """Find the pieces next to each other on adjacent lines.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ class DeckRules:
     most_below: float = rule(
         0.15,
         "share of points",
-        "physics: beams pass through crowns, and not through decks; and least share of ground in terrain beside a deck",
+        "physics: beams pass through crowns, and not through decks; and least share of ground in terrain around a deck",
     )
     edge: float = rule(
         0.25,
@@ -55,7 +55,7 @@ DECK = DeckRules()
 class Decks:
     """Criteria of bridges."""
 
-    min_height: float  #: Height above the terrain beside it, m
+    min_height: float  #: Height above the terrain next to it, m
     #: max_width, min_area: Widest section (m) and least area (m²)
     max_width: float
     min_area: float
@@ -65,7 +65,7 @@ class Decks:
 
     @property
     def reach(self) -> float:
-        """Distance (m) within which points are beside one another."""
+        """Distance (m) within which points are next to one another."""
         return 2 * self.cell
 
     @classmethod
@@ -200,7 +200,7 @@ class Decks:
         way = others[nearest[near]] - deck[near]
         ahead = way[:, :2] @ axis
         aside = way[:, 0] * axis[1] - way[:, 1] * axis[0]
-        # Terrain beside a deck is not ahead of its ends.
+        # Terrain next to a deck is not ahead of its ends.
         is_next = (np.abs(way[:, 2]) <= LASER.foot) & (np.abs(ahead) >= np.abs(aside))
         low, high = along.min() + DECK.edge * np.ptp(along), along.max() - DECK.edge * np.ptp(along)
         across = deck[:, 0] * axis[1] - deck[:, 1] * axis[0]
@@ -233,7 +233,7 @@ class Decks:
         return np.array([1.0, 1.0, self.reach / 2 / (2 * LASER.foot)])
 
     def _with_corners(self, xyz: np.ndarray, rows: np.ndarray, raised: np.ndarray) -> np.ndarray:
-        """Return a deck with points beside it that are raised in one direction: corners of slanting and wide decks."""
+        """Return a deck with points next to it that are raised in one direction: corners of slanting and wide decks."""
         distance, nearest = spatial.cKDTree(xyz[rows]).query(xyz[raised], distance_upper_bound=1.5 * self.reach)
         near = np.isfinite(distance)
         raised, nearest = raised[near], nearest[near]
@@ -270,7 +270,7 @@ class _Around:
 
 
 def cell_size(spacing: float) -> float:
-    """Return the side (m) of cells in which points of a cloud with this spacing (m) are beside one another."""
+    """Return the side (m) of cells in which points of a cloud with this spacing (m) are next to one another."""
     return max(DECK.least_cell, CLOSED.cell * spacing)
 
 

@@ -123,7 +123,7 @@ def classify_ground_segments(
         monitor.inform("The cloud has no ground points (class 2); bare earth is found by the segments alone.")
     is_deck = decks.find(points, is_earth, is_terrain, monitor.part(0.2, 0.9))
     is_ground = is_terrain & ~is_deck
-    # Cars and parapets on a deck are no ground; terrain that rises beside the deck stays.
+    # Cars and parapets on a deck are no ground; terrain that rises next to the deck stays.
     others = np.flatnonzero(is_ground)
     is_ground[others[on_decks(points[others], points[is_deck], LASER.foot)[0]]] = False
 

@@ -38,7 +38,7 @@ _LEAF = 24
 
 @dataclass(frozen=True)
 class Criteria:
-    """When a point belongs to the surface beside it."""
+    """When a point belongs to the surface next to it."""
 
     tolerance: Optional[float]  #: Largest distance to the plane of the surface, m; None leaves the criterion out
     cosine: Optional[float]  #: Least cosine of the angle between the normals; None leaves the criterion out

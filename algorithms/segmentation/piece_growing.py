@@ -25,7 +25,7 @@ class Growth:
 
     tolerance: float  #: Distance of both ends of a piece from the plane, m
     seed_deviation: float  #: Root mean square distance of the points of a seed from its plane, m
-    is_planar: bool  #: Whether the plane is that of the whole region, or of the pieces beside the new one
+    is_planar: bool  #: Whether the plane is that of the whole region, or of the pieces next to the new one
 
 
 class Regions:
@@ -125,7 +125,7 @@ class Regions:
         self.plane[members] = plane
 
     def _grow_smooth(self, seed: list[int], number: int, report: Callable[[], None]) -> None:
-        """Add pieces that lie on the local plane of the piece beside them."""
+        """Add pieces that lie on the local plane of the piece next to them."""
         for piece in seed:
             self.region[piece] = number
         for piece in seed:
@@ -144,7 +144,7 @@ class Regions:
             waiting.extend((other, piece) for other in self._free([piece]))
 
     def _local_plane(self, piece: int, number: int) -> np.ndarray:
-        """Return the plane (4,) that holds a piece and the mean direction to the pieces of its region beside it."""
+        """Return the plane (4,) that holds a piece and the mean direction to the pieces of its region next to it."""
         start, others = self.first_pair[piece], self.neighbors[piece]
         rows = [row for row, other in enumerate(others, start) if self.region[other] == number]
         ways = self.adjacency.offset[rows]
@@ -154,7 +154,7 @@ class Regions:
         return np.append(normal, normal @ self.pieces.points.center[piece])
 
     def _free(self, pieces: list[int]) -> list[int]:
-        """Return the pieces beside some that are of no region."""
+        """Return the pieces next to some that are of no region."""
         return [other for piece in pieces for other in self.neighbors[piece] if self.region[other] < 0]
 
     def _is_on(self, piece: int, plane: np.ndarray) -> bool:
@@ -162,7 +162,7 @@ class Regions:
         return bool((np.abs(self.ends[piece] @ plane[:3] - plane[3]) <= self.growth.tolerance).all())
 
     def _continues(self, piece: int, beside: int) -> bool:
-        """Return whether the stretch of a piece beside another one lies on the plane there."""
+        """Return whether the stretch of a piece next to another one lies on the plane there."""
         first, last = self.ends[piece]
         low, high = self.ends[beside] @ self.pieces.direction[beside]
         start, stop = self.ends[piece] @ self.pieces.direction[beside]

@@ -53,7 +53,7 @@ def segment_patches(
     """Group those of some points that lie on smooth surfaces.
 
     Each point takes the smoothest plane among those of its neighbors that hold it, so that points at edges and ridges
-    belong to the surface beside them and not to a plane across the edge. Points whose planes agree then make one patch.
+    belong to the nearest surface and not to a plane across the edge. Points whose planes agree then make one patch.
 
     Parameters
     ----------

@@ -268,7 +268,7 @@ def _around_each(boxes: Boxes) -> _Pairs:
 def _planes_around(
     boxes: Boxes, voxel: np.ndarray, group: np.ndarray, n_planes: int, around_each: _Pairs
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return pairs of a box and a plane that has a piece in it or beside it, by box."""
+    """Return pairs of a box and a plane that has a piece in it or next to it, by box."""
     count = np.bincount(voxel, minlength=len(boxes))
     start = np.cumsum(count) - count
     keys = []

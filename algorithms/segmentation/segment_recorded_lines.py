@@ -72,7 +72,7 @@ def segment_recorded_lines(
         str,
         Param(
             "Pieces join a region near the plane of all its points (planar), as published, or near the plane of the "
-            "pieces beside them (smooth), so that terrain, domes and ramps are one.",
+            "pieces next to them (smooth), so that terrain, domes and ramps are one.",
             choices=("planar", "smooth"),
         ),
     ] = "planar",
@@ -96,7 +96,7 @@ def segment_recorded_lines(
         ),
     ] = None,
     min_overlap: Annotated[
-        float, Param("Share of the shorter of two pieces of a seed that lies beside the other.", within="[0, 1]")
+        float, Param("Share of the shorter of two pieces of a seed that lies next to the other.", within="[0, 1]")
     ] = 0.5,
     min_piece: Annotated[
         int,
@@ -221,7 +221,7 @@ def _distance_of_lines(points: np.ndarray, density: float) -> float:
 def _with_others(
     points: np.ndarray, row: np.ndarray, piece: np.ndarray, regions: Regions, distance: float, tolerance: float
 ) -> np.ndarray:
-    """Return the region (n,) of each point: that of its piece, or of points beside it on whose plane it is; or -1.
+    """Return the region (n,) of each point: that of its piece, or of points next to it on whose plane it is; or -1.
 
     ``row`` and ``piece`` are the points of pieces.
     """

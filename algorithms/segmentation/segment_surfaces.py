@@ -35,7 +35,7 @@ _OF_RADIUS = 0.25
 # planes have more (chi-square).
 _SMOOTH = 1.55
 
-# Reach within which neighborhoods decide on neighborhoods beside them (radii).
+# Reach within which neighborhoods decide on neighborhoods next to them (radii).
 _GROWTH = 4.0
 
 # Automatic radius (m) that the reach allows for: that of 36 points per m².
@@ -78,7 +78,7 @@ _Radius = Annotated[
     "Segmentation",
     tags="surface growing,region growing,plane growing,smooth,normals,Hough,planes,segmentation",
     writes=("segment_id",),
-    # What decides which points beside each other are of one surface; surfaces themselves may be larger.
+    # What decides which points next to each other are of one surface; surfaces themselves may be larger.
     reach=lambda tunables: _GROWTH * (tunables["radius"] or _WIDE_RADIUS),
 )
 def segment_surfaces(
@@ -104,7 +104,7 @@ def segment_surfaces(
         ),
     ] = "local",
     smooth_normals: Annotated[
-        bool, Param("Points are accepted only if their normals are like that of the surface beside them.")
+        bool, Param("Points are accepted only if their normals are like that of the surface next to them.")
     ] = False,
     proximity: Annotated[
         str,
@@ -132,7 +132,7 @@ def segment_surfaces(
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
-    """Grow surfaces from smooth seeds to the points beside them.
+    """Grow surfaces from smooth seeds to the points next to them.
 
     A plane is fitted to the neighborhood of each point. Where it fits well, the neighborhood is a seed surface.
     Surfaces grow from seeds to points near them, as long as these lie on the plane of the surface and, on request,

@@ -38,7 +38,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     is_seed : ndarray of shape (n,), bool
         Points whose neighborhood is a seed surface.
     criteria : Criteria
-        When a point belongs to the surface beside it.
+        When a point belongs to the surface next to it.
     monitor : Monitor
         Receives progress.
 
@@ -50,7 +50,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     Notes
     -----
     Seeds whose planes agree are one surface; a surface that is grown from one of them reaches the others. Then all
-    surfaces take the points beside them in rounds; a point that several could take joins the one of the nearest point.
+    surfaces take the points next to them in rounds; a point that several could take joins the one of the nearest point.
     Surfaces that meet there and agree are one.
     """
     surface = connected_seeds(planes, is_seed, criteria, monitor.part(0, 0.6))
@@ -196,7 +196,7 @@ def grow_planes(
     is_seed : ndarray of shape (n,), bool
         Points whose neighborhood is a seed surface.
     criteria : Criteria
-        When a point belongs to the plane beside it.
+        When a point belongs to the plane next to it.
     most_deviation : float
         Largest root mean square distance of the points of two planes that are one, m.
     monitor : Monitor
@@ -263,7 +263,7 @@ def _join(planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold
 def _take_points(
     planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: Criteria, monitor: Monitor
 ) -> Planes:
-    """Let planes take the points beside them in rounds, and return the planes of all points then."""
+    """Let planes take the points next to them in rounds, and return the planes of all points then."""
     unassigned = np.flatnonzero(surface < 0).astype(np.int32)
     for step in range(_MAX_ROUNDS):
         part = monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1))

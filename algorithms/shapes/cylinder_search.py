@@ -230,7 +230,7 @@ class CylinderSearch:
         for _ in range(2):
             is_near = np.abs(normals @ axis) <= _SINE_ON_FITTED
             near, own = normals[is_near], bins[is_near]
-            # Bins count alike, so that the normals of a plane beside it don't turn the circle.
+            # Bins count alike, so that the normals of a plane next to it don't turn the circle.
             share = 1 / np.bincount(own, minlength=len(self.directions))[own]
             axis = np.linalg.eigh((near * share[:, None]).T @ near)[1][:, 0]
         return upward(axis)

@@ -66,7 +66,7 @@ class SearchedPoints:
     origin: np.ndarray  #: (3,): offset that was subtracted from the coordinates of the cloud (m)
 
     def in_place(self, positions: np.ndarray, point: int) -> np.ndarray:
-        """Return positions (..., 3) found beside the point numbered ``point`` in the coordinates of the cloud, m."""
+        """Return positions (..., 3) found next to the point numbered ``point`` in the coordinates of the cloud, m."""
         return positions - np.array([self.shift[point], 0.0, 0.0]) + self.origin
 
 

@@ -178,8 +178,8 @@ def segment_planes_hough(
     functions of the other coordinates. The distance is that along the normal in place of the height at the origin, so
     that bins are as wide for steep planes. The space is that of a window, not of the whole cloud: its maxima are not
     those of planes that exist by chance through all objects, and its memory does not grow with the cloud. A
-    maximum counts with the bin beside it, where a plane at the border of two bins would be lost. A plane must hold more
-    points than scattered points would have on one in a thousand windows.
+    maximum counts with the bin next to it, where a plane at the border of two bins would be lost. A plane must hold
+    more points than scattered points would have on one in a thousand windows.
 
     References
     ----------

@@ -129,7 +129,7 @@ def _pipe_run(
 
 
 def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarray) -> None:
-    """Add the columns and the beams that carry a rack, and a grating beside it."""
+    """Add the columns and the beams that carry a rack, and a grating next to it."""
     for share in (-0.35, 0.35):
         position = middle + share * _LENGTH * along
         for side in (-1, 1):

@@ -145,8 +145,8 @@ def refuse_many_pulses(count: float, what: str, remedy: str) -> None:
 def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> dict[str, np.ndarray]:
     """Return the dimensions of a scene scanned from the air by name, in the order of time, then of return.
 
-    Beside those that scanners record there is ``pulse``, the number of the pulse. The same scene and survey give the
-    same points.
+    In addition to those that scanners record there is ``pulse``, the number of the pulse. The same scene and survey
+    give the same points.
     """
     monitor = monitor or Monitor()
     rng = np.random.default_rng([survey.seed, 1])

@@ -23,7 +23,7 @@ class Building:
     solids: tuple[Solid, ...]  #: Wings, dormers, chimneys; the roof is the highest of them
 
     def roof(self, x, y) -> np.ndarray:
-        """Elevation of the roof (m), NaN beside the building."""
+        """Elevation of the roof (m), NaN outside the building."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         height = np.full(x.shape, -np.inf)
         for solid in self.solids:

@@ -87,7 +87,7 @@ def simulate_plant(
     """Scan a made-up industrial plant: points with their true surface, the axes of pipes and tanks, centers of spheres.
 
     Racks carry pipes at three levels, some with flanges, some with elbows to a pipe that leads up or down; I-beams
-    carry the racks, gratings and heaps lie beside them. Upright tanks are in the west, spherical vessels in the east.
+    carry the racks, gratings and heaps lie next to them. Upright tanks are in the west, spherical vessels in the east.
     The scanner has stations at the corners of the racks and around tanks, and sees what nothing hides.
 
     Returns

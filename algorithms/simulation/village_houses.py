@@ -123,7 +123,7 @@ def _angle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) 
     home = Home(scene, main, eave)
     wide, reach, side = rng.uniform(4.5, 5.5), rng.uniform(3.0, 5.0), rng.choice((-1.0, 1.0))
     a, c = main.length / 2, main.width / 2
-    # From beside the middle of the house, so that no end of the wing's roof comes out in front.
+    # From next to the middle of the house, so that no end of the wing's roof comes out in front.
     start = min(2 * overhang, c)
     wing = main.part(side * (a - wide / 2), (start + c + reach) / 2, c + reach - start, wide, np.pi / 2)
     solids = [part for rect in (main, wing) for part in home.wing(rect, home.eave, pitch, overhang, _WHOLE)]

@@ -1,6 +1,6 @@
 """Stages and their tunables: how a numpy function declares its inputs, outputs and parameters.
 
-A stage is an ordinary function with a declaration beside it:
+A stage is an ordinary function with a declaration next to it:
 
 * positional arguments name the dimensions it reads (``dimensions.py``); one
   with the default None is read only where the cloud has it, and the prefix

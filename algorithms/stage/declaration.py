@@ -1,4 +1,4 @@
-"""The declaration beside a function, and the decorator that makes it a stage."""
+"""The declaration next to a function, and the decorator that makes it a stage."""
 
 from __future__ import annotations
 

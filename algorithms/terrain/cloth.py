@@ -32,7 +32,7 @@ _AT_REST = 0.005
 # Share of its height difference to a neighbor that a particle moves in each of the passes that rigidness counts.
 _SHARE = 0.3
 
-# Neighbors (row, column) in the order in which a particle draws them: first those beside it, then those two away.
+# Neighbors (row, column) in the order in which a particle draws them: first those next to it, then those two away.
 _BESIDE = ((-1, -1), (0, -1), (1, -1), (-1, 0), (-1, 1), (0, 1), (1, 0), (1, 1))
 NEIGHBORS = tuple((reach * row, reach * column) for reach in (1, 2) for row, column in _BESIDE)
 

@@ -46,7 +46,7 @@ _ROUNDS = 8
 # Residual (m) up to which a node has its full weight: about the noise of a scanner.
 _FULL_WEIGHT = 0.05
 
-# Suspects whose planes are fitted at once: their arrays stay small beside the cloud.
+# Suspects whose planes are fitted at once: their arrays stay small compared with the cloud.
 _CHUNK = 20_000
 
 # Extent in plan (m) of the widest group: mirrors are panes, cars and wet spots.
@@ -128,7 +128,7 @@ def false_pits(
 def _sunk(
     points: np.ndarray, is_node: np.ndarray, above: np.ndarray, is_last: np.ndarray, depth: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the indices of the points that may lie under the ground, and of the nodes that are ground beside them."""
+    """Return the indices of the points that may lie under the ground, and of the nodes that are ground next to them."""
     nodes = np.flatnonzero(is_node)
     # In a group, some neighbors of a node are low as well and pull their plane down.
     is_low = node_residuals(points[nodes]) < -depth / 2

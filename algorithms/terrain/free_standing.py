@@ -53,7 +53,7 @@ class _Edges:
     def lengths(self, is_free: np.ndarray, least_step: np.ndarray) -> _Lengths:
         """Return the lengths of edges, with steps of at least some height (s,) (m).
 
-        Free-standing segments (s,) and rough cells hide the edges beside them, unless these are steps down.
+        Free-standing segments (s,) and rough cells hide the edges next to them, unless these are steps down.
         """
         count = len(is_free)
         is_down = self.step >= least_step[self.own]
@@ -69,7 +69,7 @@ class _Segments:
 
     number: np.ndarray  #: (rows, columns), int: segment of each cell
     sides: np.ndarray  #: (2, s), int64: sides of each segment's box, in cells
-    edges: _Edges  #: Where segments are beside others
+    edges: _Edges  #: Where segments are next to others
     ends: np.ndarray  #: (s,), float64: length of each one's edge that is the end of the cloud, in cells
 
     @property
@@ -139,7 +139,7 @@ def find_free_standing(
     segments = _measured(surface, number)
     is_free = _are_free_standing(segments, least, usual_cells, largest_cells, low_uphill)
     monitor.progress(0.5)
-    # Half a hall that skylights cut in two is not free-standing by itself, nor is a hall beside a wing that is hardly
+    # Half a hall that skylights cut in two is not free-standing by itself, nor is a hall next to a wing that is hardly
     # lower. Of a smaller one that the end of the cloud cuts off, the windows of the ground filter don't see the whole.
     hall = _reunited(segments, is_free, least)
     is_hall = (_box_sides(hall).min(axis=0) > usual_cells) | (_ends(surface, hall, hall.max() + 1) > 0)
@@ -215,8 +215,8 @@ def smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
     segment, _ = ndimage.label(~beside)
     small = np.bincount(segment.ravel()) < FREE.least_cells
     segment[small[segment]] = 0
-    # The cells at a step go to the segment beside them from which they differ least; in a second
-    # round, cells that were only beside such cells.
+    # The cells at a step go to the segment next to them from which they differ least; in a second
+    # round, cells that were only next to such cells.
     for _ in range(2):
         best = np.full(surface.shape, least)
         grown = segment.copy()

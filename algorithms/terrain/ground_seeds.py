@@ -231,7 +231,7 @@ def _view(seen: _Surface, z: np.ndarray, slope: Optional[np.ndarray], monitor: M
 
 
 def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:
-    """Return the elevation (m) of the free-standing segment beside each other cell, -inf without any.
+    """Return the elevation (m) of the free-standing segment next to each other cell, -inf without any.
 
     Matching rounds edges, so that a rim as wide as a cell lies between a roof and the terrain and joins both.
     """
@@ -269,7 +269,7 @@ def _surface(xyz: np.ndarray, lowest: Lowest, monitor: Monitor) -> tuple[np.ndar
 def _pits(height: np.ndarray, cell_size: float, monitor: Monitor) -> np.ndarray:
     """Return which cells hold stray points far below all others around, by their heights (inf where empty).
 
-    Ground seen through the gaps of a forest is as far below the crowns beside it, but other gaps are near.
+    Ground seen through the gaps of a forest is as far below the crowns next to it, but other gaps are near.
     """
     depth = SEEDS.pit_slope * cell_size
     surface = nearest_known(height, np.isinf(height))

@@ -86,7 +86,7 @@ def _spacing(deck: np.ndarray, tree: Any) -> float:
 def _has_deck_behind(positions: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
     """Return which positions (n, 2) have points of the deck on the side away from their ``nearest`` (n, 2), too.
 
-    They are looked for in the circle on that side that touches the position. A deck that ends beside the position with
+    They are looked for in the circle on that side that touches the position. A deck that ends next to the position with
     a straight edge does not reach into it.
     """
     away = positions - nearest

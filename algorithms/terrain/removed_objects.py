@@ -33,7 +33,7 @@ class RemovalRules:
     level_share: float = rule(
         0.25, "share", "of the area of a smooth part, level with the terrain around, from which it is a bank"
     )
-    steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
+    steepest_bank: float = rule(2.0, "tangent", "physics: a step near a slope as steep as itself is a bank up to 63°")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
     smoothing: float = rule(
         2.0, "m", "physics: standard deviation of the smoothing of surfaces, half that of slopes; bushes are as wide"
@@ -65,7 +65,7 @@ class ObjectRemoval:
     def slope(self, monitor: Monitor) -> np.ndarray:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
         first = np.full(self.surface.shape, REMOVAL.flat_slope)
-        # Free-standing objects are left out, or a low roof and a higher one beside it were as wide as both together.
+        # Free-standing objects are left out, or a low roof and a higher one next to it were as wide as both together.
         removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
         slope = self._slope_without(removed)
         return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
@@ -152,18 +152,18 @@ class ObjectRemoval:
 
 @dataclass(frozen=True)
 class _Side:
-    """The cells of a surface and those beside them on one side."""
+    """The cells of a surface and those next to them on one side."""
 
     #: here, beside: slices that select the cells and their neighbors on this side
     here: tuple[slice, ...]
     beside: tuple[slice, ...]
-    joins: np.ndarray  #: (of the shape selected), bool: whether a cell joins the one beside it without a step
+    joins: np.ndarray  #: (of the shape selected), bool: whether a cell joins the one next to it without a step
 
 
 def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
     """Yield the four sides of the cells of a surface, in the order of ``adjacent_cells``.
 
-    Low steps join, and those beside which the surface goes on as steeply on either side: the flank of a bank. Flanks
+    Low steps join, and those next to which the surface goes on as steeply on either side: the flank of a bank. Flanks
     are measured from point to point, over a spacing where that is more than a cell.
     """
     bank_cells = max(1, round(spacing / cell_size))
@@ -181,7 +181,7 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
 class _RegionEdges:
     """The edges of regions (r,), in cells; the first are the cells of no region."""
 
-    open: np.ndarray  #: (r,), int64: cells along its edge that have no other object beside them, one for each side
+    open: np.ndarray  #: (r,), int64: cells along its edge that have no other object next to them, one for each side
     joined: np.ndarray  #: (r,), int64: those that join the terrain
 
     def join_terrain(self) -> np.ndarray:

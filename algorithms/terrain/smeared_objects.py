@@ -72,7 +72,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
 
 
 def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndarray:
-    """Return which cells (rows, columns) of those ``above`` the surface are of small objects or beside large ones.
+    """Return which cells (rows, columns) of those ``above`` the surface are of small objects or next to large ones.
 
     Cells of large ones are ``is_other`` (rows, columns): they have points, and no ground.
     """

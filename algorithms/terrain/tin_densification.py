@@ -175,7 +175,7 @@ def _joining(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the candidates in open facets and away from nodes, and those of them that join now, one per facet."""
     tin, facet = surface.tin, surface.facet[candidates]
-    # Small facets mostly get smaller, and a point beside a node makes a sliver and adds no information.
+    # Small facets mostly get smaller, and a point next to a node makes a sliver and adds no information.
     is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]
     xyz = surface.points.take(candidates, axis=0)

@@ -29,7 +29,7 @@ def cut_into_tiles(
 
     Every record of every file that lies within the extent of the survey is in exactly one tile, with all its
     dimensions, in the order of the files. Memory: one portion of a file at a time; on the disk the points lie once
-    uncompressed beside the tiles while they are made.
+    uncompressed next to the tiles while they are made.
 
     Parameters
     ----------

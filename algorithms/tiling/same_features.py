@@ -109,7 +109,7 @@ def _ranks(size: np.ndarray, is_own: np.ndarray, is_piece: Optional[np.ndarray] 
 def _led(one: np.ndarray, other: np.ndarray, share: np.ndarray, rank: np.ndarray) -> np.ndarray:
     """Return for each feature the one that stays in its place, of pairs (k,) that are the same.
 
-    One stays if none that is better stays beside it; another one gives way to that with which it shares most.
+    One stays if none that is better stays next to it; another one gives way to that with which it shares most.
     """
     is_better = rank[one] < rank[other]
     better, worse = np.where(is_better, one, other), np.where(is_better, other, one)

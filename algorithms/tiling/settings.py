@@ -1,4 +1,4 @@
-"""What users set of a survey beside the parameters of the composite: titles and help of the dialog and the pages."""
+"""What users set of a survey besides the parameters of the composite: titles and help of the dialog and the pages."""
 
 from __future__ import annotations
 

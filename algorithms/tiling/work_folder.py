@@ -1,4 +1,4 @@
-"""The hidden folder beside the tiles of a survey that keeps the results of blocks until the run is complete."""
+"""The hidden folder next to the tiles of a survey that keeps the results of blocks until the run is complete."""
 
 from __future__ import annotations
 

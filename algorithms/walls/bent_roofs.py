@@ -84,7 +84,7 @@ def with_bent_roofs(
     density: float,
     monitor: Monitor,
 ) -> np.ndarray:
-    """Return the buildings (n,) with the bent parts of roofs that lie beside their planes.
+    """Return the buildings (n,) with the bent parts of roofs that lie next to their planes.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def with_bent_roofs(
     is_bent : ndarray of shape (n,), bool
         Other points on smooth surfaces.
     gap : float
-        Points at most this far apart lie beside each other, m.
+        Points at most this far apart lie next to each other, m.
     min_area : float
         Area of the smallest part that is added, m².
     density : float
@@ -105,7 +105,7 @@ def with_bent_roofs(
 
     Notes
     -----
-    A part joins one building, the one that most of its points beside buildings lie nearest to, so that it never joins
+    A part joins one building, the one that most of its points next to buildings lie nearest to, so that it never joins
     two houses that touch.
     """
     bent = np.flatnonzero(is_bent)

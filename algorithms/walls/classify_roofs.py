@@ -81,7 +81,7 @@ def classify_roofs(
 
     Notes
     -----
-    In clouds of matched images, in which roofs are bent, smooth surfaces beside the planes of a building belong to it.
+    In clouds of matched images, in which roofs are bent, smooth surfaces next to the planes of a building belong to it.
     There, rows and blocks of three level roofs or more fall into houses where walls rise 0.3 m above both roofs or the
     roofs step by 0.4 m. Matching rounds both: parapets of half a meter between level roofs are not seen at 59 points
     per m², and of steps of 0.4 m every other one is.
@@ -129,7 +129,7 @@ def classify_roofs(
     if not cluster_id.any():
         monitor.none_found(
             f"No plane of {min_area:g} m² lies {min_height:g} m or more above the ground, so no roof was found; "
-            "check that the cloud shows the ground beside the buildings."
+            "check that the cloud shows the ground next to the buildings."
         )
     return result.astype(np.uint8), cluster_id
 

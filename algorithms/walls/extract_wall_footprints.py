@@ -169,7 +169,7 @@ def extract_wall_footprints(
     tried whether the outline is better off without.
 
     Gaps of a roof, and bites at its edge up to 4 m wide, are roof where no point is seen in them, as long as surfaces
-    are seen all around. Gaps with points a meter and more below the eaves are courtyards. Sides beside which another
+    are seen all around. Gaps with points a meter and more below the eaves are courtyards. Sides next to which another
     roof begins are party walls: they lie under the edge of the roof, and are not counted in the share of walls seen.
     Parts of a roof inside of others are left out.
 
@@ -366,7 +366,7 @@ class _Building:
         ]
 
     def is_party(self, sides: np.ndarray) -> np.ndarray:
-        """Return beside which sides (k, 2, 2) of the roof another roof begins."""
+        """Return the mask of the sides (k, 2, 2) of the roof next to which another roof begins."""
         return self.surroundings.is_party(sides + self.origin, self.number)
 
     def seen_of(self, outline: WallOutline) -> float:

@@ -20,8 +20,8 @@ from .surroundings import without_nested
 # Area of the smallest part and of the smallest courtyard (square spacings).
 _LEAST_AREA = 16.0
 
-# Scale (spacings) of the sides under which walls are searched for: of twelve bends beside holes two were cut off at 0.8
-# and at 1, and one at 0.6. The price of corners leaves superfluous lines out.
+# Scale (spacings) of the sides under which walls are searched for: of twelve bends next to holes two were cut off at
+# 0.8 and at 1, and one at 0.6. The price of corners leaves superfluous lines out.
 _FINE = 0.6
 
 # Side (m) of the cells in which a roof is compared with walls.

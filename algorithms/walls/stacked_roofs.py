@@ -8,7 +8,7 @@ from ..geometry.grid import find_cells, raster_cells
 from ..geometry.groups import topmost
 
 # A roof of which more than this share of the border meets one larger roof is a part of that one. A house between two
-# others of its size has at most a third of it beside each, an annex in a nook half; a stair house at the edge of a
+# others of its size has at most a third of it next to each, an annex in a nook half; a stair house at the edge of a
 # roof has three quarters.
 _ENCLOSED = 0.6
 
@@ -38,7 +38,7 @@ def _surrounding(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarra
     into = np.arange(count)
     if count < 2:
         return into
-    # Room at the border, so that the numbers of cells beside it are of no other cells.
+    # Room at the border, so that the numbers of cells next to it are of no other cells.
     row, column = raster_cells(xyz[own], size, _OVER + 1)
     columns = int(column.max()) + _OVER + 2
     number = row * columns + column

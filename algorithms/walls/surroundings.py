@@ -1,4 +1,4 @@
-"""Points beside a roof and in its holes: other roofs, and ground that is seen."""
+"""Points next to a roof and in its holes: other roofs, and ground that is seen."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CELL_SPACINGS = 2.5
 # roof, it finds nothing below it either. Gaps inside a roof are filled whatever their width.
 _BITE = 4.0
 
-# Least share of the cells beside a roof with points, from which empty cells show a bite: elsewhere the surroundings
+# Least share of the cells next to a roof with points, from which empty cells show a bite: elsewhere the surroundings
 # are not seen either.
 _SEEN_BESIDE = 0.8
 
@@ -39,7 +39,7 @@ _EAVES = 5
 # Largest distance between points put into gaps (spacings of the roof's points).
 _FILLED = 2.0
 
-# Least share of a side of a roof, beside which another roof begins, that makes it a party wall.
+# Least share of a side of a roof, next to which another roof begins, that makes it a party wall.
 _SHARED = 0.5
 
 # Distances (m) outward from a side at which the other roof is searched for: gaps between party walls are narrower.
@@ -66,7 +66,7 @@ class Surroundings:
         cells, which = distinct(self.grid.number(self._xyz))
         order = np.argsort(which, kind="stable")
         starts = run_starts(which[order])
-        # Of two roofs in a cell either one is beside a third.
+        # Of two roofs in a cell either one is next to a third.
         roof = np.maximum(np.maximum.reduceat(self._cluster_id[order], starts), 0)
         return cells, np.minimum.reduceat(self._xyz[order, 2], starts), roof.astype(np.int64)
 
@@ -106,7 +106,7 @@ class Surroundings:
         return _spread(centers[is_gap.ravel()], self.grid.size, _FILLED * spacing)
 
     def is_party(self, sides: np.ndarray, number: int) -> np.ndarray:
-        """Return beside which sides (k, 2, 2) of roof ``number``, which lies to their left, other roofs begin."""
+        """Return the mask of the sides (k, 2, 2) of roof ``number``, to their left, next to which other roofs begin."""
         along, side, outward = along_sides(sides, _STEP)
         is_beside = np.zeros(len(side), bool)
         for distance in _OUTWARD:
@@ -131,7 +131,7 @@ def _spread(centers: np.ndarray, size: float, step: float) -> np.ndarray:
 
 
 def without_nested(parts: list) -> list:
-    """Return the parts of a roof, each a list of rings, without those that lie in larger ones beside their holes."""
+    """Return the parts of a roof, each a list of rings, without those that lie in larger ones next to their holes."""
     kept: list = []
     for rings in sorted(parts, key=lambda rings: -signed_area(rings[0])):
         if not any(are_within(rings[0][:1], sides_of_rings(other))[0] for other in kept):

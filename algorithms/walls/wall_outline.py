@@ -79,7 +79,7 @@ def outline_walls(
     limits : Limits
         What walls and footprints may be like.
     is_party : callable
-        Returns beside which sides (k, 2, 2) of the roof another roof begins: no eave juts out there.
+        Returns the mask of the sides (k, 2, 2) of the roof next to which another roof begins: no eave juts out there.
     monitor : Monitor
         Receives progress.
     """
@@ -145,7 +145,7 @@ def _from_roof(
 
 
 def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -> WallLine:
-    """Return the line moved to the most points beside it, ``half`` (m) to both sides of its middle, if there are any.
+    """Return the line moved to the most points next to it, ``half`` (m) to both sides of its middle, if there are any.
 
     The direction is known, so that far fewer points determine a wall than without.
     """

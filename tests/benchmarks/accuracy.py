@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Print how good the results are: ``accuracy.py [table …]``, all by default.
 
-``buildings``, ``classes`` (all of them, beside Whitebox), ``ground``, ``noise`` and ``noise_apart`` are of real clouds,
-``turned`` of the same when cells fall elsewhere, ``harder`` of the same with fewer points or more noise, ``uneven`` of
-the same with points on lines, in bands or in pairs, ``pieces`` of squares cut out of clouds, ``objects`` of real
-houses, trees, cars, fences and poles on simulated ground, ``footprints`` of outlines, ``outlines`` of how stable these
-are, beside Building-Regulariser's, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and ``confidence`` of
-simulated scenes, whose truth is exact, and ``maps`` of old maps with known differences. ``photos`` are real clouds of
-matched images, ``drone`` simulated ones, ``likeness`` compares the two.
+``buildings``, ``classes`` (all of them, compared with Whitebox), ``ground``, ``noise`` and ``noise_apart`` are of real
+clouds, ``turned`` of the same when cells fall elsewhere, ``harder`` of the same with fewer points or more noise,
+``uneven`` of the same with points on lines, in bands or in pairs, ``pieces`` of squares cut out of clouds, ``objects``
+of real houses, trees, cars, fences and poles on simulated ground, ``footprints`` of outlines, ``outlines`` of how
+stable these are, compared with Building-Regulariser's, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and
+``confidence`` of simulated scenes, whose truth is exact, and ``maps`` of old maps with known differences. ``photos``
+are real clouds of matched images, ``drone`` simulated ones, ``likeness`` compares the two.
 
 Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
 Python lines that the tests hold the program to.

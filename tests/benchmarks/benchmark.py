@@ -4,7 +4,7 @@
     make bench                                  0.1 and 1 million points
     make bench SIZES="0.1 1 10"                 10 million too, for which some stages take minutes
     make bench STAGES="classify_ground_tin"     one stage, with the steps before it, which prepare its input
-    make bench CLOUD=tile.laz                   "Detect buildings" of a cloud, as users run it, beside other programs
+    make bench CLOUD=tile.laz                   "Detect buildings" of a cloud, as users run it, and other programs
 
 How to read the table
 ---------------------
@@ -109,7 +109,7 @@ class Bench:
         print(flush=True)
 
     def whole(self) -> None:
-        """Measure "Detect buildings" from file to file, in QGIS and in Python, beside the programs of others."""
+        """Measure "Detect buildings" from file to file, in QGIS and in Python, compared with the programs of others."""
         for name in (FILES, *IN_QGIS, *PEERS):
             what = "files" if name == FILES else name
             self._row(name, what, state=str(self.states / f"{what.split()[0]}.laz"))

@@ -1,4 +1,4 @@
-"""All classes of real clouds with whole truth: *Detect buildings* beside Whitebox's ``classify_lidar``."""
+"""All classes of real clouds with whole truth: *Detect buildings* compared with Whitebox's ``classify_lidar``."""
 
 from __future__ import annotations
 

@@ -122,7 +122,7 @@ class Terraced(Relief):
         for rect, floor in self.levels:
             along, across = rect.local(x, y)
             away = np.maximum(np.maximum(np.abs(along) - rect.length / 2, np.abs(across) - rect.width / 2), 0.0)
-            # Banks of 50° beside the level.
+            # Banks of 50° next to the level.
             z = np.clip(z, floor - 1.2 * away, floor + 1.2 * away)
         return z
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Features of neighborhoods beside those of pgeof, a compiled library: processor time, memory, growth with the points.
+"""Features of neighborhoods compared with pgeof's, a compiled library: processor time, memory, growth with the points.
 
     .venv/bin/python tests/benchmarks/features.py              0.32 and 1 million points
     .venv/bin/python tests/benchmarks/features.py 0.32 1 10    10 million too, which pgeof has no memory for

@@ -18,7 +18,7 @@ NOTEWORTHY = 0.05
 
 
 def keep_copy(results: Path) -> Path:
-    """Copy a file of results into the folder of the history beside it, and return the copy: one for each commit."""
+    """Copy a file of results into the folder of the history next to it, and return the copy: one for each commit."""
     content = _content(results)
     name = content["commit"] or "without-git"
     if content["changed"]:
@@ -56,7 +56,7 @@ def sentences(path: Path, published: Path) -> list[str]:
     last, own = before(path, published), _content(path)
     if last is None:
         return ["No earlier results are kept to compare with."]
-    lines = [f"Processor time in units of {FLOOR}, beside that of {(last['commit'] or 'no commit')[:12]}:"]
+    lines = [f"Processor time in units of {FLOOR}, compared with {(last['commit'] or 'no commit')[:12]}:"]
     for millions, name, then, now in changes(last["rows"], own["rows"]):
         mark = "" if abs(now / then - 1) < NOTEWORTHY else " *"
         lines.append(f"{name:28s} {millions:6g} M {then:8.2f} {now:8.2f} {now / then - 1:+8.0%}{mark}")

@@ -1,4 +1,4 @@
-"""How stable, regular and near to the map outlines are, beside Building-Regulariser on the same traced rings."""
+"""How stable, regular and near to the map outlines are, compared with Building-Regulariser on the same traced rings."""
 
 from __future__ import annotations
 

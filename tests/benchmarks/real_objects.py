@@ -33,7 +33,7 @@ GROUND_NOISE = 0.02
 
 
 def scene(slope: float, share: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return coordinates (m), true classes and object numbers (0 is ground) of houses, each with the objects beside it.
+    """Return coordinates (m), true classes and object numbers (0 is ground) of houses with objects next to them.
 
     ``slope`` is the rise of the ground per meter, ``share`` how much of the points stays.
     """
@@ -87,7 +87,7 @@ def _founded(house: np.ndarray, center: np.ndarray, slope: float) -> np.ndarray:
 def _beside(
     points: np.ndarray, house: np.ndarray, number: int, center: np.ndarray, slope: float, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return an object beside the house at ``center``: numbers 0 to 3 on one side each, number 4 on that of 0."""
+    """Return an object next to the house at ``center``: numbers 0 to 3 on one side each, number 4 on that of 0."""
     half, own = np.ptp(house[:, :2], axis=0) / 2, np.ptp(points[:, :2], axis=0) / 2
     axis, side = number % 2, 1 if number // 2 % 2 else -1
     apart = TOUCHING if number in (0, BESIDE.index(FENCE)) else rng.uniform(*APART)

@@ -1,4 +1,4 @@
-"""*Regularize footprints* beside QGIS's *Orthogonalize*, on Delft's base map traced from noisy rasters of two seeds.
+"""*Regularize footprints* compared with QGIS's *Orthogonalize*, on Delft's base map traced from noisy rasters.
 
 Prints a row for each size of the cells (m) and each method::
 

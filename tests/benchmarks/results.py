@@ -74,7 +74,7 @@ def print_tables(tables: dict[str, Callable[[], list[Table]]], description: str 
 
 
 def circumstances() -> dict[str, Any]:
-    """Return what figures depend on beside the data: version and commit of the code, date, machine."""
+    """Return what figures depend on besides the data: version and commit of the code, date, machine."""
     general = configparser.ConfigParser(interpolation=None)
     general.read(ROOT / "metadata.txt", encoding="utf-8")
     return {

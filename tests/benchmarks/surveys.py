@@ -116,7 +116,7 @@ def _resident(pid: int) -> int:
 
 
 def make_survey(folder: Path, millions: float, side: float) -> list[Path]:
-    """Write tiles of ``side`` (m) with ``millions`` of points: a real tile beside itself again and again."""
+    """Write tiles of ``side`` (m) with ``millions`` of points: a real tile next to itself again and again."""
     folder.mkdir(parents=True)
     whole = read_cloud(TILE)
     count = round(millions * 1e6)

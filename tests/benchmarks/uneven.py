@@ -66,7 +66,7 @@ def in_bands(xyz: np.ndarray, sparse: float, dense: float) -> tuple[np.ndarray, 
 
 
 def in_pairs(xyz: np.ndarray, density: float) -> tuple[np.ndarray, np.ndarray]:
-    """Choose ``density`` points per m² at random, and give each a second one beside it."""
+    """Choose ``density`` points per m² at random, and give each a second one close to it."""
     once = np.flatnonzero(np.random.default_rng(1).random(len(xyz)) < density / point_density(xyz))
     rng = np.random.default_rng(1)
     beside = np.column_stack([rng.normal(0, spread, len(once)) for spread in (_PAIR, _PAIR, _PAIR_HEIGHT)])

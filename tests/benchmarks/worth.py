@@ -609,7 +609,7 @@ Rules of little worth on these clouds stay for what the clouds do not show:
 - *Groups in histograms*: lamps and wires on slopes are no noise.
 - *Three directions*: whether single bushes and roofs are seen depends less on where cells fall. In twelve positions the
   mean error of the samples was 3.21 % and became 3.10 %.
-- *Banks*, *level regions*: sample 53, and the banks beside a simulated cut, of which 9 % was lost.
+- *Banks*, *level regions*: sample 53, and the banks next to a simulated cut, of which 9 % was lost.
 - *Halls in parts*, *machines on halls*: half, and 2 %, of a simulated estate of halls becomes ground.
 - *Surfaces that go on into the ground*: simulated ramps and bridges.
 - *Wide in plan*: lines of points far apart; on zigzag lines F of Delft was 47 % and became 88 %.

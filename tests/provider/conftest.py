@@ -38,7 +38,7 @@ def qgis_application():
 
 @pytest.fixture(scope="session")
 def provider(qgis_application):
-    """The provider in Processing's registry, with the toy stages and the toy chain beside the real ones."""
+    """The provider in Processing's registry, with the toy stages and the toy chain in addition to the real ones."""
     from qgis.core import QgsApplication
 
     from lidar_buildings.provider.provider import Provider

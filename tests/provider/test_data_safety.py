@@ -131,7 +131,7 @@ def test_a_layer_is_replaced_when_the_new_one_is_complete(provider, context, log
 
 
 def test_an_older_journal_is_not_applied_to_a_new_layer(provider, context, log, town_file, out):
-    """A journal that SQLite finds beside a database is taken for its own, whichever file it was written for."""
+    """A journal that SQLite finds next to a database is taken for its own, whichever file it was written for."""
     target = out / "f.gpkg"
     given = {"INPUT": str(town_file), "FOOTPRINTS": str(target)}
     run("toyoutline", given, context, log)

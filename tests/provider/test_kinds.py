@@ -1,4 +1,4 @@
-"""The kinds of stages beside those that write dimensions: selections, merged clouds, layers read, rasters made."""
+"""The kinds of stages besides those that write dimensions: selections, merged clouds, layers read, rasters made."""
 
 from __future__ import annotations
 

@@ -285,7 +285,7 @@ def test_a_copc_that_is_not_the_results_view_is_kept(provider, context, town_fil
     given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}
     accepted, message = provider.algorithm("toychain").create().checkParameterValues(given, context)
     assert not accepted
-    assert "a.copc.laz lies beside the output a.laz" in message
+    assert "a.copc.laz lies next to the output a.laz" in message
     assert (out / "a.copc.laz").is_file()
 
 

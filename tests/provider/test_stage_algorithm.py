@@ -383,7 +383,7 @@ def test_without_pdal_a_copc_is_shown_in_place_of_the_result(provider, context, 
 
 @pytest.mark.parametrize("name", ["toylift", "toychain"])
 def test_the_copc_beside_the_result_may_not_be_the_input(provider, context, layer, log, name):
-    """A result x.laz takes the COPC x.copc.laz beside it away; once that was the composite's own input."""
+    """A result x.laz takes the COPC x.copc.laz next to it away; once that was the composite's own input."""
     target = str(Path(layer.source()).with_name("layer.laz"))
     accepted, message = (
         provider.algorithm(name).create().checkParameterValues({"INPUT": layer, "OUTPUT": target}, context)

@@ -1,4 +1,4 @@
-"""Footprints of Delft beside its points and beside its base map, in QGIS's geometries."""
+"""Footprints of Delft with its points and its base map, in QGIS's geometries."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from lidar_buildings.algorithms.sampling.density import point_density
 from lidar_buildings.algorithms.stage import LayerFeatures
 from lidar_buildings.algorithms.stages import STAGES
 
-# A folder beside the checkout, or wherever the variable says: clouds with their truth, in folders by subject.
+# A folder next to the checkout, or wherever the variable says: clouds with their truth, in folders by subject.
 DATA = Path(os.environ.get("LIDAR_BUILDINGS_DATA", Path(__file__).resolve().parents[3] / "shared" / "data"))
 SCORER = DATA.parent / "tools" / "score.py"
 

@@ -271,7 +271,7 @@ def test_cancel_gets_through(garden):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_k_means_finds_the_exact_split(seed):
-    """Of scikit-learn, on groups of other sizes and overlaps; it may end beside the optimum, but not here."""
+    """Of scikit-learn, on groups of other sizes and overlaps; it may end near the optimum, but not here."""
     random = np.random.default_rng(seed)
     means = np.concatenate([random.normal(0.6, 0.05, 30 + 20 * seed), random.normal(0.9, 0.04, 60), [np.nan]])
     exact, found = two_means(means, Monitor()), k_means(means, Monitor())

@@ -1,4 +1,4 @@
-"""Parts of a building beside its roof surfaces, in scenes where each point's part is known."""
+"""Parts of a building next to its roof surfaces, in scenes where each point's part is known."""
 
 import numpy as np
 import pytest
@@ -291,7 +291,7 @@ def test_any_density(rng, density, least):
     roof = scene.roof(8, 8, 24, 20, gable)
     walls = scene.box([8.05, 8, 0.6], [8.2, 20, 3], 20)
     found, number = scene.complete()
-    # Beside the outermost roof points of a thin cloud a cell may hold none.
+    # Next to the outermost roof points of a thin cloud a cell may hold none.
     assert (found[walls] == 6).mean() >= least
     assert (found[np.flatnonzero(roof)] == 6).all()
     assert number.max() == 1

@@ -16,7 +16,7 @@ SIDE, DENSITY, EAVE = 96.0, 6.0, 6.0
 
 
 class Village:
-    """Sixteen flat houses of 10 m by 8 m with walls, a crown beside each; truth is known, classes have three errors.
+    """Sixteen flat houses of 10 m by 8 m with walls, a crown next to each; truth is known, classes have three errors.
 
     A strip along the eave of one house was left out, a crown that touches another was taken for a part of it, and so
     was a spot of a wall.

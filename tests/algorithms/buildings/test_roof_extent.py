@@ -1,4 +1,4 @@
-"""Where roofs end in matched images: rounded edges, gaps, smeared walls, crowns beside them, vehicles."""
+"""Where roofs end in matched images: rounded edges, gaps, smeared walls, crowns next to them, vehicles."""
 
 from __future__ import annotations
 

@@ -144,12 +144,12 @@ def test_waveforms_of_las_13_stay_where_the_header_says(make_las, take_apart, tm
 def test_waveforms_in_a_file_of_their_own_are_reported(
     make_las, take_apart, tmp_path, point_format, encoding, reported
 ):
-    """The output kept its references, and lay beside no file to which they could refer, without a word."""
+    """The output kept its references, and there was no file next to it to which they could refer, without a word."""
     path = make_las(point_format=point_format, minor=3 if point_format < 6 else 4, encoding=encoding)
     path.with_suffix(".wdp").write_bytes(b"waveforms")
     monitor = Monitor()
     write_cloud(read_cloud(path), tmp_path / "b.las", monitor)
-    assert any(".wdp), which is not copied; copy it beside" in sentence for sentence in monitor.warnings) == reported
+    assert any(".wdp), which is not copied; copy it next to" in sentence for sentence in monitor.warnings) == reported
     assert take_apart(tmp_path / "b.las")["encoding"] == encoding
     assert not (tmp_path / "b.wdp").exists()
 

@@ -175,7 +175,7 @@ def test_any_other_copc_beside_is_kept_and_the_output_refused(cloud, folder, fou
     found(cloud, folder)
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     for attempt in (check_write, write_cloud):
-        with pytest.raises(ValueError, match=r"a\.copc\.laz lies beside the output a\.laz"):
+        with pytest.raises(ValueError, match=r"a\.copc\.laz lies next to the output a\.laz"):
             attempt(cloud, folder / "a.laz", copc_beside=copc_beside)
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 

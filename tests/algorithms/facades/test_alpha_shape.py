@@ -60,7 +60,7 @@ def test_any_pattern_gives_valid_rings_around_the_kept_triangles(rng, max_edge):
     corners = points[Delaunay(points - points.mean(axis=0)).simplices]
     short = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1) <= max_edge
     assert (tracing.face[short] >= 0).all()
-    # A piece that touches itself in a point has smaller rings beside its largest one.
+    # A piece that touches itself in a point has smaller rings next to its largest one.
     within = np.bincount(tracing.face[tracing.face >= 0], tracing.areas[tracing.face >= 0])
     around = np.array([signed_area(ring) for ring in tracing.parts])
     assert (around <= within + 1e-9).all()

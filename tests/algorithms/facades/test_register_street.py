@@ -87,7 +87,7 @@ def test_sides_of_a_bay_that_the_air_shows_displaced_hardly_move_the_scan():
 
 
 def test_objects_before_the_foot_of_a_wall_do_not_make_it_longer():
-    """A wall of 10 by 6 m with a car beside its foot and a tree at its top: 1.5 and 1 m high, 2 m long."""
+    """A wall of 10 by 6 m with a car next to its foot and a tree at its top: 1.5 and 1 m high, 2 m long."""
     ring = np.array([[0, 0], [12, 0], [12, 1.5], [10, 1.5], [10, 6], [-2, 6], [-2, 5], [0, 5], [0, 0]], float)
     wall = facade_segments(LayerFeatures([[np.column_stack([ring[:, 0], np.full(len(ring), 3.0), ring[:, 1]])]], {}))
     np.testing.assert_allclose(wall.start, [[0.0, 3.0]], atol=1e-9)

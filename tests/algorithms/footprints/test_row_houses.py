@@ -240,7 +240,7 @@ def test_a_wall_beside_a_front_leaves_no_strip_for_the_house_behind_it(rng, monk
 
 @pytest.mark.parametrize("spacing", [3.0, 1.4])
 def test_where_points_are_too_far_apart_to_see_roofs_this_is_reported(rng, spacing):
-    """From 2.7 m on, not one place of the grid was beside a wall, and the stage broke off."""
+    """From 2.7 m on, not one place of the grid was next to a wall, and the stage broke off."""
     plan = rng.uniform(0, 1, (round(4800 / spacing**2), 2)) * [80, 60]
     monitor = Monitor()
     xyz = np.column_stack([plan, np.full(len(plan), 8.0)])
@@ -312,7 +312,7 @@ def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
     ],
 )
 def test_what_a_wall_pays(depth, seen, low, share):
-    """A step of 0.8 m across a row, of which shares are seen, and beside roofs lower than 4 m."""
+    """A step of 0.8 m across a row, of which shares are seen, and next to roofs lower than 4 m."""
     along = 0.25 * np.arange(round(depth / 0.25))[:, None]
     roof = 8 + np.where((np.arange(81) >= 40) & (along < seen), 0.8, 0.0)
     roof[along[:, 0] >= depth - low] = 3.0

@@ -99,7 +99,7 @@ def test_edges_lie_between_their_cells_and_crossings(seed, count):
         np.testing.assert_allclose(
             cells.positions[place], points[edges.line] + way[:, None] * directions[edges.line], atol=1e-6
         )
-    # Each of the four cells around a crossing lies beside the edge of the first line before or after it.
+    # Each of the four cells around a crossing lies next to the edge of the first line before or after it.
     for column, beside in enumerate((edges.left, edges.right, edges.left, edges.right)):
         at = edges.end if column < 2 else edges.start
         found = {(place, line): cell for place, line, cell in zip(at, edges.line, beside)}
@@ -134,7 +134,7 @@ def test_no_other_choice_of_cells_is_cheaper(seed):
 
 @pytest.mark.parametrize("forbidden", [1e3, 3e6, 1e12])
 def test_costs_beyond_32_bits_forbid_as_smaller_ones_do(forbidden):
-    """Square meters beside large roofs cost more than fits, and such cells were taken for free."""
+    """Square meters next to large roofs cost more than fits, and such cells were taken for free."""
     cells = Arrangement(np.zeros((1, 2)), np.array([(0.0, 1.0)]), LOW, HIGH)
     cost = np.ones(1)
     left, right = int(cells.edges.left[0]), int(cells.edges.right[0])

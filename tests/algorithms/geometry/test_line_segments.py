@@ -59,7 +59,7 @@ def test_rings_are_valid_as_in_exact_integer_arithmetic(at_once, rng, monkeypatc
 
 
 def test_distances_to_segments_by_hand():
-    """Beside one, before it, beyond it; and to one without length."""
+    """Next to one, before it, beyond it; and to one without length."""
     points = np.array([[2.0, 3], [-3, 4], [8, 4]])
     starts, ends = np.array([[0.0, 0], [2, 0]]), np.array([[5.0, 0], [2, 0]])
     np.testing.assert_allclose(edge_distances(points, starts, ends), [[3, 3], [5, np.hypot(5, 4)], [5, np.hypot(6, 4)]])

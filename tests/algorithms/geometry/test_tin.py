@@ -178,7 +178,7 @@ def test_a_sample_of_residuals_depends_neither_on_order_nor_on_one_node(rng):
     assert 550 < len(sample) < 950
     order = rng.permutation(len(nodes))
     np.testing.assert_allclose(np.sort(node_residuals(nodes[order], most=700)), sample, atol=1e-9)
-    # The residuals of nodes beside the missing one change.
+    # The residuals of nodes next to the missing one change.
     without = np.sort(node_residuals(nodes[1:], most=700))
     assert len(np.intersect1d(np.round(without, 9), np.round(sample, 9))) > 0.97 * len(sample)
 

@@ -1,4 +1,4 @@
-"""Filters of the numbers of points in voxels, beside those of scipy on a whole grid."""
+"""Filters of the numbers of points in voxels, compared with scipy's on a whole grid."""
 
 import numpy as np
 import pytest

@@ -46,7 +46,7 @@ def test_surfaces_that_return_all_pulses_are_no_water():
 
 
 def test_what_is_as_high_as_its_surroundings_is_no_water():
-    """Wet asphalt, which gives few pulses back, is no lower than the street beside it."""
+    """Wet asphalt, which gives few pulses back, is no lower than the street next to it."""
     assert not on_ground(canal(drop=0.0)[0]).any()
     assert not on_ground(canal(drop=-0.5)[0]).any()
 

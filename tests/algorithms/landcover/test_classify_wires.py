@@ -17,7 +17,7 @@ PARAMETER = 250.0
 
 
 def line(per_meter=2.0, spans=2, angle=25.0, sides=(-0.8, 0.0, 0.8), seed=4):
-    """A meadow with poles of 9 m every 40 m, catenaries between them and a tree beside; coordinates and classes."""
+    """A meadow with poles of 9 m every 40 m, catenaries between them and a tree; coordinates and classes."""
     rng = np.random.default_rng(seed)
     ground = np.column_stack([rng.uniform(0, 100, (30_000, 2)), np.zeros(30_000)])
     parts, kinds = [ground], [np.full(len(ground), GROUND)]

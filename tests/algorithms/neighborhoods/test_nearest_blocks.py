@@ -51,7 +51,7 @@ def check(xyz, shapes, order, weigh, rows):
 
 @pytest.fixture
 def scene(rng):
-    """A dense roof beside sparse ground, a wall, a crown, a wire and points on their own, in coordinates of UTM."""
+    """A dense roof next to sparse ground, a wall, a crown, a wire and points on their own, in coordinates of UTM."""
     plan = rng.uniform(0, 1, (900, 2))
     parts = [
         np.column_stack([plan * 30, 0.02 * rng.normal(size=900)]),

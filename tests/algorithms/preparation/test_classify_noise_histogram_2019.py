@@ -51,14 +51,14 @@ def test_low_points_right_below_a_field_are_found_and_not_by_the_filter_that_ask
 
 
 def test_a_poor_cell_borrows_from_its_neighbors_and_a_lonely_one_from_the_nearest(field):
-    """Beside the field lie a cell of three points, and one far from all others."""
+    """Next to the field lie a cell of three points, and one far from all others."""
     beside, lonely = at(0.5, -5.5, 5.5, x=45.0), at(0.5, -5.5, 5.5, x=500.0)
     assert found(field, beside) == [1, 7, 18]
     assert found(field, lonely) == [1, 7, 18]
 
 
 def test_a_rich_cell_does_not_borrow():
-    """A hill beside a field: pooled, its foot and the field would be one histogram, in which nothing is alone."""
+    """A hill next to a field: pooled, its foot and the field would be one histogram, in which nothing is alone."""
     random = np.random.default_rng(1)
     low = random.uniform(0, 1, (500, 3)) * [10, 10, 0.9]
     high = low + [10, 0, 20]

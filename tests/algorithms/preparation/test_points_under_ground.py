@@ -84,7 +84,7 @@ def test_points_that_are_ground_for_each_other_stay(rng):
 
 
 def test_points_that_share_a_level_are_a_floor_seen_through_glass(rng):
-    """Nine returns of a shaft's floor, 3 m below a deck and level to 5 cm over 5 m, made the deck beside it ground."""
+    """Nine returns of a shaft's floor, 3 m below a deck and level to 5 cm over 5 m, made the deck next to it ground."""
     deck = plain(rng, 10.0, 40.0)
     along = np.linspace(0, 5, 9)
     floor = np.column_stack([18 + along, 20 + 0.3 * rng.random(9), -3 + rng.uniform(-0.025, 0.025, 9)])

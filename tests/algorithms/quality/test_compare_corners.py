@@ -150,7 +150,7 @@ def test_vertices_on_straight_and_round_walls_are_no_corners():
 
 
 def test_corners_face_the_same_way():
-    """A narrow wing was rebuilt beside its old place: its northern corner now is where its southern one was."""
+    """A narrow wing was rebuilt next to its old place: its northern corner now is where its southern one was."""
     old = np.array([[0, 0], [10, 0], [10, 3], [14, 3], [14, 3.6], [10, 3.6], [10, 8], [0, 8], [0, 0]], float)
     new = np.array([[0, 0], [10, 0], [10, 2.4], [14, 2.4], [14, 3], [10, 3], [10, 8], [0, 8], [0, 0]], float)
     arrows, _, report = compare_corners(layer(new), layer(old))

@@ -224,7 +224,7 @@ def test_lines_over_half_of_the_cloud_are_enough_to_look_across_them(rng):
 
 @pytest.mark.parametrize(("share", "expected"), [(0.1, Nearest(8)), (1 / 3, Wide(8))])
 def test_more_than_a_fifth_of_the_neighborhoods_must_be_narrow(share, expected, rng):
-    """On lines, as rough as the grid beside them, lies so much of the cloud; all other neighborhoods are wide."""
+    """On lines, as rough as the grid next to them, lies so much of the cloud; all other neighborhoods are wide."""
     x, y = np.meshgrid(np.arange(0, 60, 0.2), np.arange(0, 60 * share, 1.5))
     along, across = np.meshgrid(*2 * [np.arange(np.sqrt(x.size / share - x.size)) / 2])
     xyz = np.column_stack([np.append(x, along + 100), np.append(y, across), np.zeros(x.size + along.size)])

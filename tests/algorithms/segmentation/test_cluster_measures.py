@@ -18,7 +18,7 @@ def test_shares_by_hand():
     group = np.array([0, 0, 0, 1, 2, 2, 2, 2, 2])
     np.testing.assert_allclose(share_around(xyz, group, np.array([True, False, False])), [0.75, 0.75, 0])
     np.testing.assert_allclose(share_around(xyz, group, np.array([True, True, True])), 1)
-    # Points higher by a box and a half are as near as those a box beside; points two boxes higher are not.
+    # Points higher by a box and a half are as near as those in the next box; points two boxes higher are not.
     above = np.where(np.isin(group, 1)[:, None], xyz + [0, 0, 6], xyz)
     np.testing.assert_allclose(share_around(above, group, np.array([True, False, False]))[:2], 0.75)
     far_above = np.where(np.isin(group, 1)[:, None], xyz + [0, 0, 9], xyz)

@@ -49,7 +49,7 @@ def test_a_gable_is_two_patches_that_meet_in_the_ridge(density, noise, rng):
     spacing = 1 / np.sqrt(density)
     for across in of_side:
         own = np.sign(np.median(across))
-        # A point of the other side is within the noise of this side's plane only beside the ridge.
+        # A point of the other side is within the noise of this side's plane only next to the ridge.
         assert (across * own).min() > -(spacing + 6 * noise)
         assert len(across) > 0.85 * (np.sign(to_ridge) == own).sum()
 

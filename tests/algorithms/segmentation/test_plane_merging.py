@@ -9,7 +9,7 @@ from lidar_buildings.algorithms.stage import Monitor
 
 
 def test_a_plane_grows_along_a_strip_and_looks_at_each_point_a_few_times(rng, monkeypatch):
-    """In each round all points beside the plane were looked at again: a strip of 40 voxels 22 times over."""
+    """In each round all points next to the plane were looked at again: a strip of 40 voxels 22 times over."""
     xyz = np.column_stack([rng.uniform(0, 40, 4000), rng.uniform(0, 0.9, 4000), rng.normal(0, 0.01, 4000)])
     xyz[:, 2] -= xyz[:, 2].min()
     # Half way along, points of 0.1 m lie 10 cm higher: they are of no plane.

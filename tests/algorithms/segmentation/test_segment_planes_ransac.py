@@ -128,7 +128,7 @@ def test_a_plane_does_not_grow_along_single_points(rng):
 def test_a_plane_does_not_grow_into_leaves_beside_it(rng):
     crown = rng.uniform([8, 0, -2], [12, 8, 2], (6000, 3))
     ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), crown]), voxel_size=0.6, tolerance=0.06)
-    # By chance a few lie on it in the voxels beside it, and no farther.
+    # By chance a few lie on it in the voxels next to it, and no farther.
     assert (ids[-6000:] > 0).mean() < 0.01
     assert not ids[-6000:][crown[:, 0] > 9.2].any()
 

@@ -132,7 +132,7 @@ def test_a_bridge_on_scan_lines_is_no_roof(rng):
 
 
 def test_bridge_decks_and_objects_on_them_are_no_roofs(rng):
-    """A deck 6 m high, a truck of 3 m on it that hides it, and a house of 6 m beside it."""
+    """A deck 6 m high, a truck of 3 m on it that hides it, and a house of 6 m next to it."""
     deck, truck, house = (
         np.insert(rng.uniform(low, high, (8 * int(np.prod(np.subtract(high, low))), 2)), 2, z, axis=1)
         for low, high, z in (((0, 0), (40, 10), 6.0), ((15, 3), (27, 5), 9.0), ((0, 12), (10, 22), 6.0))
@@ -172,7 +172,7 @@ def test_noise_is_in_no_cluster(rng):
 
 @pytest.mark.parametrize("side", [5.0, 10.0])
 def test_a_porous_plane_is_no_building(rng, side):
-    """A pergola, flat as a roof: half of the beams go through it. Solid roofs beside it are found."""
+    """A pergola, flat as a roof: half of the beams go through it. Solid roofs next to it are found."""
     plan = rng.uniform(0, 40, (16_000, 2))
     over, solid = (
         (np.abs(plan - middle) < reach).all(axis=1) for middle, reach in (([10, 20], side / 2), ([30, 20], 5))

@@ -108,7 +108,7 @@ def test_segments_are_searched_one_by_one(rng):
 def parted(rng, gap, *, offset=0.0, second_radius=0.1, lean=0.0):
     """Return points (n, 3) of two pipes along x, of 2 m and 1.5 m, ``gap`` (m) apart, and the segment (n,) of each.
 
-    The second one lies ``offset`` (m) beside the line of the first and leans from it.
+    The second one lies ``offset`` (m) off the line of the first and leans from it.
     """
     one = pipe(rng, 0.1, 2.0, 0.02, 0.002, (1, 0, 0)) - [1.0 + gap / 2, 0, 0]
     two = pipe(rng, second_radius, 1.5, 0.02, 0.002, (1, lean, 0)) + [0.75 + gap / 2, offset + lean * 0.75, 0]
@@ -134,7 +134,7 @@ def test_pieces_of_one_pipe_are_one_cylinder(rng, search_in):
 @pytest.mark.parametrize(
     ("gap", "other"),
     [(1.5, {}), (0.6, {"offset": 0.006}), (0.6, {"second_radius": 0.106}), (0.6, {"lean": 0.02})],
-    ids=["far apart", "beside the line", "wider", "at an angle"],
+    ids=["far apart", "next to the line", "wider", "at an angle"],
 )
 def test_two_pipes_stay_two(rng, gap, other):
     """Offset, radius and angle differ by little more than the noise of 2 mm."""
@@ -160,7 +160,7 @@ def test_position_and_order_do_not_matter(rng):
 
 
 def test_fit_is_the_least_squares_cylinder(rng):
-    """Beside scipy's general minimizer, from the same start."""
+    """Compared with scipy's general minimizer, from the same start."""
     from scipy.optimize import least_squares
 
     xyz = pipe(rng, 1.0, 3.0, 0.2, 0.05, (0.2, 0.1, 1.0), seen=0.4)

@@ -48,7 +48,7 @@ def test_pieces_of_a_pipe_are_one_cylinder_as_long_as_all(of_segments, count, rn
     [
         {"gap": 1.2},  # wider than five diameters
         {"gap": 0.6, "radius": 0.11},
-        {"gap": 0.6, "aside": 0.015},  # seven deviations of the noise beside the axis
+        {"gap": 0.6, "aside": 0.015},  # seven deviations of the noise off the axis
         {"gap": 0.6, "degrees": 3.0},
     ],
 )

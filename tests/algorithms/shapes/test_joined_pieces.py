@@ -50,7 +50,7 @@ def test_a_piece_within_another_changes_nothing_of_its_outline():
 
 
 def test_an_axis_goes_from_the_farthest_end_to_the_farthest_end(rng):
-    """Pieces of a slanted pipe, in either direction, millimeters beside each other."""
+    """Pieces of a slanted pipe, in either direction, millimeters apart."""
     way = turned(np.array([[0.8, 0.6, 0.1]]), 30)[0]
     way /= np.linalg.norm(way)
     places = [(5.0, 30.0), (20.0, 0.0), (44.0, 28.0)]

@@ -64,7 +64,7 @@ def test_radii_that_voxels_cannot_carry_are_estimated(tree, found):
 
 
 def test_a_stem_too_slender_to_stand_is_no_stem(tree, rng):
-    """A branch that hangs to the ground beside a stem took half of its tree."""
+    """A branch that hangs to the ground next to a stem took half of its tree."""
     xyz, classification, *_ = tree
     count, top = 4000, 8.5
     up, turn = rng.uniform(0, top, count), rng.uniform(0, 2 * np.pi, count)

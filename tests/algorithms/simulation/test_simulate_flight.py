@@ -116,7 +116,7 @@ def test_beams_that_come_back_empty_meet_nothing_solid():
 
 @pytest.mark.parametrize("place", [(40.0, 40.0, 3.0), (30.0, 62.5, 8.0), (63.0, 20.0, 12.0), (66.0, 34.0, 10.0)])
 def test_no_beam_misses_what_is_sought_in_its_direction_only(place):
-    """All pairs of beams and things, from beside, between and over them, against the few that are looked at."""
+    """All pairs of beams and things, from the sides, between and over them, against the few that are looked at."""
     rng = np.random.default_rng(0)
     way = rng.normal(size=(3000, 3))
     way /= np.linalg.norm(way, axis=1)[:, None]

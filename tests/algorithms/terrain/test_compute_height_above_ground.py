@@ -101,7 +101,7 @@ def test_points_above_change_nothing(rng):
 
 
 def test_objects_on_a_bridge_are_measured_from_its_deck():
-    """A deck 6 m over a road, a car on it, and a lamp beside the road under it."""
+    """A deck 6 m over a road, a car on it, and a lamp next to the road under it."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 20, 0.5), np.arange(0, 20, 0.5)))
     road = np.column_stack([x, y, np.zeros(len(x))])
     deck = np.column_stack([x, y, np.full(len(x), 6.0)])[np.abs(y - 10) < 4]
@@ -114,7 +114,7 @@ def test_objects_on_a_bridge_are_measured_from_its_deck():
 
 
 def test_a_house_beside_a_bridge_is_measured_from_the_ground():
-    """A deck 6 m over the land, a truck that hides it from the scanner, and a roof 9 m high 1.5 m beside it."""
+    """A deck 6 m over the land, a truck that hides it from the scanner, and a roof 9 m high 1.5 m next to it."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 30, 0.5), np.arange(0, 30, 0.5)))
     on_deck, on_roof = np.abs(y - 10) < 4, (y > 14.5) & (y < 24)
     hidden = (np.abs(x - 12) < 3) & (np.abs(y - 10) < 1.3)

@@ -374,7 +374,7 @@ def test_a_surface_of_one_row_or_one_cell_has_no_free_standing_segment(shape):
 
 @pytest.mark.parametrize("seed", range(24))
 def test_the_cloud_may_end_within_the_raster(seed):
-    """Blocks of any size, some cut off, and rough patches on and beside them."""
+    """Blocks of any size, some cut off, and rough patches on and next to them."""
     rng = np.random.default_rng(seed)
     surface = slope(80, 90, 0.05)
     for side in rng.integers(6, 60, 8):

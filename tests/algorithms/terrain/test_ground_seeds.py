@@ -161,7 +161,7 @@ def test_stray_points_as_deep_as_ground_farther_off_are_no_terrain(rng):
 
 @pytest.mark.parametrize(("share", "is_terrain"), [(0.15, True), (0.06, False)])
 def test_gaps_of_a_forest_show_the_ground_and_stray_points_do_not(share, is_terrain, rng):
-    """Both lie twelve meters below all that is beside them; pulses that go astray are few."""
+    """Both lie twelve meters below all that is next to them; pulses that go astray are few."""
     plan = even(80, 80, 1.0) + rng.uniform(0.0, 0.9, (len(even(80, 80, 1.0)), 2))
     is_deep = rng.random(len(plan)) < share
     z = 0.2 * plan[:, 0] + np.where(is_deep, 0.0, 12.0 + (rng.uniform(0, 4, len(plan)) if is_terrain else 0.0))

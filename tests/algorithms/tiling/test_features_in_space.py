@@ -134,7 +134,7 @@ def upright(west, east, y, low=0.0, high=4.0):
 
 
 def joined(*layers, declared=PLANES, known=None):
-    """Join what two blocks of 10 m beside each other found, (number, geometry) each."""
+    """Join what two blocks of 10 m next to each other found, (number, geometry) each."""
     made = [
         LayerFeatures([geometry for _, geometry in one], {"id": [n for n, _ in one], "rms": [0.01] * len(one)})
         for one in layers

@@ -1,4 +1,4 @@
-"""What chains make of a survey beside classes: rasters without seams, chosen points, and what belongs to footprints."""
+"""What chains make of a survey besides classes: rasters without seams, chosen points, attributes of footprints."""
 
 import numpy as np
 import pytest

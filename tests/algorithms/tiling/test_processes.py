@@ -279,7 +279,7 @@ def test_workers_end_with_their_program_in_the_middle_of_long_work(tmp_path):
 
 
 def test_no_file_of_the_current_folder_or_the_survey_is_imported(survey, tmp_path):
-    """A module beside the tiles was run by every worker; a script without a main guard was run again in each."""
+    """A module next to the tiles was run by every worker; a script without a main guard was run again in each."""
     data = tmp_path / "survey"
     data.mkdir()
     for path in survey.iterdir():

@@ -135,7 +135,7 @@ AXES = {layer.name: layer for step in INDUSTRY.steps for layer in step.stage.lay
 
 
 def joined(layer, *layers):
-    """Join what blocks of 10 m beside each other found: (geometry, radius) each, cut off where windows end, at 3 m."""
+    """Join what blocks of 10 m next to each other found: (geometry, radius) each, cut off where windows end, at 3 m."""
     made, counts, pieces = [], [], []
     for at, one in enumerate(layers):
         number = list(range(1, len(one) + 1))
@@ -161,7 +161,7 @@ def axis(west, east, y, z=2.0):
 
 
 def test_pieces_of_a_pipe_become_one_and_pipes_beside_each_other_do_not():
-    """Three pieces of a pipe, one beside it, one inside it, as in insulation, and one behind a gap in its line."""
+    """Three pieces of a pipe, one next to it, one inside it, as in insulation, and one behind a gap in its line."""
     one = [(axis(0, 13, 5.0), 0.1), (axis(0, 13, 5.3), 0.1), (axis(0, 13, 5.0), 0.15)]
     two = [(axis(7, 23, 5.005), 0.1)]
     three = [(axis(17, 28, 5.0), 0.1), (axis(28.4, 29, 5.0), 0.1)]

@@ -1,4 +1,4 @@
-"""Halves of roofs that matching has bent belong to the house whose planes lie beside them."""
+"""Halves of roofs that matching has bent belong to the house whose planes lie next to them."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def level(rng, west, south, east, north, z, density=20):
 
 @pytest.fixture
 def scene(rng):
-    """A house with eaves of 0.5 m, a second one beside it, a bush, a car's bonnet and a fence in the yard."""
+    """A house with eaves of 0.5 m, a second one next to it, a bush, a car's bonnet and a fence in the yard."""
     parts = {
         "roof": level(rng, -0.5, -0.5, 10.5, 6.5, 3.2),
         "other roof": level(rng, 14.5, -0.5, 20.5, 6.5, 3.2),
@@ -83,7 +83,7 @@ def test_tunables_have_the_described_effect(scene):
 
 
 def test_leaning_surfaces_are_no_walls(scene, rng):
-    """A roof slope of 45° that comes down beside the house is recognized by its normal."""
+    """A roof slope of 45° that comes down next to the house is recognized by its normal."""
     arrays, of = scene
     arrays["xyz"][of["wall"], 1] += arrays["xyz"][of["wall"], 2]
     x = arrays["xyz"][:, 0]

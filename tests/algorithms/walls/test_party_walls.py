@@ -38,7 +38,7 @@ def parted(xyz, house, height):
     [((6, 6, 6, 6), 0.7), ((6, 6, 6, 6), 1.0), ((6, 6.5, 6, 6.5), 0.0), ((6, 7, 6), 0.0), ((6, 6.3, 6.6), 0.3)],
 )
 def test_walls_are_seen_by_parapets_and_steps(rng, levels, parapet):
-    """On ground that falls by a meter and more beside the block."""
+    """On ground that falls by a meter and more next to the block."""
     xyz, house, height = block(rng, levels, parapet, slope=0.04)
     found = parted(xyz, house, height)
     assert found.max() == len(levels)

@@ -62,7 +62,7 @@ def test_a_side_is_a_party_wall_where_another_roof_begins(rng):
     surroundings = Surroundings(xyz, cluster_id, CloudSampling.of(xyz))
     corners = np.array([(0, 0), (20, 0), (20, 14), (0, 14), (0, 0)], float)
     sides = np.stack([corners[:-1], corners[1:]], axis=1)
-    # Of the eastern side 10 of 14 m have a roof beside them.
+    # Of the eastern side 10 of 14 m have a roof next to them.
     assert surroundings.is_party(sides, 1).tolist() == [False, True, False, False]
     # Seen from the other roof, whose points lie to the left of the same side the other way round.
     assert surroundings.is_party(sides[1:2, ::-1], 2).tolist() == [True]
