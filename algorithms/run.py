@@ -146,7 +146,7 @@ def has_several_returns(cloud: Cloud) -> bool:
 
 
 def counted(cloud: Cloud) -> np.ndarray:
-    """Return which points (n,) the sampling of a cloud is measured on."""
+    """Return the mask of points (n,) on which the sampling of a cloud is measured."""
     used = ~cloud.withheld
     used[used] = without_noise(cloud.get("classification")[used])
     return used
@@ -212,7 +212,7 @@ def _see_from(origin: np.ndarray, clouds: list[Cloud]) -> None:
 
 
 def _used(cloud: Cloud) -> Optional[np.ndarray]:
-    """Return which points stages may see, None when it is all of them."""
+    """Return the mask of points that stages may see, None when it is all of them."""
     withheld = cloud.withheld
     if withheld.all():
         raise ValueError(

@@ -15,7 +15,7 @@ from ..sampling.surface_noise import SURFACES
 
 
 def decided_together(xyz: np.ndarray, gain: np.ndarray, spacing: float, side: float, margin: float) -> np.ndarray:
-    """Return which points (n,), bool, are of buildings, so that together they contradict evidence and neighbors least.
+    """Return the mask of points (n,) of buildings that together contradict evidence and neighbors least.
 
     The cut is exact in each square of a fixed lattice with a margin around it, of which the square itself is kept. So a
     part of a survey that holds these margins decides as the whole, and the cut of all at once differs in few points.
@@ -63,7 +63,7 @@ def _squares(plan: np.ndarray, side: float, margin: float) -> Iterator[tuple[np.
 
 
 def _cheapest(xyz: np.ndarray, gain: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points (n,), bool, the minimum cut puts on the side of buildings; n >= 2."""
+    """Return the mask of points (n,) that the minimum cut puts on the side of buildings; n >= 2."""
     distance, near = spatial.cKDTree(xyz).query(xyz, min(SURFACES.neighbors + 1, len(xyz)))
     row = np.repeat(np.arange(len(xyz)), near.shape[1])
     # A neighbor at no distance counts as much as odds of e to 1, one at the distance of neighbors half of it.

@@ -67,7 +67,7 @@ def covered_cells(cell: Cell, is_roof: np.ndarray, is_low: np.ndarray, gap: floa
 
 
 def cells_with(cell: Cell, points: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """Return which cells of a raster hold one of the chosen points (n,)."""
+    """Return the mask of cells of a raster that hold one of the chosen points (n,)."""
     row, column = cell
     cells = np.zeros(shape, bool)
     cells[row[points], column[points]] = True

@@ -40,7 +40,7 @@ _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 
 
 def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> np.ndarray:
-    """Return which points (n,) are of roof surfaces that rough points surround.
+    """Return the mask of points (n,) that are of roof surfaces that rough points surround.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class RoofExtent:
         return grown
 
     def vehicles(self, region: np.ndarray, count: int) -> np.ndarray:
-        """Return which regions (count + 1,) of labeled cells are of the size of a car or van."""
+        """Return the mask of regions (count + 1,) of labeled cells that are of the size of a car or van."""
         found = np.zeros(count + 1, bool)
         for number, where in enumerate(ndimage.find_objects(region, count), start=1):
             extent = [(part.stop - part.start) * self.surface.size for part in where]

@@ -53,7 +53,7 @@ def decide_in_images(
 
 
 def are_large(evidence: ClusterEvidence) -> np.ndarray:
-    """Return which clusters (m,) are larger than most smooth parts of crowns."""
+    """Return the mask of clusters (m,) that are larger than most smooth parts of crowns."""
     return evidence.areas >= _LARGE * evidence.min_area
 
 
@@ -67,7 +67,7 @@ def without_green(decided: Decisions, is_green: np.ndarray) -> Decisions:
 def green_clusters(
     colors: tuple[Optional[np.ndarray], ...], evidence: ClusterEvidence, is_surface: np.ndarray
 ) -> tuple[np.ndarray, Optional[float]]:
-    """Return which clusters (m,) are as green as the plants of the scene, and from which greenness on that is.
+    """Return the mask of clusters (m,) as green as the plants of the scene, and the least such greenness.
 
     Parameters
     ----------

@@ -149,7 +149,7 @@ def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
 
 
 def _in_leaves(nodes: np.ndarray, level: int) -> np.ndarray:
-    """Return which points lie in nodes that hold all points not taken by a level above, bool (n,)."""
+    """Return the mask (n,) of points in nodes that hold all points not taken by a level above."""
     first = run_starts(nodes)
     counts = np.diff(np.append(first, len(nodes)))
     return np.repeat((counts <= _LEAF_POINTS) | (level == _DEEPEST), counts)

@@ -208,7 +208,7 @@ def sizes_within(
 
 
 def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
-    """Return which share of the extent of a file a box holds, all without a box."""
+    """Return the share of the extent of a file that a box holds, 1 without a box."""
     if box is None:
         return 1.0
     low, high = np.asarray(header.low)[:2], np.asarray(header.high)[:2]

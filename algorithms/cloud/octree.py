@@ -28,7 +28,7 @@ class Nodes:
     above: np.ndarray
 
     def touch(self, box: np.ndarray, spacing: Optional[np.ndarray] = None) -> np.ndarray:
-        """Return which nodes (m,) touch a box (2, 2) in plan and have points that a spacing (3,) needs."""
+        """Return the mask of nodes (m,) that touch a box (2, 2) in plan and have points that a spacing (3,) needs."""
         touch = ((self.low <= box[1]) & (self.high >= box[0])).all(axis=1)
         # Some writers state no spacing: of theirs, all is read.
         return touch if spacing is None else touch & ((self.above > spacing[0]) | ~(self.above > 0))

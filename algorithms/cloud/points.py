@@ -380,7 +380,7 @@ def _portions(wanted: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
 
 
 def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarray:
-    """Return which records (n,) lie within a box (2, 2) in plan, in the coordinates of the file."""
+    """Return the mask of records (n,) that lie within a box (2, 2) in plan, in the coordinates of the file."""
     within = np.ones(len(records), bool)
     for i, axis in enumerate("XY"):
         position = records[axis] * header.scale[i] + header.offset[i]

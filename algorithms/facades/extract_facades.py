@@ -221,7 +221,7 @@ def extract_facades(
 
 
 def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:
-    """Return which points (n,) share a cell in plan with points far above or below, as those of walls do."""
+    """Return the mask of points (n,) that share a cell in plan with points far above or below, as those of walls do."""
     cells, cell = distinct(grid_over(xyz, _PLAN_CELL).number(xyz))
     low, high = np.full(len(cells), np.inf), np.full(len(cells), -np.inf)
     np.minimum.at(low, cell, xyz[:, 2])

@@ -271,7 +271,7 @@ def _outward(starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 
 def inside_ring(positions: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Return which positions (n, 2) a closed ring holds, its own vertices included."""
+    """Return the mask of positions (n, 2) in a closed ring, its own vertices included."""
     inside = are_inside(positions, ring)
     rest = np.flatnonzero(~inside)
     if len(rest):

@@ -109,7 +109,7 @@ class Raster:
         return along, up
 
     def mask(self, positions: np.ndarray) -> np.ndarray:
-        """Return which cells hold positions (n, 2)."""
+        """Return the mask of cells that hold positions (n, 2)."""
         mask = np.zeros(self.shape, bool)
         mask[self.cell(positions)] = True
         return mask

@@ -171,7 +171,7 @@ def segment_facade_lines(
 def are_of_facade_lines(
     xyz: np.ndarray, gps_time: Optional[np.ndarray], point_source_id: Optional[np.ndarray]
 ) -> np.ndarray:
-    """Return which points (n,) are of the facade lines that :func:`segment_facade_lines` finds by default."""
+    """Return the mask of points (n,) on the facade lines that :func:`segment_facade_lines` finds by default."""
     if gps_time is None:
         raise ValueError(
             "Facade lines are found by the times of the pulses, and the cloud has no GPS time; search in all points."

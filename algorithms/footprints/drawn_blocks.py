@@ -220,7 +220,7 @@ def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: Drawin
 
 
 def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndarray:
-    """Return which borders of cells (n, 2) to (n, 2) lie on an edge that was drawn."""
+    """Return the mask of borders of cells, (n, 2) to (n, 2), that lie on an edge that was drawn."""
     is_drawn = np.zeros(len(start), bool)
     if not edges:
         return is_drawn

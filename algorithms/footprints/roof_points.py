@@ -48,7 +48,7 @@ _DENSE = 0.6
 
 
 def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points of buildings (n,) belong to roofs: no other of their cluster lies far and steeply above.
+    """Return the mask of building points (n,) on roofs: no other of their cluster lies far and steeply above.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def find_non_building_points(
 
 
 def is_under_roof(positions: np.ndarray, tree: Any, spacing: float) -> np.ndarray:
-    """Return which positions (n, 2) lie under a roof, given as a tree: it is about as dense there as around its points.
+    """Return the mask of positions (n, 2) under a roof, given as a tree: it is as dense there as around its points.
 
     From the side, a scanner sees the ground and the wall under the eaves.
     """

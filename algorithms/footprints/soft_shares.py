@@ -89,7 +89,7 @@ class Lattice:
         return found.reshape(-1, 2)
 
     def holds(self, plan: np.ndarray) -> np.ndarray:
-        """Return which positions (n, 2), m, lie within the lattice."""
+        """Return the mask of positions (n, 2), m, within the lattice."""
         node = self.nodes(plan)
         return ((node >= 0) & (node < np.subtract(self.shape[::-1], 1))).all(axis=1)
 

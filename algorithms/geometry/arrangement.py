@@ -112,7 +112,7 @@ class Arrangement:
         return total - total[starts][group] + (sides @ numbers)[group]
 
     def _touching(self, low: np.ndarray, high: np.ndarray, ends: np.ndarray) -> np.ndarray:
-        """Return which cells (count,) touch the sides of the rectangle."""
+        """Return the mask of cells (count,) that touch the sides of the rectangle."""
         corners = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
         touching = np.zeros(self.count, bool)
         on_sides = np.concatenate([ends, corners])

@@ -90,7 +90,7 @@ class Boxes:
         return part
 
     def box(self) -> np.ndarray:
-        """Return which box (n,) each point is in, in the order of the boxes."""
+        """Return the number of the box (n,) of each point, in the order of the boxes."""
         return np.repeat(np.arange(len(self)), self.size)
 
     def _key(self, box: np.ndarray) -> np.ndarray:
@@ -98,7 +98,7 @@ class Boxes:
         return (box[..., 0] * self.shape[1] + box[..., 1]) * self.shape[2] + box[..., 2]
 
     def beside(self, other: Boxes, offset: Offset) -> tuple[np.ndarray, np.ndarray]:
-        """Return which boxes of this one have a box of ``other`` (same grid) ``offset`` away, and which that is."""
+        """Return the mask of boxes with a box of ``other`` (same grid) ``offset`` away, and the indices of those."""
         wanted = self.keys + self._key(np.array(offset))
         there = np.minimum(np.searchsorted(other.keys, wanted), len(other) - 1)
         here = np.flatnonzero(other.keys[there] == wanted) if len(other) else np.zeros(0, np.int64)

@@ -117,7 +117,7 @@ def cheapest_cut(
     back: Optional[np.ndarray] = None,
     steps: int = _STEPS,
 ) -> np.ndarray:
-    """Return which cells (n,), bool, to put inside so that it costs least: a minimum cut.
+    """Return the mask of cells (n,) to put inside so that it costs least: a minimum cut.
 
     Parameters
     ----------

@@ -141,7 +141,7 @@ def _tiles(plan: np.ndarray, rows: np.ndarray) -> Iterator[tuple[np.ndarray, np.
 
 
 def _within(plan: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return which positions lie in a box, its upper sides not in it."""
+    """Return the mask of positions that lie in a box, its upper sides not in it."""
     (left, bottom), (right, top) = box
     x, y = plan.T
     return (x >= left) & (x < right) & (y >= bottom) & (y < top)

@@ -64,7 +64,7 @@ def _middles(cells: Arrangement) -> np.ndarray:
 
 
 def _are_within(points: np.ndarray, rings: Rings) -> np.ndarray:
-    """Return which points (n, 2) lie in a polygon."""
+    """Return the mask of points (n, 2) that lie in a polygon."""
     return np.sum([are_inside(points, ring) for ring in rings], axis=0) % 2 == 1
 
 

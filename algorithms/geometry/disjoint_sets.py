@@ -35,7 +35,7 @@ class DisjointSets:
         self._lock = Lock()
 
     def apart(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return which pairs (k,) have their items in different sets."""
+        """Return the mask of pairs (k,) that have their items in different sets."""
         return self.first(one) != self.first(other)
 
     def first(self, items: np.ndarray) -> np.ndarray:

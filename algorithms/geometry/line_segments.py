@@ -39,7 +39,7 @@ def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
 
 
 def are_inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Return which points (n, 2) lie inside a ring, by the parity of the edges to their east."""
+    """Return the mask of points (n, 2) that lie inside a ring, by the parity of the edges to their east."""
     (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
     slope = np.divide(x1 - x0, y1 - y0, out=np.zeros_like(x0), where=y0 != y1)
     inside, step = np.empty(len(points), bool), max(1, _PAIRS_AT_ONCE // len(x0))

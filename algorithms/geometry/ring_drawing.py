@@ -246,7 +246,7 @@ class _Chain:
         return float(whole.min()), self._traced(whole, came, turned)
 
     def _stays(self, end: int, begun: np.ndarray, least: list[np.ndarray]) -> np.ndarray:
-        """Return which starts of runs (a,) are kept: those that reach an end at less cost than a run that begins there.
+        """Return the mask of starts of runs (a,) that reach an end at less cost than a run that begins there.
 
         Others need not be tried for later ends. ``end`` is its row among the starts, ``begun`` (k, a) what it costs to
         begin at these, ``least`` what runs to the end cost by each main way (m, a) and by the others (a,).

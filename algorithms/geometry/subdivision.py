@@ -175,7 +175,7 @@ class Subdivision:
         return min(xs), min(ys), max(xs), max(ys)
 
     def is_on_rim(self) -> np.ndarray:
-        """Return which cells (cells,), bool, touch the rim of the rectangle."""
+        """Return the mask of cells (cells,), bool, that touch the rim of the rectangle."""
         boxes = np.array(self._boxes)
         low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         return (boxes[:, :2] == low).any(axis=1) | (boxes[:, 2:] == high).any(axis=1)

@@ -140,7 +140,7 @@ class _Thinning:
 
 
 def _removable(around: np.ndarray) -> np.ndarray:
-    """Return which voxels (m,) with these neighbors (bits) are simple and no ends of lines."""
+    """Return the mask of voxels (m,) with these neighbors (bits) that are simple and no ends of lines."""
     removable = np.zeros(len(around), bool)
     for start in range(0, len(around), _CHUNK):
         part = slice(start, start + _CHUNK)
@@ -151,7 +151,7 @@ def _removable(around: np.ndarray) -> np.ndarray:
 
 
 def is_simple(around: np.ndarray) -> np.ndarray:
-    """Return which voxels (m,) can be removed without a change of topology.
+    """Return the mask of voxels (m,) that can be removed without a change of topology.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ def on_masts(xyz: np.ndarray, height: np.ndarray, is_wire: np.ndarray, spans: li
 
 
 def _mast(plan: np.ndarray, height: np.ndarray, top: float, reach: float) -> np.ndarray:
-    """Return which points (n,) are of a mast with wires ``top`` (m) above the ground; none where there is no mast.
+    """Return the mask of points (n,) of a mast with wires ``top`` (m) above the ground, if there is one.
 
     ``plan`` (n, 2) is from the middle of the ends of its spans, within ``reach`` (m) of which its axis is.
     """

@@ -47,7 +47,7 @@ _RULES = _Rules()
 def find_solid_objects(
     xyz: np.ndarray, height: np.ndarray, has_passed: np.ndarray, sampling: CloudSampling, monitor: Monitor
 ) -> np.ndarray:
-    """Return which points (n,) are of cars, walls, fences, boats and the like, or of poles.
+    """Return the mask of points (n,) that are of cars, walls, fences, boats and the like, or of poles.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def _extent(group: np.ndarray, xyz: np.ndarray, size: np.ndarray) -> np.ndarray:
 
 
 def _on_surfaces(xyz: np.ndarray, sampling: CloudSampling, monitor: Monitor) -> np.ndarray:
-    """Return which points (n,) have neighbors that deviate from a plane no more than points of surfaces do."""
+    """Return the mask of points (n,) whose neighbors deviate from a plane no more than points of surfaces do."""
     is_smooth = np.zeros(len(xyz), bool)
     if len(xyz) < LEAST_NEIGHBORS:
         return is_smooth

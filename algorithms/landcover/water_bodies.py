@@ -81,7 +81,7 @@ def water_levels(
 
 
 def _sparse(pulses: np.ndarray, is_seen: np.ndarray, size: float) -> np.ndarray:
-    """Return which cells inside the cloud are amid few pulses."""
+    """Return the mask of cells inside the cloud that are amid few pulses."""
     inside = _without_gaps(is_seen, REACH / size)
     side = 2 * round(_RULES.window / size / 2) + 1
     covered = ndimage.uniform_filter(inside.astype(float), side, mode="constant")

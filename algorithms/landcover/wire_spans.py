@@ -71,7 +71,7 @@ class Span:
         return along, aside, xyz[:, 2] - np.polyval(self.curve, along)
 
     def holds(self, xyz: np.ndarray, off: float, beyond: float = 0.0) -> np.ndarray:
-        """Return which points (n, 3) lie within ``off`` (m) in height of the span, or ``beyond`` (m) its ends."""
+        """Return the mask of points (n, 3) within ``off`` (m) in height of the span, or ``beyond`` (m) its ends."""
         along, aside, above = self.local(xyz)
         inside = (along >= self.start - beyond) & (along <= self.end + beyond)
         return inside & (np.abs(aside) <= RULES.aside) & (np.abs(above) <= off)
@@ -164,7 +164,7 @@ class Surroundings:
         return is_as_long and 4 * len(self.on_wire(other)) >= len(self.on_wire(span))
 
     def _on_parallels(self, above: np.ndarray) -> np.ndarray:
-        """Return which points (n,), bool, that high above a wire (m) lie on others at a constant height below it.
+        """Return the mask of points (n,), that high above a wire (m), on others at a constant height below it.
 
         Of points that are spread evenly over the height below a wire, as leaves are, no layer as thick as a wire has
         twice its share.

@@ -171,7 +171,7 @@ def _automatic(
 def _beyond_scene(
     points: np.ndarray, cell_size: float, bin_height: float, min_frequency: int, max_clearance: float, monitor: Monitor
 ) -> Optional[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Return which points (n,) lie below the scene, which above it, and which not too far above to belong to it.
+    """Return masks of points (n,): below the scene, above it, and not too far above to belong to it.
 
     None where no bin has enough points to be the scene.
     """
@@ -221,7 +221,7 @@ def _scene_range(
 
 
 def _in_group(points: np.ndarray, radius: float) -> np.ndarray:
-    """Return which points have at least three points, themselves among them, within ``radius`` (m)."""
+    """Return the mask of points that have at least three points, themselves among them, within ``radius`` (m)."""
     if len(points) < UNDER_GROUND.few:
         return np.zeros(len(points), bool)
     return spatial.cKDTree(points).query(points, UNDER_GROUND.few)[0][:, -1] <= radius

@@ -83,7 +83,7 @@ def link_length(spacing: float) -> float:
 
 
 def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
-    """Return which points (n, 3), m, of a spacing (m) are loose objects in the air, apart from the scene below them."""
+    """Return the mask of points (n, 3), m, of loose objects in the air, apart from the scene below them."""
     link = link_length(spacing)
     component = _components(xyz, link)
     is_loose = (_loose(xyz, component, spacing, monitor) & ~_is_cut(xyz, component, link))[component]
@@ -114,7 +114,7 @@ def _components(xyz: np.ndarray, link: float) -> np.ndarray:
 
 
 def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
-    """Return which components let most pulses pass and are neither compact, nor lines, nor planes."""
+    """Return the mask of components that let most pulses pass and are neither compact, nor lines, nor planes."""
     n_points = np.bincount(component)
     in_smaller = np.flatnonzero((n_points < n_points.max())[component])
     cell = fixed_grid_over(xyz, _SHARE_SPACINGS * spacing).number(xyz)
@@ -136,7 +136,7 @@ def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Moni
 
 
 def _is_cut(xyz: np.ndarray, component: np.ndarray, link: float) -> np.ndarray:
-    """Return which components of ``_FORM_POINTS`` and more reach the cloud's border: they may be parts of others."""
+    """Return the mask of components of ``_FORM_POINTS`` and more at the cloud's border: they may be parts of others."""
     low, high = plan_box(xyz)
     x, y = xyz[:, 0], xyz[:, 1]
     is_outer = (x < low[0] + link) | (x > high[0] - link) | (y < low[1] + link) | (y > high[1] - link)
@@ -164,7 +164,7 @@ def _share_of_lines(points: np.ndarray) -> float:
 
 
 def _is_open(xyz: np.ndarray, is_loose: np.ndarray, rows: np.ndarray, link: float) -> np.ndarray:
-    """Return which rows have the scene, all that isn't loose, below them and nothing of it above, close by in plan."""
+    """Return the mask of rows with the scene, all that isn't loose, below them and nothing of it above, close by."""
     if not len(rows) or is_loose.all():
         return np.zeros(len(rows), bool)
     grid = fixed_grid_over(xyz, link / 2)
@@ -179,7 +179,7 @@ def _is_open(xyz: np.ndarray, is_loose: np.ndarray, rows: np.ndarray, link: floa
 
 
 def _on_wires(points: np.ndarray) -> np.ndarray:
-    """Return which of few points lie in a line with others, as the points of wires do that a scanner rarely hits."""
+    """Return the mask of points in a line with few others, as points of wires are that a scanner rarely hits."""
     on_wire = np.zeros(len(points), bool)
     if len(points) < _LINE_POINTS:
         return on_wire

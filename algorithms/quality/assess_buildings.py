@@ -276,7 +276,7 @@ def _objects(
 
 
 def _parts(grid: Grid, side: _Side, min_area: float) -> np.ndarray:
-    """Return which cells of agreed objects lie in large, wide groups that the other classification lacks."""
+    """Return the mask of cells of agreed objects that lie in large, wide groups that the other classification lacks."""
     rows = np.flatnonzero(side.agreed[side.group] & ~side.shared)
     cells = side.cells[rows]
     count, group = connected_cells(grid, cells)

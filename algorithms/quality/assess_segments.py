@@ -163,7 +163,7 @@ def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> M
 
 
 def _made_up(whole: np.ndarray, shared: np.ndarray, size: np.ndarray, min_overlap: float) -> np.ndarray:
-    """Return which segments two or more others make up."""
+    """Return the mask of segments that two or more others make up."""
     n = len(size)
     total = np.bincount(whole, shared, n)
     return (total >= min_overlap * size) & (np.bincount(whole, minlength=n) > 1)
@@ -177,7 +177,7 @@ def _numbered(ids: np.ndarray, min_points: int) -> np.ndarray:
 
 
 def _outcomes(found: np.ndarray, true: np.ndarray, matches: Matches) -> dict[str, np.ndarray]:
-    """Return which points (n,) are in segments of each kind."""
+    """Return the mask of points (n,) that are in segments of each kind."""
     return {
         "correct": (true > 0) & (found > 0) & (matches.counterpart[true] == found),
         "over": matches.is_over[true],

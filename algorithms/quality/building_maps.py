@@ -169,7 +169,7 @@ def rounded_down(share: float) -> float:
 
 
 def amid(first: BuildingMap, second: BuildingMap, overlap: Overlap) -> np.ndarray:
-    """Return which buildings (n,) of the second map lie in the area that the first one shows, bool.
+    """Return the mask of buildings (n,) of the second map in the area that the first one shows.
 
     They overlap a building of it, or lie within the convex hull of its outlines around them: seen from their middle,
     these leave no gap of half a turn.
@@ -195,5 +195,5 @@ def amid(first: BuildingMap, second: BuildingMap, overlap: Overlap) -> np.ndarra
 
 
 def within(area: BuildingMap, one: BuildingMap, monitor: Monitor) -> np.ndarray:
-    """Return which buildings (n,) of a map lie within polygons of an ``area`` with half of their own, bool."""
+    """Return the mask of buildings (n,) of a map with half of their area within the polygons of ``area``."""
     return measure_overlap(area, one, np.zeros(2), monitor).other_covered >= rounded_down(0.5)

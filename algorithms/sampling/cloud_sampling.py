@@ -210,7 +210,7 @@ class CloudSampling:
         return IMAGES if self.is_closed_surface(source) else LASER
 
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
-        """Return which points show the plane of a surface, see :meth:`.surface_noise.SurfaceSample.neighborhood`."""
+        """Return the neighbors that show the plane of a surface, see :class:`.surface_noise.SurfaceSample`."""
         return self._surfaces.neighborhood(density, deviation)
 
     @cached_property
@@ -244,7 +244,7 @@ def _no_points() -> np.ndarray:
 
 
 def without_noise(classification: np.ndarray) -> np.ndarray:
-    """Return which points (n,) a cloud is measured on: those that are not noise; all where there are no others."""
+    """Return the mask of points (n,) to measure a cloud on: those that are not noise; all where there are no others."""
     counted = ~np.isin(classification, NOISE)
     return counted if counted.any() else np.ones(len(counted), bool)
 

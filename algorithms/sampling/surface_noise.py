@@ -88,7 +88,7 @@ class MeasuredSurfaces:
     narrow_below: int  #: Smooth neighborhoods of fewer points than this are narrow in plan, because points lie on lines
 
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
-        """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
+        """Return the neighbors that show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
         return _neighborhood(
             self.n_points, self.surface_density, lambda count: count < self.narrow_below, density, deviation
         )
@@ -156,7 +156,7 @@ class SurfaceSample:
         return count / (np.pi * reach**2) if reach > 0 else float("inf")
 
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
-        """Return which points show the plane of a surface.
+        """Return the neighbors of a point that show the plane of a surface.
 
         Few where points are precise, more where they are noisy or dense: the smooth side of a crown is a plane too
         when it is looked at closely enough. And enough to cross scan lines, where the points lie on such.
@@ -211,7 +211,7 @@ class SurfaceSample:
 def _neighborhood(
     n_points: int, own_density: float, on_lines: Callable[[int], bool], density: float, deviation: float
 ) -> Union[Nearest, Wide]:
-    """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
+    """Return the neighbors that show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
     reach = max(SURFACES.least_reach, SURFACES.reach * deviation)
     expected = np.pi * reach**2 * (own_density if own_density > SURFACES.uneven * density else density)
     count = min(max(int(np.ceil(min(expected, SURFACES.most_neighbors))), LEAST_NEIGHBORS), n_points)
@@ -227,7 +227,7 @@ def _expected_quantile(share: float, degrees: int) -> float:
 
 
 def _squares(xyz: np.ndarray, spacing: Optional[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return which points lie in the squares of a sample, and which in the middle of any (n,); all of a small cloud."""
+    """Return masks (n,) of points in the squares of a sample, and in the middle of any; all of a small cloud."""
     everything = np.ones(len(xyz), bool)
     low, high = plan_box(xyz)
     if len(xyz) < 2 * SURFACES.sample or not (high > low).any():

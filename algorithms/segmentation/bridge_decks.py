@@ -76,7 +76,7 @@ class Decks:
         return cls(min_height, max_width, min_area, cell, cell > CLOSED.cell * spacing, near)
 
     def find(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
+        """Return the mask (n,) of points of the bare earth ``is_earth`` on decks that lead to ``is_terrain``, both (n,)."""
         is_deck = np.zeros(len(xyz), bool)
         if not self.max_width or not len(xyz):
             return is_deck
@@ -90,7 +90,7 @@ class Decks:
         return is_deck
 
     def _decks(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return which points are decks, see :meth:`find`."""
+        """Return the mask of points that are decks, see :meth:`find`."""
         votes = np.zeros(len(xyz), np.int8)
         # Directions of lines as doubled angles: their sum gives the one across which a deck is raised.
         across = np.zeros(len(xyz), np.complex64)
@@ -127,7 +127,7 @@ class Decks:
         return is_deck
 
     def _raised(self, xyz: np.ndarray, is_earth: np.ndarray, direction: float) -> np.ndarray:
-        """Return which points (n,) are of pieces of one direction that have lower points beyond both ends."""
+        """Return the mask of points (n,) of pieces of one direction with lower points beyond both ends."""
         order, line = slices(xyz, direction, self.cell)
         points = xyz.take(order, axis=0)
         angle = np.radians(direction)
@@ -155,7 +155,7 @@ class Decks:
         return raised
 
     def _ends_high(self, along: np.ndarray, height: np.ndarray, end: np.ndarray, sign: int) -> np.ndarray:
-        """Return which rows ``end`` (m,) have lower points beyond them, before or behind by ``sign``.
+        """Return the mask of rows ``end`` (m,) that have lower points beyond them, before or behind by ``sign``.
 
         Either some are within reach, or they come before the next point at the height of the end: parapets and the
         sides of a deck fulfill neither.

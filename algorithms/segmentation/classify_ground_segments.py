@@ -138,7 +138,7 @@ def classify_ground_segments(
 def _bare_earth(
     points: np.ndarray, segment: np.ndarray, cell: float, min_height: float, min_area: float, max_object_area: float
 ) -> np.ndarray:
-    """Return which points (n,) are of segments that are large enough and not raised along most of their border."""
+    """Return the mask of points (n,) of segments that are large enough and not raised along most of their border."""
     grid = fixed_grid_over(points, cell)
     room = grid.rows * grid.columns
     cells, which = distinct(grid.number(points))
@@ -167,7 +167,7 @@ def _bare_earth(
 
 
 def _is_low(points: np.ndarray, cell: float, step: float) -> np.ndarray:
-    """Return which points (n,) are no higher over the lowest of their cell than terrain rises in it, and a step (m)."""
+    """Return the mask of points (n,) no higher over the lowest of their cell than terrain and a step (m) rise in it."""
     which = distinct(fixed_grid_over(points, cell).number(points))[1] if len(points) else np.zeros(0, int)
     low = least_of(points[:, 2], which, int(which.max(initial=-1)) + 1)
     rises = float(np.tan(np.radians(_STEEPEST))) * np.sqrt(2) * cell

@@ -103,7 +103,7 @@ def _numbered(number_of_returns: Optional[np.ndarray]) -> bool:
 
 
 def adjacent_groups(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:
-    """Return which groups of points are adjacent, directly or over others: a number for those that are.
+    """Return a number for each group of points, the same for those that are adjacent, directly or over others.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def adjacent_groups(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, dens
 
 
 def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """Return which share of the points around each group of points belongs to the chosen groups.
+    """Return the share of the points around each group of points that belongs to the chosen groups.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from .bridge_decks import DECK, Decks
 
 
 def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, decks: Decks) -> np.ndarray:
-    """Return which points (n,) are near surfaces that may be decks.
+    """Return the mask of points (n,) that are near surfaces that may be decks.
 
     In cells of one meter and more, a surface over the ground hides it, and ground between two lower sides may itself be
     a deck. Such cells are joined where they are level. The parts that are as large as bridges and reach ground of their
@@ -69,7 +69,7 @@ def _count(cell: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _between_lower(surface: np.ndarray, ground: np.ndarray, decks: Decks) -> np.ndarray:
-    """Return which cells have a surface over the ground on both sides, within the width of decks."""
+    """Return the mask of cells that have a surface over the ground on both sides, within the width of decks."""
     result = np.zeros(ground.shape, bool)
     for down, right in DIRECTIONS:
         count = max(1, int(decks.max_width / 2 / decks.cell / np.hypot(down, right)))
@@ -95,7 +95,7 @@ def _ahead(values: np.ndarray, down: int, right: int) -> np.ndarray:
 
 
 def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks: Decks) -> np.ndarray:
-    """Return which of the ``raised`` cells (m, 2) are of large level parts with ground at their height at both ends."""
+    """Return the mask of ``raised`` cells (m, 2) of large level parts with ground at their height at both ends."""
     if not len(raised) or not len(beside):
         return np.zeros(len(raised), bool)
 

@@ -186,7 +186,7 @@ def _every(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarra
 
 
 def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which points lie on a least-squares plane, fitted again and again without the outliers of the last fit."""
+    """Return the mask of points on a least-squares plane, fitted repeatedly without the outliers of the last fit."""
     chosen = near
     # Few are left out at first, when the plane still follows the outliers.
     for share in (0.8, 0.65, _LEAST_SHARE, _LEAST_SHARE):
@@ -199,7 +199,7 @@ def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -
 
 
 def _voted(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which points lie on the plane through the point that most neighbors vote for."""
+    """Return the mask of points that lie on the plane through the point that most neighbors vote for."""
     size = offsets.shape
     distance = np.abs(offsets.reshape(-1, 3) @ _half_sphere().T).reshape(size[0], size[1], -1)
     # Points in the middle of a bin count more: of several planes with all points the best one is taken.

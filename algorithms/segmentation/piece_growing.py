@@ -75,7 +75,7 @@ class Regions:
         monitor.progress(1.0)
 
     def _flat(self, triples: np.ndarray) -> np.ndarray:
-        """Return which triples (t, 3) lie on a plane: their points on the whole, and all their ends."""
+        """Return the mask of triples (t, 3) that lie on a plane: their points on the whole, and all their ends."""
         if not len(triples):
             return np.zeros(0, bool)
         t = len(triples)

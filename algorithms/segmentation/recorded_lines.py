@@ -100,7 +100,7 @@ def _varies(values: Optional[np.ndarray]) -> bool:
 
 
 def _is_long(step: np.ndarray, factor: float) -> np.ndarray:
-    """Return which steps (n,) are longer than ``factor`` times the median one, those of 0 left out."""
+    """Return the mask of steps (n,) that are longer than ``factor`` times the median one, those of 0 left out."""
     size = np.abs(step)
     positive = size[size > 0]
     return size > factor * np.median(positive) if len(positive) else np.zeros(len(step), bool)

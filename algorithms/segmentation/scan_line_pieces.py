@@ -20,7 +20,7 @@ class NearPoints:
     step: float  #: Difference in height that is accepted at any distance in plan, as noise, m
 
     def hold(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return which points (k, 3) of a line belong to the piece of others (k, 3), m."""
+        """Return the mask of points (k, 3) of a line that belong to the piece of others (k, 3), m."""
         east, north, up = (other - one).T
         plan = east * east + north * north
         near = plan + up * up <= self.distance**2

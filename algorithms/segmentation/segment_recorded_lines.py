@@ -200,7 +200,7 @@ def segment_recorded_lines(
 
 
 def _is_last(return_number: Any, number_of_returns: Any, used: np.ndarray) -> np.ndarray:
-    """Return which points are the last returns of their pulses; all where the cloud has no return numbers."""
+    """Return the mask of the last returns of pulses; all points where the cloud has no return numbers."""
     if return_number is None or number_of_returns is None:
         return np.ones(len(used), bool)
     return return_number[used] >= number_of_returns[used]

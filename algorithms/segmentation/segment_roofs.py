@@ -184,7 +184,7 @@ def _anywhere(
 def _on_top(
     xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float, sampling: CloudSampling
 ) -> np.ndarray:
-    """Return which points (n,) of matched images may be of a roof: those of the surface seen from above."""
+    """Return the mask of points (n,) of matched images that may be of a roof: those of the surface seen from above."""
     xyz = sampling.from_corner(xyz)
     return TopSurface(xyz, height, is_used, density).on_top(xyz)
 
@@ -268,7 +268,7 @@ class _Patches:
         return self.mean(self.height < self.foot) > SURFACE.low_share
 
     def roofs(self, min_height: float, min_area: float) -> np.ndarray:
-        """Return which of them are high and large enough, and do not go on into the ground."""
+        """Return the mask of those that are high and large enough, and do not go on into the ground."""
         return (self.areas >= min_area) & (self.mean(self.height) >= min_height) & ~self.is_terrain
 
     @cached_property
@@ -276,7 +276,7 @@ class _Patches:
         return self.number >= 0
 
     def points_of(self, mask: np.ndarray) -> np.ndarray:
-        """Return which points (n,) are of patches that a mask has."""
+        """Return the mask of points (n,) that are of patches that a mask has."""
         # Points of no patch, -1, find the last entry.
         return np.append(mask, False)[self.number]
 

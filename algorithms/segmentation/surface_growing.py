@@ -232,7 +232,7 @@ def grow_planes(
 
 
 def _smoothest(planes: LocalPlanes, is_seed: np.ndarray) -> np.ndarray:
-    """Return which seeds (n,) are the smoothest among their neighbors."""
+    """Return the mask of seeds (n,) that are the smoothest among their neighbors."""
     seeds = np.flatnonzero(is_seed).astype(np.int32)
     rank = np.full(len(is_seed), len(seeds), np.int32)
     rank[seeds[np.argsort(planes.deviation[seeds], kind="stable")]] = np.arange(len(seeds), dtype=np.int32)

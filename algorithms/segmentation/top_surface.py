@@ -65,7 +65,7 @@ class TopSurface:
         self.height = np.where(is_near, self.height[tuple(nearest)], 0.0)
 
     def on_top(self, xyz: np.ndarray) -> np.ndarray:
-        """Return which points (n,), given as to the constructor, are of the surface.
+        """Return the mask of points (n,), given as to the constructor, of the surface.
 
         They lie at most the side of a cell below the highest point of their cell, as a slope of 45° does.
         """

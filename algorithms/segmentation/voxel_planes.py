@@ -90,7 +90,7 @@ class VoxelPlanes:
         return (xyz - middle[:, None]).astype(np.float32), index, is_point
 
     def _best(self, points: np.ndarray, is_left: np.ndarray, shares: np.ndarray) -> np.ndarray:
-        """Return which points (v, k) lie on the plane, of those through three of the points left, that holds most."""
+        """Return the mask of points (v, k) on the plane that holds most, of those through three of the points left."""
         left_first = np.argsort(~is_left, axis=1, kind="stable")
         rank = (shares * is_left.sum(axis=1)[:, None, None]).astype(np.int64)
         chosen = np.take_along_axis(left_first, rank.reshape(len(rank), -1), axis=1)

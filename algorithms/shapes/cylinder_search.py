@@ -261,7 +261,7 @@ class CylinderSearch:
         return Cylinder(middle + x * first + y * second, axis, float(radii[radius]))
 
     def _is_on(self, rows: np.ndarray, cylinder: Cylinder, tolerance: float) -> np.ndarray:
-        """Return which of the points ``rows`` lie on an endless cylinder and face away from its axis or to it."""
+        """Return the mask of points ``rows`` on an endless cylinder that face away from its axis or to it."""
         _, distance, away = cylinder.local(self.xyz[rows])
         facing = np.abs(np.einsum("ij,ij->i", away, self.normals[rows]))
         return (np.abs(distance - cylinder.radius) <= tolerance) & (facing >= FACING)

@@ -218,7 +218,7 @@ class HoughPlanes:
         return found >= _LEAST_POINTS and bool(more_than_chance(found, count, self.by_chance, self.trials))
 
     def _refined(self, xyz: np.ndarray, normal: np.ndarray, distance: float) -> np.ndarray:
-        """Return which points (k,) lie on the least-squares plane of the points around a maximum."""
+        """Return the mask of points (k,) that lie on the least-squares plane of the points around a maximum."""
         # The middle of a bin is off a plane in it by up to half a bin in distance and, at the end of the window, by
         # about as much for its slopes.
         on_plane = np.abs(xyz @ normal - distance) <= self.tolerance + self.distance_bin

@@ -250,7 +250,7 @@ def _off_line(line: np.ndarray, at: np.ndarray, xyz: np.ndarray) -> np.ndarray:
 
 
 def _are_round(distance: np.ndarray, piece: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """Return which pieces (p,) have points at about one distance (k,), m, ``reach`` (p,), from the line."""
+    """Return the mask of pieces (p,) that have points at about one distance (k,), m, ``reach`` (p,), from the line."""
     scatter = _medians(np.abs(distance - reach[piece]), piece, len(reach))
     return (scatter <= _ROUND * reach) & (np.bincount(piece, minlength=len(reach)) > 0)
 

@@ -163,7 +163,7 @@ class SphereSearch:
         return (center, radius) if self._is_round(points, center, radius) else None
 
     def _is_on(self, rows: np.ndarray, center: np.ndarray, radius: float, tolerance: float) -> np.ndarray:
-        """Return which of the points ``rows`` lie on a sphere and face its center."""
+        """Return the mask of the points ``rows`` that lie on a sphere and face its center."""
         offset = self.xyz[rows] - center
         distance = np.linalg.norm(offset, axis=1)
         facing = np.abs(np.einsum("ij,ij->i", offset, self.normals[rows]))

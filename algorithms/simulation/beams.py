@@ -186,7 +186,7 @@ class World:
 
 
 def is_vegetation(classification: np.ndarray) -> np.ndarray:
-    """Return which classes are low, medium or high vegetation."""
+    """Return the mask of classes that are low, medium or high vegetation."""
     return (classification >= PointClass.LOW_VEGETATION) & (classification <= PointClass.HIGH_VEGETATION)
 
 

@@ -111,7 +111,7 @@ class Lot:
     skew: float
 
     def contains(self, x, y) -> np.ndarray:
-        """Return which positions (m) lie on the lot."""
+        """Return the mask of positions (m) that lie on the lot."""
         return (np.abs(x - self.x) < LOT / 2) & (np.abs(y - self.y) < LOT / 2)
 
     @property

@@ -177,7 +177,7 @@ def _lit(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np
 
 
 def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
-    """Return which cells lie in the shadow of others toward the sun."""
+    """Return the mask of cells that lie in the shadow of others toward the sun."""
     shadowed = np.zeros(top.shape, bool)
     for away in np.arange(0.2, _SHADOW_REACH, 0.2):
         rows, columns = (round(away / CELL * part) for part in (np.sin(azimuth), np.cos(azimuth)))

@@ -83,7 +83,7 @@ def _line(scene: Scene, direction: float, aside: float, distance: float) -> np.n
 
 
 def _inside(scene: Scene, xy: np.ndarray) -> np.ndarray:
-    """Return which positions (n, 2 or 3) lie in the site, a meter from its edge."""
+    """Return the mask of positions (n, 2 or 3) that lie in the site, a meter from its edge."""
     return ((xy[:, :2] > 1.0) & (xy[:, :2] < scene.size - 1.0)).all(axis=1)
 
 

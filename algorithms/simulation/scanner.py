@@ -275,7 +275,7 @@ def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, 
 
 
 def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.ndarray:
-    """Return which echoes, in order, a scanner separates before the pulse is used up."""
+    """Return the mask of echoes, in order, that a scanner separates before the pulse is used up."""
     pulse = echoes.pulse
     number = rank(pulse)
     goes_on = ~is_vegetation(echoes.classification) | (rng.random(len(echoes)) < _THROUGH)
@@ -292,7 +292,7 @@ def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.nda
 
 
 def _noise(n_pulses: int, n_noise: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return which pulses are noise, in order, and how far (m) over the ground: half birds, half multipath."""
+    """Return the indices of pulses of noise, in order, and their heights (m) over the ground: birds and multipath."""
     which = np.sort(rng.choice(n_pulses, n_noise, replace=False, shuffle=False))
     is_bird = rng.permutation(n_noise) % 2 == 0
     return which, np.where(is_bird, rng.uniform(*_BIRDS, n_noise), -rng.uniform(*_MULTIPATH, n_noise))

@@ -224,7 +224,7 @@ def _looked_at(candidates: _Candidates, station: np.ndarray) -> tuple[np.ndarray
 
 
 def _thinned(xyz: np.ndarray, part: np.ndarray, plant: Plant, density: float) -> np.ndarray:
-    """Return which points (n,) to keep so that no surface is denser than asked."""
+    """Return the indices of the points to keep so that no surface is denser than asked."""
     part = part.astype(np.int64)
     is_floor = np.array([one.kind == "floor" for one in plant.parts])[part]
     side = np.where(is_floor, 1 / np.sqrt(density * _FLOOR), 1 / np.sqrt(density))

@@ -191,7 +191,7 @@ def simulate_village(
 
 
 def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> np.ndarray:
-    """Return which points (n,) lie in none of the random positions where matching failed."""
+    """Return the mask of points (n,) that lie in none of the random positions where matching failed."""
     if not share:
         return np.full(len(xyz), True)
     cells = np.floor(xyz / _HOLE).astype(np.int64)

@@ -283,7 +283,7 @@ def _terrain(size: float) -> str:
 def sweep(
     surface: Surface, distance: Optional[float], scale: float, sampling: CloudSampling
 ) -> tuple[np.ndarray, float]:
-    """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
+    """Return the mask of points that lie within ``distance`` of the surface or are its nodes, and that distance.
 
     Parameters
     ----------

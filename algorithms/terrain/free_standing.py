@@ -161,7 +161,7 @@ def _measured(surface: np.ndarray, number: np.ndarray) -> _Segments:
 
 
 def _are_free_standing(segments: _Segments, least: float, usual: float, largest: float, low_uphill: bool) -> np.ndarray:
-    """Return which segments (s,) are free-standing.
+    """Return the mask of segments (s,) that are free-standing.
 
     ``least`` is the least height of a step (m), ``usual`` and ``largest`` are widths in cells. With ``low_uphill``
     wide segments need high steps only on the mean.
@@ -181,7 +181,7 @@ def _are_free_standing(segments: _Segments, least: float, usual: float, largest:
 
 
 def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.ndarray, least: float) -> np.ndarray:
-    """Return which segments (s,) have steps down on most of the edge that nothing hides, if enough of it is open.
+    """Return the mask of segments (s,) with steps down on most of the edge that nothing hides, if enough is open.
 
     Parameters
     ----------

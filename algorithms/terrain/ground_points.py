@@ -54,7 +54,7 @@ def in_plan_order(xyz: np.ndarray, usable: np.ndarray, spacing: float) -> np.nda
 def last_returns(
     return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray], usable: np.ndarray
 ) -> np.ndarray:
-    """Return which of the usable points are last returns, all where these are not numbered or fewer than three."""
+    """Return the mask of last returns among usable points; all where these are not numbered or fewer than three."""
     if return_number is None or number_of_returns is None:
         return np.ones(len(usable), bool)
     last = return_number[usable] >= number_of_returns[usable]

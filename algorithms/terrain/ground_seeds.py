@@ -178,7 +178,7 @@ class _Cells:
     is_nearly_empty: bool = False  #: Whether there are far more cells than points
 
     def outside(self, lowest: Lowest) -> np.ndarray:
-        """Return which cells lie outside the box."""
+        """Return the mask of cells that lie outside the box."""
         cos, sin = np.cos(np.radians(self.angle)), np.sin(np.radians(self.angle))
         middles = (start + self.size * (np.arange(n) + 0.5) for n, start in zip(lowest.index.shape, lowest.origin))
         x, y = np.meshgrid(*middles, indexing="ij", sparse=True)
@@ -267,7 +267,7 @@ def _surface(xyz: np.ndarray, lowest: Lowest, monitor: Monitor) -> tuple[np.ndar
 
 
 def _pits(height: np.ndarray, cell_size: float, monitor: Monitor) -> np.ndarray:
-    """Return which cells hold stray points far below all others around, by their heights (inf where empty).
+    """Return the mask of cells that hold stray points far below all others around, by their heights (inf where empty).
 
     Ground seen through the gaps of a forest is as far below the crowns next to it, but other gaps are near.
     """

@@ -67,7 +67,7 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.rough) -
 
 
 def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
-    """Return which points (n,) are of bridge decks (class 17) or of vehicles and parapets on them: no buildings."""
+    """Return the mask of points (n,) of bridge decks (class 17) or of vehicles and parapets on them: no buildings."""
     is_deck = classification == PointClass.BRIDGE_DECK
     result = is_deck.copy()
     if is_deck.any():
@@ -84,7 +84,7 @@ def _spacing(deck: np.ndarray, tree: Any) -> float:
 
 
 def _has_deck_behind(positions: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
-    """Return which positions (n, 2) have points of the deck on the side away from their ``nearest`` (n, 2), too.
+    """Return the mask of positions (n, 2) with points of the deck on the side away from their ``nearest`` (n, 2), too.
 
     They are looked for in the circle on that side that touches the position. A deck that ends next to the position with
     a straight edge does not reach into it.

@@ -71,7 +71,7 @@ class ObjectRemoval:
         return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
 
     def objects(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return which cells are objects on terrain of this slope."""
+        """Return the mask of cells that are objects on terrain of this slope."""
         objects = self.without_joined(self.removed_by_opening(REMOVAL.slope_share * slope, monitor), slope)
         return self._without_level(objects)
 
@@ -108,7 +108,7 @@ class ObjectRemoval:
         return self._lowered
 
     def without_joined(self, removed_by: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        """Return which cells are objects: free-standing ones, and removed ones but for regions that join the terrain.
+        """Return the mask of cells of objects: free-standing ones, and removed ones of regions that don't join the terrain.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class _RegionEdges:
     joined: np.ndarray  #: (r,), int64: those that join the terrain
 
     def join_terrain(self) -> np.ndarray:
-        """Return which regions join the terrain on enough of their edge."""
+        """Return the mask of regions that join the terrain on enough of their edge."""
         is_terrain = self.joined >= FREE.most * np.maximum(self.open, 1)
         is_terrain[0] = False
         return is_terrain

@@ -33,7 +33,7 @@ def on_no_object(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.n
 
 
 def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points (n,) are ground points on small objects: a ground surface climbs them over smeared walls.
+    """Return the mask of ground points (n,) on small objects: a ground surface climbs them over smeared walls.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
 
 
 def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndarray:
-    """Return which cells (rows, columns) of those ``above`` the surface are of small objects or next to large ones.
+    """Return the mask of cells (rows, columns) ``above`` the surface, of small objects or next to large ones.
 
     Cells of large ones are ``is_other`` (rows, columns): they have points, and no ground.
     """

@@ -118,7 +118,7 @@ class Surface:
         return (self.points[:, 2] - self.tin.elevation(self.points, self.facet)) * self.tin.slope_cosine()[self.facet]
 
     def within(self, distance: float) -> np.ndarray:
-        """Return which points (n,) are nodes or lie at most ``distance`` (m) above or below the surface."""
+        """Return the mask of points (n,) that are nodes or lie at most ``distance`` (m) above or below the surface."""
         # At distance 0 points that happen to lie on a facet are no nodes.
         return self.is_node | ((np.abs(self.above()) <= distance) & (distance > 0))
 

@@ -97,7 +97,7 @@ class Processes(Executor):
             server.join()
 
     def at_work(self) -> str:
-        """Return which processes are at work and since when, in words."""
+        """Return the names of the processes at work, and since when, in words."""
         with self._lock:
             running = sorted((process.number, process.seconds) for process in self._running)
         said = [f"process {number} has been at work for {seconds:.0f} s" for number, seconds in running]

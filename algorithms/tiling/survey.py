@@ -127,7 +127,7 @@ class Survey:
         return np.array([source.box for source in self.sources])
 
     def holds(self, records: np.ndarray, header: Header) -> np.ndarray:
-        """Return which records (n,) of a file with this header lie within the extent."""
+        """Return the mask of records (n,) of a file with this header that lie within the extent."""
         return np.ones(len(records), bool) if self.extent is None else is_within(records, header, self.extent)
 
     def near(self, box: np.ndarray) -> list[int]:
@@ -218,7 +218,7 @@ class Survey:
         source.check_state()
 
     def _inside(self, records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarray:
-        """Return which records (n,) with this header lie in a box (2, 2), m, its upper edges not in it."""
+        """Return the mask of records (n,) with this header that lie in a box (2, 2), m, its upper edges not in it."""
         scale, offset = (values * self.crs.horizontal for values in (header.scale, header.offset))
         found = np.column_stack([records[axis] * scale[i] + offset[i] for i, axis in enumerate("XY")])
         return ((found >= box[0]) & (found < box[1])).all(axis=1)
@@ -251,7 +251,7 @@ class Survey:
 
 
 def boxes_meet(boxes: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return which boxes (m, 2, 2) meet a box (2, 2)."""
+    """Return the mask of boxes (m, 2, 2) that meet a box (2, 2)."""
     return ((boxes[:, 0] <= box[1]) & (boxes[:, 1] >= box[0])).all(axis=1)
 
 

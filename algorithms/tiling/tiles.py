@@ -96,7 +96,7 @@ def write_tile(task: TileTask) -> Tile:
 def _results_of_blocks(
     task: TileTask, position: Optional[np.ndarray], count: int
 ) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
-    """Return which points (n,) of a tile stay, what blocks wrote for them, and how many of them blocks have."""
+    """Return the mask of points (n,) of a tile that stay, what blocks wrote for them, and how many blocks have."""
     stays = np.ones(count, bool)
     values: dict[str, np.ndarray] = {}
     worked_on = 0

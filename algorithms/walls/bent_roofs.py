@@ -65,7 +65,7 @@ def bent_roofs(
 
 
 def _beside_roofs(surface: TopSurface, is_roof: np.ndarray) -> np.ndarray:
-    """Return which cells lie in or near raised objects with a roof; ``is_roof`` (n,) are the points of roofs."""
+    """Return the mask of cells in or near raised objects with a roof; ``is_roof`` (n,) are the points of roofs."""
     row, column = surface.cell
     has_roof = np.zeros(surface.height.shape, bool)
     has_roof[row[is_roof], column[is_roof]] = True

@@ -84,7 +84,7 @@ class OutlineCells:
         self.corner_cost = _CORNER_COST + _SKEW_COST * (np.abs(np.einsum("ij,ij->i", u, v)) > _SQUARE)
 
     def is_cut(self, inside: np.ndarray) -> np.ndarray:
-        """Return which edges (e,) an outline runs along."""
+        """Return the mask of edges (e,) along which an outline runs."""
         return inside[self.edges.left] != inside[self.edges.right]
 
     def total(self, inside: np.ndarray) -> float:
@@ -100,7 +100,7 @@ class OutlineCells:
         return np.where(is_touched_twice, 2, before != after)
 
     def is_used(self, inside: np.ndarray) -> np.ndarray:
-        """Return which lines (lines,) an outline runs along."""
+        """Return the mask of lines (lines,) along which an outline runs."""
         return np.bincount(self.edges.line[self.is_cut(inside)], minlength=len(self.lines)) > 0
 
     def cheapest(self, is_open: np.ndarray) -> np.ndarray:

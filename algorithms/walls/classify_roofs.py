@@ -135,7 +135,7 @@ def classify_roofs(
 
 
 def _is_on_roof(segment_id: np.ndarray, height: np.ndarray, min_height: float) -> np.ndarray:
-    """Return which points (n,) are of planes that lie above a height (m), by half of their points at least."""
+    """Return the mask of points (n,) of planes of which half of the points at least lie above a height (m)."""
     # Other programs number segments as they like, and use -1 for points of no segment.
     number, segment = np.unique(segment_id, return_inverse=True)
     high = np.bincount(segment, height >= min_height)

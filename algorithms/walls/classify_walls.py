@@ -206,7 +206,7 @@ def _hull(xy: np.ndarray) -> np.ndarray:
 def _upright(
     xyz: np.ndarray, neighborhood: Neighborhood, max_tilt: float, max_deviation: float, monitor: Monitor
 ) -> np.ndarray:
-    """Return which points (n,) lie on a steep plane with their neighbors (°, m)."""
+    """Return the mask of points (n,) that lie on a steep plane with their neighbors (°, m)."""
     upright = np.zeros(len(xyz), bool)
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
