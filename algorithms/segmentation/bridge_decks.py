@@ -76,7 +76,7 @@ class Decks:
         return cls(min_height, max_width, min_area, cell, cell > CLOSED.cell * spacing, near)
 
     def find(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return the mask (n,) of points of the bare earth ``is_earth`` on decks that lead to ``is_terrain``, both (n,)."""
+        """Return the mask (n,) of points of the bare earth ``is_earth`` (n,) on decks that lead to ``is_terrain``."""
         is_deck = np.zeros(len(xyz), bool)
         if not self.max_width or not len(xyz):
             return is_deck

@@ -108,7 +108,7 @@ class ObjectRemoval:
         return self._lowered
 
     def without_joined(self, removed_by: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        """Return the mask of cells of objects: free-standing ones, and removed ones of regions that don't join the terrain.
+        """Return the mask of cells of objects: free-standing ones, and removed ones whose region does not join it.
 
         Parameters
         ----------
