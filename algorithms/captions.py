@@ -62,6 +62,7 @@ _CAPTIONS = {
     "classifyroofs": "Roofs of a simulated village in red; plants at their height are gray.",
     "classifywalls": "Roofs with the walls below their eaves.",
     "extractwallfootprints": "Outlines of the walls, which lie within the eaves.",
+    "extractwallfootprints2022": "Edges where points lie densely between two corners, and the footprints they enclose.",
     "extractfacades": "One side of a simulated street: each facade in a color, with its boundary.",
     "extractopenings": "One side of a simulated street: windows and doors outlined.",
     "segmentfacadelines": "Pieces of a vehicle's scan lines, joined to surfaces in a color each.",

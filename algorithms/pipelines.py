@@ -225,6 +225,48 @@ _PIPELINES = (
         switched_off=("candidate_corners",),
     ),
     Pipeline(
+        name="map_footprints_2022",
+        title="Map footprints, published 2022",
+        group="Models as published",
+        tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,RANSAC,DBSCAN,cloth,CSF,Hrutka",
+        summary="Map the walls of buildings in a drone's point cloud by the steps of a paper of 2022, to compare with.",
+        description=(
+            "The published chain without this project's additions: outliers, voxels, the cloth as ground filter, a "
+            "terrain model and heights. Planes above 2.5 m are found by RANSAC in voxels and clustered by DBSCAN to "
+            "roofs. Upright points below them are walls. In plan, lines are found among these one after the other. "
+            "Their crossings at right angles are corners, and pairs of corners with many points between are edges. "
+            "Where the paper gives no value, it follows the density and the noise of the cloud; the Notes of each step "
+            "say how. The report counts points by step (table 1), and the comparison with an old map has distances of "
+            "corners (table 2). 'Map footprints' finds more buildings and closes their outlines."
+        ),
+        references=_HRUTKA,
+        steps=(
+            Step("noise", "classify_noise_statistical"),
+            Step("voxels", "downsample_voxels"),
+            Step("ground", "classify_ground_cloth"),
+            Step("terrain", "rasterize_terrain"),
+            Step("height", "compute_height_above_ground"),
+            Step("planes", "segment_planes_ransac", {"min_height": 2.5}),
+            Step("roofs", "segment_clusters", {"segments_only": True}),
+            Step("walls", "classify_walls"),
+            Step("footprints", "extract_wall_footprints_2022"),
+            Step(
+                "comparison",
+                "compare_corners",
+                layers={"footprints": "footprints.wall_footprints"},
+                only_with="old_map",
+            ),
+        ),
+        shown=(
+            "voxels_voxel_size",
+            "ground_rigidness",
+            "roofs_radius",
+            "footprints_min_points",
+            "footprints_min_density",
+        ),
+        switched_off=("candidate_corners",),
+    ),
+    Pipeline(
         name="model_facades",
         title="Model facades",
         group="Models",

@@ -59,6 +59,7 @@ _MODULES = (
     "walls.classify_roofs",
     "walls.classify_walls",
     "walls.extract_wall_footprints",
+    "walls.extract_wall_footprints_2022",
     "facades.segment_facade_lines",
     "facades.extract_facades",
     "facades.extract_openings",

@@ -163,6 +163,9 @@ SCENES = {
     "extractwallfootprints": Scene(
         VILLAGE, (*WALLS, "extract_wall_footprints"), color="classification", lines="wall_footprints"
     ),
+    "extractwallfootprints2022": Scene(
+        VILLAGE, (*WALLS, "extract_wall_footprints_2022"), color="classification", lines="wall_edges"
+    ),
     "extractfacades": Scene(STREET, ("extract_facades",), lines="facades", **FRONT),
     "extractopenings": Scene(STREET, ("extract_facades", "extract_openings"), lines="openings", **FRONT),
     "segmentfacadelines": Scene(STREET, ("segment_facade_lines",), **FRONT),

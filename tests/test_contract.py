@@ -97,6 +97,7 @@ STAGE_IDS = {
     "classifyroofs",
     "classifywalls",
     "extractwallfootprints",
+    "extractwallfootprints2022",
     "reconstructroofs",
     "reconstructblock",
     "computebuildingheights",
@@ -126,7 +127,7 @@ STAGE_IDS = {
     "registerstreet",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain"}
+PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain", "mapfootprints2022"}
 
 CLASSIFYING = {"classify", "complete", "refine", "recode", "restore"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}

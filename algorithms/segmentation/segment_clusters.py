@@ -29,6 +29,7 @@ def segment_clusters(
     xyz,
     classification,
     height_above_ground=None,
+    segment_id=None,
     *,
     radius: Annotated[
         Optional[float],
@@ -48,6 +49,9 @@ def segment_clusters(
         ),
     ] = None,
     min_height: MinClusterHeight = 0.0,
+    segments_only: Annotated[
+        bool, Param("Gather only points that have a SegmentID, such as those on planes; it must be known.")
+    ] = False,
     density: PointDensity = None,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -65,6 +69,8 @@ def segment_clusters(
         ASPRS classes; ground (2, 20), noise (7, 18), water (9) and bridge decks (17) are left out.
     height_above_ground : ndarray of shape (n,), float32, optional
         Heights, m; needed for a minimum height.
+    segment_id : ndarray of shape (n,), int32, optional
+        Segments from 1; needed to gather points of segments only.
 
     Returns
     -------
@@ -74,7 +80,8 @@ def segment_clusters(
     Raises
     ------
     ValueError
-        If a minimum height is asked for and heights are missing, or the points are spread too far for the radius.
+        If a minimum height is asked for and heights are missing, segments are and these are missing, or the points are
+        spread too far for the radius.
 
     Notes
     -----
@@ -99,6 +106,10 @@ def segment_clusters(
     (True, 1)
     """
     used = candidates(classification, height_above_ground, min_height)
+    if segments_only:
+        if segment_id is None:
+            raise ValueError("'Segments only' needs SegmentID; run 'Segment planes (RANSAC)' first or switch it off.")
+        used = used[segment_id[used] > 0]
     density = sampling.density if density is None else density
     radius = _RADIUS_SPACINGS / float(np.sqrt(density)) if radius is None else radius
     min_points = points_at_corner(radius, density) if min_points is None else min_points

@@ -249,7 +249,7 @@ def _fitted(
         near = near[_longest_run(along[near])]
         if len(near) < 3:
             return None
-        line = _least_squares(xy, left[near])
+        line = fit_line(xy, left[near])
         point, direction = line.point, line.direction
     return line
 
@@ -261,7 +261,7 @@ def _longest_run(along: np.ndarray) -> np.ndarray:
     return max(parts, key=lambda part: np.ptp(along[part]) if len(part) else -1.0)
 
 
-def _least_squares(xy: np.ndarray, points: np.ndarray) -> WallLine:
+def fit_line(xy: np.ndarray, points: np.ndarray) -> WallLine:
     """Return the line of least squares across through points."""
     middle = xy[points].mean(axis=0)
     offsets = xy[points] - middle
@@ -277,7 +277,7 @@ def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[Wal
         for i, other in enumerate(merged):
             if abs(other.direction @ line.direction) <= np.cos(2 * _MOST):
                 continue
-            both = _least_squares(xy, np.union1d(other.points, line.points))
+            both = fit_line(xy, np.union1d(other.points, line.points))
             if both.deviation <= _ONE_WALL * scale.tolerance:
                 merged[i] = both
                 break

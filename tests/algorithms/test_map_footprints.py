@@ -53,6 +53,26 @@ def test_buildings_are_found_and_their_corners_are_where_they_are(tunables, angl
     assert made.report.values["found"] == len(true) - round(0.1 * len(true))
 
 
+def test_the_published_chain_finds_most_of_the_corners():
+    """Ours closes all outlines; corners that both have are as near to the true ones."""
+    arrays, true, old_map = village(size=100.0, density=75.0, noise=0.02, seed=2)
+    cloud = create_cloud(arrays)
+    made = run_pipeline(PIPELINES["map_footprints_2022"], cloud, input_layers={"old_map": old_map})
+    distances, used = corner_distances(made.layers["wall_footprints"], true)
+    assert len(used) == len(made.layers["wall_footprints"]) >= 0.6 * len(true)
+    assert np.concatenate(distances).mean() < 0.08
+    is_end = np.array(made.layers["candidate_corners"].columns["edges"]) > 0
+    corners = np.array(made.layers["candidate_corners"].geometries)[is_end]
+    walls = np.concatenate([rings[0][:-1] for rings in true.geometries])
+    assert (np.hypot(*(walls[:, None] - corners).transpose(2, 0, 1)).min(axis=1) < 0.3).mean() > 0.8
+    points = made.reports["footprints_report"].values
+    counts = [points[name] for name in ("original_points", "points", "points_above_ground", "roof_points")]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] == len(arrays["xyz"])
+    assert 0 < points["wall_points"] < 0.2 * points["roof_points"]
+    assert made.reports["report"].values["found"] <= len(used)
+
+
 def test_without_an_old_map_footprints_are_made_all_the_same():
     arrays, true, _ = village(size=90.0, density=30.0, seed=4)
     monitor = Monitor()

@@ -70,6 +70,7 @@ IDS = {
     "classifyroofs",
     "classifywalls",
     "extractwallfootprints",
+    "extractwallfootprints2022",
     "filterpoints",
     "clipcloud",
     "segmentclusters",
@@ -121,7 +122,7 @@ TILED_IDS = {
     "modelindustryintiles",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain"}
+PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain", "mapfootprints2022"}
 ALL = {**STAGES, **TOYS}
 
 
@@ -190,7 +191,8 @@ def test_the_toolbox_begins_with_the_models_and_these_with_detect_buildings(prov
     assert sorted(named[" Models"])[0] == "Detect buildings"
     assert len(named[" Models"]) == 8
     assert not [name for name in named[" Models"] if name.endswith(", in tiles")]
-    assert named[" Models as published"] == ["Detect buildings, published 2019"]
+    published = ["Detect buildings, published 2019", "Map footprints, published 2022"]
+    assert sorted(named[" Models as published"]) == published
     assert all(name.endswith(", in tiles") for name in named[" Models in tiles"])
     assert len(named[" Models in tiles"]) == len(TILED_PIPELINES)
 

@@ -139,3 +139,16 @@ def test_a_density_of_next_to_nothing_is_refused():
     with pytest.raises(ValueError, match=r"Point density \(density\) must be at least 0.001 points/m², got 1e-300"):
         segment_clusters(np.zeros((3, 3)), np.ones(3, np.uint8), density=1e-300)
     assert not segment_clusters(np.zeros((3, 3)), np.ones(3, np.uint8), density=0.001, min_points=4).any()
+
+
+def test_only_points_of_segments_are_gathered_where_this_is_asked_for(rng):
+    """Two roofs with a crown that touches both, without a plane: one cluster, or two."""
+    xyz = np.column_stack([rng.uniform(0, 12, (3000, 1)), rng.uniform(0, 4, (3000, 1)), np.full((3000, 1), 5.0)])
+    segment_id = np.where((xyz[:, 0] < 4) | (xyz[:, 0] > 8), 3, 0)
+    nothing = np.zeros(len(xyz))
+    assert segment_clusters(xyz, nothing, None, segment_id).max() == 1
+    found = segment_clusters(xyz, nothing, None, segment_id, segments_only=True)
+    assert found.max() == 2
+    assert not found[segment_id == 0].any()
+    with pytest.raises(ValueError, match="needs SegmentID"):
+        segment_clusters(xyz, nothing, segments_only=True)

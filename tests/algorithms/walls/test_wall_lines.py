@@ -108,7 +108,7 @@ def test_a_short_wall_that_a_bush_turns_keeps_the_direction_of_the_others(rng):
         xy = np.concatenate([*sides, wall(rng, (6, 0), (6, 3), 6, 0.04), bush])
         ends = np.cumsum([len(side) for side in sides])
         parts = np.split(np.arange(len(xy)), ends)
-        raw = [wall_lines._least_squares(xy, part) for part in parts]
+        raw = [wall_lines.fit_line(xy, part) for part in parts]
         short = square_up(raw, xy)[3]
         assert angle_between(raw[3], raw[0]) < 87.7
         assert angle_between(short, raw[0]) > 88.9
@@ -120,7 +120,7 @@ def test_a_short_wall_without_anything_else_keeps_its_own_direction(rng):
     turn = np.deg2rad(84)
     sides = [wall(rng, (0, 0), (8, 0), 20, 0.02), wall(rng, (0, 5), (8, 5), 20, 0.02)]
     xy = np.concatenate([*sides, wall(rng, (8, 0), (8 + 3 * np.cos(turn), 3 * np.sin(turn)), 20, 0.02)])
-    raw = [wall_lines._least_squares(xy, part) for part in np.split(np.arange(len(xy)), [160, 320])]
+    raw = [wall_lines.fit_line(xy, part) for part in np.split(np.arange(len(xy)), [160, 320])]
     assert angle_between(square_up(raw, xy)[2], raw[0]) == pytest.approx(84, abs=1.0)
 
 
