@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
-from processing.gui.AlgorithmDialog import AlgorithmDialog
 from processing.gui.ParametersPanel import ParametersPanel
 from processing.gui.wrappers import WidgetWrapper
 from qgis.core import Qgis
@@ -30,6 +29,11 @@ from .inputs import INPUT
 from .pickers import Picker, fill_with_classes, fill_with_names
 from .sections import Section, sections_of
 from .settings import CODES, PRESET
+
+try:
+    from processing.gui.AlgorithmDialog import AlgorithmDialog
+except ImportError:  # from QGIS 4.2 on it is a widget that can be docked, with the same methods
+    from processing.gui.algorithm_widget import AlgorithmWidget as AlgorithmDialog
 
 # The parameter of a composite whose class codes are written.
 _CODES = "CODES_CODES"

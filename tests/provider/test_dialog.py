@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import sys
+import types
+
 import pytest
 from qgis.gui import QgsCollapsibleGroupBox, QgsFilterLineEdit
-from qgis.PyQt.QtWidgets import QMainWindow
+from qgis.PyQt.QtWidgets import QLineEdit, QMainWindow
 
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.presets import PRESETS
@@ -134,10 +137,27 @@ def test_every_parameter_of_a_composite_is_in_one_group(provider):
 
 
 def test_without_parts_of_qgis_its_own_dialog_is_shown(provider, window, monkeypatch):
-    import sys
-
     monkeypatch.setitem(sys.modules, "lidar_buildings.provider.dialog", None)
     assert provider.algorithm("detectbuildings").create().createCustomParametersWidget(window) is None
+
+
+def test_composites_keep_their_groups_where_dialogs_are_widgets(provider, window, monkeypatch):
+    """QGIS 4.2 has AlgorithmWidget, with other arguments and the same method for the panel, and no AlgorithmDialog."""
+    from processing.gui.AlgorithmDialog import AlgorithmDialog
+
+    class AlgorithmWidget(AlgorithmDialog):
+        def __init__(self, alg, in_place=False, parent=None, flags=None, initialState=None):  # noqa: N803 - as QGIS's
+            super().__init__(alg, in_place, parent)
+
+    moved = types.ModuleType("processing.gui.algorithm_widget")
+    moved.AlgorithmWidget = AlgorithmWidget
+    monkeypatch.setitem(sys.modules, "processing.gui.AlgorithmDialog", None)
+    monkeypatch.setitem(sys.modules, "processing.gui.algorithm_widget", moved)
+    monkeypatch.delitem(sys.modules, "lidar_buildings.provider.dialog", raising=False)
+    dialog = provider.algorithm("detectbuildings").create().createCustomParametersWidget(window)
+    assert isinstance(dialog, AlgorithmWidget)
+    assert len(group(dialog, "Ground").findChildren(QLineEdit)) > 3
+    monkeypatch.delitem(sys.modules, "lidar_buildings.provider.dialog")
 
 
 def test_every_algorithm_has_a_dialog(provider, window):
