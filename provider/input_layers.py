@@ -63,6 +63,8 @@ def input_layer_parameter(input_layer: InputLayer) -> QgsProcessingParameterDefi
         endings = f"{title} (*{' *'.join(input_layer.endings)})"
         definition = QgsProcessingParameterFile(name, title, optional=optional, fileFilter=endings)
     definition.setHelp(input_layer.help)
+    if input_layer.advanced:
+        definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
     return definition
 
 

@@ -22,11 +22,8 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QMetaType
 
+from ..algorithms.buildings.reviewed_buildings import CHANGED, DELETED, REVIEW, REVIEWED_AT
 from .crs import meters_per_unit
-
-# Attributes that are added, and the decisions.
-REVIEW, REVIEWED_AT = "review", "reviewed_at"
-KEPT, DELETED, CHANGED = "kept", "deleted", "changed"
 
 # Whether a building is marked as deleted.
 IS_DELETED = f"\"{REVIEW}\" = '{DELETED}'"

@@ -23,10 +23,11 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
+from ..algorithms.buildings.reviewed_buildings import DELETED, KEPT, REVIEW
 from ..algorithms.quality.report_buildings import SURE
 from .menu import REVIEW_WINDOW
 from .questions import push_with_button
-from .review import CONFIDENCE, DELETED, KEPT, REVIEW, Review, is_reviewable
+from .review import CONFIDENCE, Review, is_reviewable
 from .review_views import PointViews
 from .view3d import look_at, view_angles
 

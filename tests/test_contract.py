@@ -98,7 +98,12 @@ WITHOUT_REFERENCES |= {
 # Stems are scanned from the ground, and finer than the scene is; no building has gone from it.
 WITHOUT_FEATURES = {"branches", "buildings_gone"}
 # Their layers have the attributes of the layer that they read after their own.
-KEEPS_ATTRIBUTES = {"compute_building_heights", "regularize_polygons", "update_map"}
+KEEPS_ATTRIBUTES = {
+    **dict.fromkeys(("compute_building_heights", "regularize_polygons", "update_map"), ["id", "name"]),
+    "extract_footprints": ["name", "review"],
+}
+# The layer of a review has decisions.
+DECISIONS = {"reviewed": {"review": ["kept", None]}}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
     ("compute_features", "radius"): {"neighborhood": "radius"},
@@ -300,7 +305,8 @@ def drawn(stage: Stage, shift: tuple[float, float] = (0.0, 0.0)) -> dict[str, La
             rings = [upright(ring, UPRIGHT[stage.name, input_layer.name]) for ring in rings]
         shapes = {"Polygon": [[ring] for ring in rings], "LineString": rings, "Point": [ring[0] for ring in rings]}
         layers[input_layer.name] = LayerFeatures(
-            shapes[input_layer.geometry], {"id": np.array([1, 2]), "name": ["one", None]}
+            shapes[input_layer.geometry],
+            {"id": np.array([1, 2]), "name": ["one", None], **DECISIONS.get(input_layer.name, {})},
         )
     return layers
 
@@ -733,7 +739,7 @@ def test_results_have_the_promised_shape_and_dtype(stage):
     for layer in stage.layers:
         features = made.layers[layer.name]
         assert isinstance(features, LayerFeatures)
-        of_map = ["id", "name"] if stage.name in KEEPS_ATTRIBUTES else []
+        of_map = KEEPS_ATTRIBUTES.get(stage.name, [])
         assert list(features.columns) == [*(field.name for field in layer.fields), *of_map]
         assert all(len(column) == len(features) for column in features.columns.values())
         if layer.name not in WITHOUT_FEATURES:

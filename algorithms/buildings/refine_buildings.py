@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Annotated, Any, Optional
+from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
+from ..cloud.asprs import PointClass
 from ..cloud.reasons import Reason
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage
@@ -21,15 +21,13 @@ from ..stage import Monitor, Param, stage
 from .building_columns import COLUMNS, column_size
 from .cell_features import CellFeatures, CellPoints
 from .edge_classes import decided_together
+from .reviewed_buildings import NEVER, REVIEWED, ReviewedBuildings, with_changed, without_gaps
 from .scene_learning import RULES as HALVES
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
 from .space_cells import SpaceCells
 
 # Name under which blocks of a survey find what was learned on the whole.
 _LEARNED = "building_likeness"
-
-# Classes that never become building.
-_NEVER = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, *NOISE)
 
 
 @dataclass(frozen=True)
@@ -51,6 +49,7 @@ _RULES = _Rules()
 @stage(
     "Buildings",
     tags="building,self-training,learning,logistic regression,refine",
+    input_layers=(REVIEWED,),
     writes=("classification", "cluster_id", "confidence", "reason", "building_probability"),
     written_if={
         "confidence": "where the cloud has them",
@@ -74,6 +73,7 @@ def refine_buildings(
     return_number=None,
     number_of_returns=None,
     intensity=None,
+    reviewed=None,
     *,
     learn: Annotated[
         bool,
@@ -116,6 +116,9 @@ def refine_buildings(
         Used where pulses have several returns.
     intensity : ndarray of shape (n,), uint16, optional
         Used where it differs between points.
+    reviewed : LayerFeatures, optional
+        Footprints with decisions. Raised points within one that was kept or changed become building where most of them
+        are not yet; points of deleted ones cease to be. Decisions are no labels: they would change nothing else.
 
     Returns
     -------
@@ -125,7 +128,8 @@ def refine_buildings(
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1 without gaps; points that become building get the nearest one.
     confidence : ndarray of shape (n,), float32, or None
-        Points that change get their probability; None where not given.
+        Points that change get their probability, other points of buildings the geometric mean of theirs and it; None
+        where not given.
     reason : ndarray of shape (n,), uint8, or None
         The same with the reason; None where not given.
     building_probability : ndarray of shape (n,), float32, or None
@@ -167,29 +171,57 @@ def refine_buildings(
     density = sampling.effective_density if density is None else density
     monitor.resolved(density=density)
     monitor.progress(0.1)
+    found = classification, cluster_id, confidence, reason, None
+    if learn and not sampling.is_closed_surface(source):
+        measured = height_above_ground, segment_id, return_number, number_of_returns, intensity
+        found = _as_learned(xyz, found, measured, density, sampling, monitor)
+    review = ReviewedBuildings.of(reviewed)
+    if review is None:
+        return found
+    return (*review.decide(xyz, height_above_ground, found[:4], monitor.part(0.95, 1.0)), found[4])
+
+
+def _as_learned(
+    xyz: np.ndarray, found: tuple, measured: tuple, density: float, sampling: CloudSampling, monitor: Monitor
+) -> tuple:
+    """Return the results of the stage, corrected by what the scene shows; those before where it shows nothing.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates, m.
+    found : tuple
+        The results before.
+    measured : tuple
+        Heights (m), roof surfaces, return numbers, numbers of returns and intensities, (n,) each; but for the heights
+        None where unknown.
+    density : float
+        Points per square meter.
+    sampling : CloudSampling
+        How the cloud was sampled.
+    monitor : Monitor
+        Receives progress and messages.
+    """
+    classification, cluster_id, confidence, reason, _ = found
     used = not_noise(classification)
-    if not learn or sampling.is_closed_surface(source) or not len(used):
-        return classification, cluster_id, confidence, reason, None
-    scene = _Scene(
-        sampling.from_corner(xyz.take(used, axis=0)), classification[used], height_above_ground[used], cluster_id[used]
-    )
+    if not len(used):
+        return found
+    height, segment_id, number, of, intensity = (_of(values, used) for values in measured)
+    scene = _Scene(sampling.from_corner(xyz.take(used, axis=0)), classification[used], height, cluster_id[used])
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
-    return_number, number_of_returns, intensity = (
-        _of(values, used) for values in (return_number, number_of_returns, intensity)
-    )
     size = _RULES.cell_spacings / float(np.sqrt(density))
-    labeled = scene.labeled(size, return_number, number_of_returns, intensity, monitor.part(0.1, 0.7))
+    labeled = scene.labeled(size, number, of, intensity, monitor.part(0.1, 0.7))
     learned = sampling.learned(_LEARNED, partial(labeled.sample, scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
         monitor.inform("Buildings are not refined: the scene has too few buildings or other objects to learn from.")
-        return classification, cluster_id, confidence, reason, None
+        return found
 
     # 2. The probability of each point, by what was learned on the other half.
     likely = labeled.smooth(predict(learned, labeled.features, labeled.half))
     probability = np.full(len(xyz), np.nan)
-    probability[used] = shared_by_surfaces(scene.of_points(labeled, likely), _of(segment_id, used))
+    probability[used] = shared_by_surfaces(scene.of_points(labeled, likely), segment_id)
     # The distances to edges need the memory that these take.
     del labeled, likely
     monitor.progress(0.9)
@@ -198,14 +230,18 @@ def refine_buildings(
     becomes, ceases, nearest = scene.changes(probability[used], density)
     becomes, ceases = used[becomes], used[ceases]
     monitor.resolved(points_added=len(becomes), points_removed=len(ceases))
-    sure = probability[becomes]
-    if why_doubtful(xyz, classification, sampling):
-        sure = doubted(sure)
+    if confidence is not None:
+        sure = doubted(probability) if why_doubtful(xyz, classification, sampling) else probability
+        # Evidence and likeness can each make a building doubtful.
+        both = np.where(classification == PointClass.BUILDING, np.sqrt(confidence * sure), confidence)
+        confidence = with_changed(both.astype(np.float32), sure[becomes], becomes, sure[ceases], ceases)
+    if reason is not None:
+        reason = with_changed(reason, Reason.LIKE_BUILDINGS, becomes, Reason.UNLIKE_BUILDINGS, ceases)
     return (
-        _with(classification, PointClass.BUILDING, becomes, PointClass.UNCLASSIFIED, ceases),
-        _numbered(_with(cluster_id, nearest, becomes, 0, ceases)),
-        None if confidence is None else _with(confidence, sure, becomes, probability[ceases], ceases),
-        None if reason is None else _with(reason, Reason.LIKE_BUILDINGS, becomes, Reason.UNLIKE_BUILDINGS, ceases),
+        with_changed(classification, PointClass.BUILDING, becomes, PointClass.UNCLASSIFIED, ceases),
+        without_gaps(with_changed(cluster_id, nearest, becomes, 0, ceases)),
+        confidence,
+        reason,
         probability.astype(np.float32),
     )
 
@@ -227,7 +263,7 @@ class _Scene:
     @cached_property
     def is_raised(self) -> np.ndarray:
         """Which points are learned, and may be of buildings."""
-        never = np.isin(self.classification, _NEVER)
+        never = np.isin(self.classification, NEVER)
         return (self.height > IMAGES.foot) & ~never
 
     def labeled(
@@ -305,17 +341,3 @@ def _log_odds(probability: np.ndarray) -> np.ndarray:
 def _of(values: Optional[np.ndarray], rows: np.ndarray) -> Optional[np.ndarray]:
     """Return the values (k,) of some rows; None where there are no values."""
     return None if values is None else values[rows]
-
-
-def _with(values: np.ndarray, first: Any, becomes: np.ndarray, second: Any, ceases: np.ndarray) -> np.ndarray:
-    """Return a copy of values (n,) with ``first`` at rows that become building and ``second`` at those that cease."""
-    changed = values.copy()
-    changed[becomes], changed[ceases] = first, second
-    return changed
-
-
-def _numbered(cluster_id: np.ndarray) -> np.ndarray:
-    """Return the numbers (n,), int32, of buildings without gaps, in their order; 0 if unassigned."""
-    is_there = np.bincount(cluster_id) > 0
-    is_there[0] = False
-    return np.where(is_there, np.cumsum(is_there), 0).astype(np.int32)[cluster_id]

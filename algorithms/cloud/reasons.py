@@ -19,6 +19,7 @@ class Reason(IntEnum):
     NEXT_TO_BUILDINGS = 5
     SURFACE = 7
     LIKE_BUILDINGS = 8
+    KEPT = 9
     ROUGH = 11
     PENETRATED = 12
     INTO_GROUND = 13
@@ -31,6 +32,7 @@ class Reason(IntEnum):
     ALIKE = 21
     WITHOUT_ENTROPY = 22
     UNLIKE_BUILDINGS = 23
+    DELETED = 24
 
     @property
     def label(self) -> str:
@@ -57,6 +59,7 @@ _FOR_BUILDING = frozenset(
         Reason.NEXT_TO_BUILDINGS,
         Reason.SURFACE,
         Reason.LIKE_BUILDINGS,
+        Reason.KEPT,
     }
 )
 
@@ -73,6 +76,7 @@ _TEXTS = {
     "past an edge are no evidence of vegetation.",
     Reason.SURFACE: "Building: planar over meters, like what surrounds it (matched images).",
     Reason.LIKE_BUILDINGS: "Building: beside a building, and like the buildings of the scene.",
+    Reason.KEPT: "Building: kept or drawn by a reviewer.",
     Reason.ROUGH: "Not a building: high entropy, typical of tree crowns.",
     Reason.PENETRATED: "Not a building: low entropy, but the laser beam penetrates it.",
     Reason.INTO_GROUND: "Not a building: the surface continues into the ground.",
@@ -84,6 +88,7 @@ _TEXTS = {
     Reason.VEHICLE: "Not a building: as wide, long and high as a car, a van or a caravan (matched images).",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
     Reason.UNLIKE_BUILDINGS: "Not a building: unlike the other buildings of the scene.",
+    Reason.DELETED: "Not a building: deleted by a reviewer.",
     Reason.WITHOUT_ENTROPY: "Undecided: the points have no extent, so their entropy is undefined.",
 }
 

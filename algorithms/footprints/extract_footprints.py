@@ -7,6 +7,7 @@ from typing import Annotated, Any, Optional
 
 import numpy as np
 
+from ..buildings.reviewed_buildings import REVIEWED, ReviewedBuildings
 from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED
 from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
@@ -19,6 +20,7 @@ from ..threads import made_ahead
 from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces, shared_directions
+from .reviewed_outlines import with_reviewed
 from .roof_points import edge_weights, find_non_building_points, find_roof_points
 from .row_houses import ROWS, Houses, split_row
 from .soft_shares import APART, LEAST_SPACING, Shares, even_weights, find_shares
@@ -46,6 +48,7 @@ _FOUND, _DRAWN = 0.4, 0.9
 @stage(
     "Buildings",
     tags="polygons,outlines,vectorize,regularize,right angles,level line,dynamic programming,las2building,lasboundary",
+    input_layers=(REVIEWED,),
     layers=(Layer("footprints", "Footprints", "Polygon", FIELDS, style="footprints"),),
     of_whole=(_ROOF_SPACING,),
     cost=14.0,
@@ -59,6 +62,7 @@ def extract_footprints(
     confidence=None,
     reason=None,
     weakest_evidence=None,
+    reviewed=None,
     *,
     min_area: MinBuildingArea = 4.0,
     min_hole_area: Annotated[
@@ -114,6 +118,9 @@ def extract_footprints(
         What :func:`.classify_buildings` returns of these names, for the attributes only.
     reason : ndarray of shape (n,), optional
         Why points are called building, see :class:`~..cloud.reasons.Reason`, for the attributes and to find walls.
+    reviewed : LayerFeatures, optional
+        Footprints with decisions: outlines that were kept or changed take the place of those of the points that lie in
+        them, deleted ones get none.
 
     Returns
     -------
@@ -165,9 +172,9 @@ def extract_footprints(
     >>> len(footprints), round(float(footprints.columns["area"][0]))
     (1, 71)
     """
-    building = _building_points(classification, cluster_id, monitor)
+    building, review = _building_points(classification, cluster_id, monitor), ReviewedBuildings.of(reviewed)
     if not len(building) or not np.ptp(plan_box(xyz.take(building, axis=0)), axis=0).any():
-        return _features([], [], min_area)
+        return with_reviewed(_features([], [], min_area), review)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
     spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
     if not merge_touching and spacing > ROWS.max_spacing:
@@ -210,7 +217,7 @@ def extract_footprints(
     )
     attributes = [one for of_part in described for one in of_part]
     rings = [[ring + sampling.corner for ring in outlined.rings] for of_part in outlines for outlined in of_part]
-    return _features(rings, attributes, min_area)
+    return with_reviewed(_features(rings, attributes, min_area), review)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Which of many points lie in any of many polygons."""
+"""Which of many points lie in which of many polygons."""
 
 from __future__ import annotations
 
@@ -15,7 +15,12 @@ _BETWEEN_LOOKS = 100
 
 
 def are_in_polygons(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> np.ndarray:
-    """Return which points lie in at least one polygon, holes left out.
+    """Return which points lie in at least one polygon, holes left out; arguments as for :func:`holders`."""
+    return holders(plan, polygons, monitor) >= 0
+
+
+def holders(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> np.ndarray:
+    """Return the first polygon that each point lies in, holes left out; -1 where it lies in none.
 
     Parameters
     ----------
@@ -28,7 +33,7 @@ def are_in_polygons(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> n
 
     Returns
     -------
-    ndarray of bool, shape (n,)
+    ndarray of int64, shape (n,)
         Of two polygons with a common edge exactly one holds a point on it.
 
     Notes
@@ -36,7 +41,7 @@ def are_in_polygons(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> n
     A point lies in a polygon if an odd number of its edges lie east of it. Points are sorted by northing, so that an
     edge is compared only with those at its own height, in the box of its polygon.
     """
-    found = np.zeros(len(plan), bool)
+    found = np.full(len(plan), -1)
     if not len(plan):
         return found
     rows = _Rows(plan)
@@ -44,9 +49,9 @@ def are_in_polygons(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> n
         if number % _BETWEEN_LOOKS == 0:
             monitor.progress(number / len(polygons.box))
         near = rows.within(box)
-        near = near[~found[near]]
+        near = near[found[near] < 0]
         edges = polygons.edges[polygons.first[number] : polygons.first[number + 1]]
-        found[near] = are_within(plan[near], edges)
+        found[near[are_within(plan[near], edges)]] = number
     monitor.progress(1.0)
     return found
 

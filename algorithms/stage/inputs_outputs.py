@@ -75,8 +75,9 @@ class InputLayer:
     ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`LayerFeatures` with
     all attributes of the layer, or None where an ``optional`` one is not given. Parts of a
     multipart geometry come one by one, each with the attributes of the whole. ``upright`` polygons have no area in
-    plan: their rings come as they are. A file with one of ``endings``, of a format that QGIS does not read, takes the
-    place of a layer: ``read`` turns its text into features in map units and the code of their CRS.
+    plan: their rings come as they are. An ``advanced`` one is folded away. A file with one of ``endings``, of a format
+    that QGIS does not read, takes the place of a layer: ``read`` turns its text into features in map units and the code
+    of their CRS.
     """
 
     name: str
@@ -84,6 +85,7 @@ class InputLayer:
     geometry: str
     help: str
     optional: bool = False
+    advanced: bool = False
     upright: bool = False
     endings: tuple[str, ...] = ()
     read: Optional[Callable[[str], tuple[LayerFeatures, str]]] = None

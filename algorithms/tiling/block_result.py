@@ -71,7 +71,7 @@ class BlockResult:
         for kind in _KINDS:
             arrays.update({f"{kind}.{name}": values for name, values in getattr(self, kind).items()})
         for name, features in self.layers.items():
-            arrays.update({f"layer.{name}.{key}": values for key, values in _flat(features).items()})
+            arrays.update({f"layer.{name}.{key}": values for key, values in flat(features).items()})
         arrays.update({f"items.{kind}": _text(items) for kind, items in self.items.items()})
         arrays.update({"messages": _text(self.messages), "absent": _text(self.absent)})
         write_arrays(path, arrays)
@@ -138,7 +138,7 @@ class BlockResult:
             return stored[f"rasters.{name}"]
 
 
-def _flat(features: LayerFeatures) -> dict[str, np.ndarray]:
+def flat(features: LayerFeatures) -> dict[str, np.ndarray]:
     """Return features as arrays: vertices, how many each ring has, how many rings each feature has, columns as JSON."""
     rings = [geometry if isinstance(geometry, list) else [np.asarray(geometry)] for geometry in features.geometries]
     all_rings = [ring for of_one in rings for ring in of_one]
@@ -158,7 +158,7 @@ def _shape(ring: np.ndarray) -> tuple[int, ...]:
 
 
 def _features(parts: dict[str, np.ndarray]) -> LayerFeatures:
-    """Return the features that :func:`_flat` flattened."""
+    """Return the features that :func:`flat` flattened."""
     described = json.loads(bytes(parts["columns"]))
     rings, start = [], 0
     for axes, rows, columns in parts["shapes"].tolist():

@@ -72,6 +72,7 @@ class BlockTask:
     steps: tuple[str, ...]  #: Names of the steps that are run
     tunables: dict[str, Any]  #: Its tunables by name
     samplings: dict[str, CloudSampling]  #: Samplings of the survey, see :func:`.run_pipeline`
+    layers: dict[str, Optional[LayerFeatures]]  #: Layers that the composite is given, m from the origin of the survey
     halo: float  #: How far (m) around the block points are read, at least
     result: Path  #: File for the results
     stop: Path  #: A file whose existence ends the work
@@ -175,7 +176,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     pipeline = in_blocks(PIPELINES[task.pipeline])
     positions = _positions(task.survey, window)
     wanted = [output.name for output in pipeline.outputs if output.step.name in task.steps]
-    made = run_pipeline(pipeline, window.cloud, monitor, None, wanted, task.samplings, **task.tunables)
+    made = run_pipeline(pipeline, window.cloud, monitor, task.layers, wanted, task.samplings, **task.tunables)
     seconds = monitor.seconds()
     point, stays = _result_points(window, made)
     values = _written(pipeline, made, point, task.survey.origin)

@@ -23,8 +23,8 @@ from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
 from .block_plan import blocks_of, side_of_blocks
-from .block_result import BlockResult
-from .blocks import MOST_HALOS, Block, BlockTask, work_on_block
+from .block_result import BlockResult, flat
+from .blocks import MOST_HALOS, Block, BlockTask, feature_boxes, take_features, work_on_block
 from .cutting import cut_into_tiles
 from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
@@ -123,6 +123,11 @@ class _Run:
         self.settings, self.survey, self.monitor = settings, survey, settings.monitor
         # Large files that are cut by their index.
         self.by_index: list[Path] = []
+        # Layers that blocks are given, m from the origin of the survey.
+        wanted = in_blocks(settings.working).input_layers
+        find = settings.options.find_layers if wanted else None
+        found = find(survey).items() if find else ()
+        self.layers = {name: one for name, one in found if name in wanted and one is not None}
 
     def all(self) -> TilesOutcome:
         """Sample, work on the blocks, join what they found, write the tiles."""
@@ -244,8 +249,8 @@ class _Run:
     def _task(self, block: Block, plan: _Plan) -> BlockTask:
         """Return what a worker is given for a block; its result is kept under a name for all that it depends on."""
         settings, halo, samplings = self.settings, plan.halo, plan.samplings
-        margin = MOST_HALOS * halo * np.array([[-1], [1]])
-        near = self.survey.near(block.box + margin)
+        around = block.box + MOST_HALOS * halo * np.array([[-1], [1]])
+        near, layers = self.survey.near(around), self._layers_in(around)
         # Results identify files by their numbers, which change when a file is added or taken away.
         key = self._key(
             (self.survey.sources[one] for one in near),
@@ -256,12 +261,20 @@ class _Run:
             {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()},
             str((self.survey.extent, self.survey.header.spacing)),
             str(self.survey.crs),
+            [{part: of.tolist() for part, of in flat(one).items()} for one in layers.values() if one],
         )
         part = replace(self.survey, sources=tuple(self.survey.sources[one] for one in near))
         result = settings.work / f"block-{block.name}-{key}.npz"
         tunables = tunables_of(in_blocks(settings.pipeline), settings.tunables)
-        run = settings.pipeline.name, settings.steps, tunables, samplings, halo
+        run = settings.pipeline.name, settings.steps, tunables, samplings, layers, halo
         return BlockTask(block, part, tuple(near), *run, result, settings.stop)
+
+    def _layers_in(self, box: np.ndarray) -> dict[str, Optional[LayerFeatures]]:
+        """Return the features in a box (2, 2), m, of the layers that blocks are given."""
+        low, high = box - self.survey.origin[:2]
+        boxes = {name: feature_boxes(one) for name, one in self.layers.items()}
+        inside = {name: ((of[:, 1] >= low) & (of[:, 0] <= high)).all(axis=1) for name, of in boxes.items()}
+        return {name: take_features(one, np.flatnonzero(inside[name])) for name, one in self.layers.items()}
 
     def _block_log(self, blocks: int, points: float) -> Callable[[int], None]:
         """Return a function that logs from time to time how many blocks are done, how fast, and the time left."""

@@ -113,8 +113,8 @@ def why_whole(pipeline: Pipeline) -> str:
         stage, title = step.stage, f"'{step.stage.title}'"
         if step.cloud:
             return f"{title} works on another cloud than the steps before it"
-        if any(one.name in given and one.name not in step.layers for one in stage.input_layers):
-            return f"{title} reads points and a layer that it is given"
+        if any(one.name in given and one.name not in step.layers and not one.optional for one in stage.input_layers):
+            return f"{title} reads points and needs a layer that it is given"
         if stage.reads_reference:
             return f"{title} reads a second cloud"
         if stage.reach == np.inf:

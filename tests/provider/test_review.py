@@ -27,7 +27,7 @@ from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.provider import styles
 from lidar_buildings.provider.review import Review
 from lidar_buildings.provider.review_dock import show_review
-from lidar_buildings.tests.provider.helpers import vector
+from lidar_buildings.tests.provider.helpers import run, vector
 
 FIELDS = "&".join(
     f"field={one}"
@@ -351,3 +351,29 @@ def test_a_layer_that_leaves_the_project_is_forgotten(dock, layer):
     QCoreApplication.processEvents()
     assert dock.review is None
     assert listed(dock) == []
+
+
+def test_reviewed_outlines_come_back_as_their_file_has_them(context, log, town_file, tmp_path):
+    """To the last digit, with the number of the layer; what was deleted stays away."""
+    before, after = tmp_path / "before.gpkg", tmp_path / "after.gpkg"
+    found = {"INPUT": str(town_file), "FOOTPRINTS": str(before)}
+    run("extractfootprints", found, context, log)
+    layer = QgsVectorLayer(str(before), "before", "ogr")
+    review = Review(layer, lambda _: None)
+    (building,) = review.buildings()
+    layer.startEditing()
+    layer.beginEditCommand("Moved vertex")
+    layer.moveVertex(85_004.123456789, 446_003.3, building.id(), 0)
+    layer.endEditCommand()
+    review.end()
+    outline = layer.getGeometry(building.id()).asWkb().data()
+    run("extractfootprints", {**found, "FOOTPRINTS": str(after), "REVIEWED": str(before)}, context, log)
+    (feature,) = QgsVectorLayer(str(after), "after", "ogr").getFeatures()
+    assert feature.geometry().asWkb().data() == outline
+    assert (feature["id"], feature["review"]) == (building["id"], "changed")
+    assert feature["reviewed_at"]
+    review = Review(layer, lambda _: None)
+    review.decide(building.id(), "deleted")
+    review.end()
+    run("extractfootprints", {**found, "FOOTPRINTS": str(after), "REVIEWED": str(before)}, context, log)
+    assert QgsVectorLayer(str(after), "after", "ogr").featureCount() == 0

@@ -9,7 +9,7 @@ from lidar_buildings.algorithms.buildings import scene_learning
 from lidar_buildings.algorithms.buildings.refine_buildings import refine_buildings
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 from lidar_buildings.tests.builders import FAR, crown, roof
 
 SIDE, DENSITY, EAVE = 96.0, 6.0, 6.0
@@ -106,6 +106,32 @@ def test_the_probability_is_that_of_the_truth(village):
     assert probability[village.truth == 6].mean() > 0.9
     assert probability[village.truth == 5].mean() < 0.15
     assert not probability[village.truth == 2].any()
+
+
+def test_points_of_buildings_are_as_sure_as_both_opinions_together(village):
+    """A crown that the evidence alone took for a building becomes doubtful; houses don't."""
+    tree = (village.truth == 5) & (village.xyz[:, :2] < 24).all(axis=1)
+    village.classification[tree], village.cluster_id[tree] = 6, 17
+    (found, _, confidence, _, probability), _ = village.refine()
+    stays = (found == 6) & (village.classification == 6)
+    np.testing.assert_allclose(confidence[stays], np.sqrt(0.9 * probability[stays]), rtol=1e-5)
+    assert np.median(confidence[stays & tree]) < 0.7
+    assert np.median(confidence[stays & ~tree]) > 0.9
+
+
+def test_what_a_reviewer_decided_changes_nothing_else(village):
+    """The second house was deleted."""
+    ring = np.array([[6.0, 32], [16, 32], [16, 40], [6, 40], [6, 32]])
+    before, after = (
+        village.refine(reviewed=one)[0] for one in (None, LayerFeatures([[ring]], {"review": ["deleted"]}))
+    )
+    own = village.house == 2
+    assert (before[0][own] == 6).mean() > 0.9
+    assert not (after[0][own] == 6).any()
+    assert (after[3][own & (before[0] == 6)] == Reason.DELETED).all()
+    for one, other in zip(before[2:], after[2:]):
+        np.testing.assert_array_equal(one[~own], other[~own])
+    np.testing.assert_array_equal(before[0][~own], after[0][~own])
 
 
 def test_only_points_near_the_edge_of_a_building_change(village):

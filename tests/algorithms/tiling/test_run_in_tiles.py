@@ -442,6 +442,29 @@ def test_an_extent_takes_a_part_of_the_survey(tmp_path, points, largest):
     assert ((classes[at] == 6) == points[2][inside]).mean() > 0.98
 
 
+def test_reviewed_buildings_stay_in_tiles_each_once(points, tmp_path):
+    """The first house, over an edge of blocks, was redrawn as a part of it, and the second was deleted."""
+    xyz, times, _ = points
+    rings = [np.array([[x, y], [x + 8, y], [x + 8, y + 9], [x, y + 9], [x, y]], float) for x, y in HOUSES[:2]]
+    decided = {"id": np.array([7, 8]), "review": ["changed", "deleted"], "note": ["mine", None]}
+
+    def find_layers(survey):
+        return {"reviewed": LayerFeatures([[ring + CORNER[:2] - survey.origin[:2]] for ring in rings], decided)}
+
+    tiles, results = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool)), tmp_path / "out"
+    outcome = run(tiles, results, find_layers=find_layers, wanted=("footprints",))
+    found = outcome.layers["footprints"]
+    assert sorted(map(str, found.columns["review"])) == ["None", "changed"]
+    row = found.columns["review"].index("changed")
+    np.testing.assert_allclose(found.geometries[row][0] + outcome.survey.origin[:2] - CORNER[:2], rings[0], atol=1e-6)
+    assert found.columns["note"][row] == "mine"
+    time, classes, _ = classes_by_time(outcome)
+    inside = ((xyz[:, :2] - CORNER[:2] > HOUSES[1]) & (xyz[:, :2] - CORNER[:2] < np.add(HOUSES[1], (12, 10)))).all(
+        axis=1
+    )
+    assert not (classes[np.searchsorted(time, times[inside])] == 6).any()
+
+
 @pytest.mark.parametrize(
     ("density", "halo", "side"),
     [(7.7, 80.0, 650), (100, 80, 100), (0.01, 80, 1600), (400, 26, 60), (20_000, 26, 40), (1e6, 0, 10)],
