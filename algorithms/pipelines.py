@@ -113,8 +113,14 @@ _PIPELINES = (
         references=f"{_PETERS}\n\n{_SANTOS}",
         steps=(*_DETECTION, Step("models", "reconstruct_roofs", layers={"footprints": "footprints.footprints"})),
         shared=_DETECTION_SHARED,
-        shown=("min_area", "models_level_of_detail", "models_min_plane_area", "ground_max_building_size"),
-        switched_off=("output", "footprints"),
+        shown=(
+            "min_area",
+            "models_level_of_detail",
+            "models_min_plane_area",
+            "models_terrain_tolerance",
+            "ground_max_building_size",
+        ),
+        switched_off=("output", "footprints", "terrain"),
     ),
     Pipeline(
         name="detect_buildings_2019",

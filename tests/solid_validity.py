@@ -195,6 +195,9 @@ def assert_valid_objects(objects, vertices, transform):
     places = np.array(vertices, float).reshape(-1, 3) * transform["scale"]
     used = set()
     for thing in objects.values():
+        if thing["type"] == "TINRelief":
+            used |= {v for geometry in thing["geometry"] for (ring,) in geometry["boundaries"] for v in ring}
+            continue
         assert thing["type"] == "Building"
         for geometry in thing["geometry"]:
             assert geometry["lod"] in ("1.2", "1.3", "2.0", "2.2", "3")

@@ -95,8 +95,8 @@ WITHOUT_REFERENCES |= {
     "report_buildings",
     "reconstruct_pipes",
 }
-# Stems are scanned from the ground, and finer than the scene is; no building has gone from it.
-WITHOUT_FEATURES = {"branches", "buildings_gone"}
+# Stems are scanned from the ground, and finer than the scene is; no building has gone from it; terrain has a tolerance.
+WITHOUT_FEATURES = {"branches", "buildings_gone", "terrain"}
 # Their layers have the attributes of the layer that they read after their own.
 KEEPS_ATTRIBUTES = {
     **dict.fromkeys(("compute_building_heights", "regularize_polygons", "update_map"), ["id", "name"]),

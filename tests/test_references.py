@@ -15,7 +15,7 @@ KEYS = set(re.findall(r"^@\w+\{(\w+),", BIB, re.MULTILINE))
 # Proceedings, reports and patents that have no DOI.
 WITHOUT_DOI = {"asprs2014", "asprs2019", "axelsson2000", "cityjson2024", "ester1996", "gorte2002", "gorte2004"}
 WITHOUT_DOI |= {"hough1962", "ign2023", "melzer2004", "rabbani2005", "sithole2003", "usgs2024", "vosselman2001"}
-WITHOUT_DOI |= {"vosselman2004", "gltf2021", "tiles2023", "wiedemann1998", "santos2019", "weinmann2017"}
+WITHOUT_DOI |= {"garland1995", "vosselman2004", "gltf2021", "tiles2023", "wiedemann1998", "santos2019", "weinmann2017"}
 # Their DOIs are not in any source that could be read: a list of references, or the publisher's page.
 WITHOUT_DOI |= {"hoefle2009", "hoover1996", "hrutka2022", "jiang1994", "kimme1975", "malandain1992", "murakami1999"}
 WITHOUT_DOI |= {"avbelj2015", "palagyi1999", "rutzinger2009", "sampath2007"}

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..models3d.cityjson import SURFACES
-from ..models3d.solids import GROUND
+from ..models3d.cityjson import RELIEF, SURFACES
+from ..models3d.solids import GROUND, TERRAIN
 from ..stage import LayerFeatures
 from .exported_models import BUILDING, KIND, LEVEL, kind_by_slope
 
@@ -29,7 +29,7 @@ _NO_FACTS = ("type", "parent", "children")
 
 
 def read_cityjson(text: str) -> tuple[LayerFeatures, str]:
-    """Return the faces of the buildings in a file, in its coordinates, and the code of its CRS, "" without one.
+    """Return the faces of buildings and terrain in a file, in its coordinates, and the code of its CRS, "" without one.
 
     Each face has its building, level of detail and kind; the first ground of a building, or else its first face, has
     the attributes of the building and of its parents. Footprints (level 0) are left out.
@@ -75,7 +75,8 @@ def _faces(document: dict, transform: Any) -> Iterator[tuple[list[np.ndarray], d
         raise ValueError("a vertex lies beyond the Earth")
     objects = document["CityObjects"]
     for name, one in objects.items():
-        if not one["type"].startswith("Building"):
+        is_terrain = one["type"] == RELIEF
+        if not (is_terrain or one["type"].startswith("Building")):
             continue
         facts = _attributes(name, objects)
         for geometry in one.get("geometry", ()):
@@ -85,7 +86,8 @@ def _faces(document: dict, transform: Any) -> Iterator[tuple[list[np.ndarray], d
                 own = next((number for number, (_, kind, _) in enumerate(faces) if kind == GROUND), 0)
                 for number, (rings, kind, of_face) in enumerate(faces):
                     of_building = facts if number == own else {}
-                    yield rings, {**of_building, **of_face, BUILDING: name, LEVEL: level, KIND: kind}
+                    own_kind = TERRAIN if is_terrain else kind
+                    yield rings, {**of_building, **of_face, BUILDING: name, LEVEL: level, KIND: own_kind}
 
 
 def _attributes(name: str, objects: dict) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from ..models3d.set_openings import WINDOW
-from ..models3d.solids import GROUND, ROOF, WALL
+from ..models3d.solids import GROUND, ROOF, TERRAIN, WALL
 from ..stage import InputLayer, MapFrame, Param, Piece, TextFile, stage
 from .cityjson_faces import ENDINGS, read_cityjson
 from .exported_models import ExportedModel, exported_models
@@ -48,6 +48,7 @@ def _layer(name: str, title: str, text: str) -> InputLayer:
         _layer("walls", "Walls", "Walls of the same run; an attribute 'building' says of which building."),
         _layer("roofs", "Roofs", "Roofs of the same run."),
         _layer("openings", "Windows and doors", "Windows and doors of the same run, where it has some."),
+        _layer("terrain", "Terrain", "Triangles of the terrain of the same run, where it has some."),
         InputLayer(
             "cityjson",
             "CityJSON",
@@ -70,6 +71,7 @@ def export_models(
     walls=None,
     roofs=None,
     openings=None,
+    terrain=None,
     cityjson=None,
     *,
     geoid_height: Annotated[
@@ -85,14 +87,15 @@ def export_models(
 ):
     """Write models of buildings for browsers and other programs, from the layers of a run or from CityJSON.
 
-    GLB is one file that Blender, PowerPoint and games open: meters, the axis y up, roofs, walls, grounds, windows and
-    doors in colors. The web page shows it in any browser, from a disk or a mail, without a server or a connection; a
-    click shows the attributes of a building. A tileset (3D Tiles 1.1) is for Cesium, QGIS's tiled scenes and other
-    globes: GLB files next to its JSON, simple levels of detail far away. Buildings and faces keep their attributes.
+    GLB is one file that Blender, PowerPoint and games open: meters, the axis y up, roofs, walls, grounds, windows,
+    doors and terrain in colors. The web page shows it in any browser, from a disk or a mail, without a server or a
+    connection; a click shows the attributes of a building. A tileset (3D Tiles 1.1) is for Cesium, QGIS's tiled scenes
+    and other globes: GLB files next to its JSON, simple levels of detail far away. Buildings and faces keep their
+    attributes.
 
     Parameters
     ----------
-    buildings, walls, roofs, openings : LayerFeatures, optional
+    buildings, walls, roofs, openings, terrain : LayerFeatures, optional
         Layers of "Reconstruct roofs" or "Model city block".
     cityjson : LayerFeatures, optional
         Faces of a CityJSON file.
@@ -131,7 +134,7 @@ def export_models(
     >>> [(model.name, len(model.best)) for model in export_models(roofs=roof)[0]]
     [('town hall', 1)]
     """
-    layers = {GROUND: buildings, WALL: walls, ROOF: roofs, WINDOW: openings, "": cityjson}
+    layers = {GROUND: buildings, WALL: walls, ROOF: roofs, WINDOW: openings, TERRAIN: terrain, "": cityjson}
     models, left_out = exported_models(layers, geoid_height)
     if not models:
         raise ValueError(
@@ -140,5 +143,7 @@ def export_models(
         )
     if left_out:
         monitor.warn(f"{left_out} polygons have no heights and are left out.")
-    monitor.inform(f"{len(models)} buildings with {sum(len(model.best) for model in models)} faces.")
+    n_patches = sum(model.best[0].kind == TERRAIN for model in models)
+    faces = sum(len(model.best) for model in models)
+    monitor.inform(f"{len(models) - n_patches} buildings and {n_patches} patches of terrain with {faces} faces.")
     return models, models, models

@@ -11,12 +11,13 @@ import numpy as np
 
 from ..geometry.polygons import area_vector
 from ..models3d.set_openings import DOOR, WINDOW
-from ..models3d.solids import GROUND, ROOF, WALL
+from ..models3d.solids import GROUND, ROOF, TERRAIN, WALL
 from ..stage import LayerFeatures, feature_names
 
-# Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window or door.
-BUILDING, LEVEL, KIND = "building", "lod", "kind"
-KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR)
+# Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window, door or
+# terrain; and the patch that a triangle of terrain is part of.
+BUILDING, LEVEL, KIND, PATCH = "building", "lod", "kind", "patch"
+KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR, TERRAIN)
 
 # Faces of less area (m²) are lines; without them a surface is closed still.
 _LEAST_AREA = 1e-9
@@ -50,9 +51,9 @@ class Face:
 
 @dataclass(frozen=True)
 class ExportedModel:
-    """A building: its name, its attributes, and its faces by level of detail ("" where layers have one level only).
+    """A building or a patch of terrain: its name, its attributes, and its faces by level of detail.
 
-    ``rise`` is the height (m) of the geoid over the ellipsoid there.
+    The level is "" where layers have one only. ``rise`` is the height (m) of the geoid over the ellipsoid there.
     """
 
     name: str
@@ -96,7 +97,10 @@ def exported_models(layers: dict[str, Optional[LayerFeatures]], rise: float) -> 
 def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optional[Face]]]:
     """Yield building, level and face of each polygon, None for those without heights."""
     columns = features.kept(range(len(features)), ())
-    names = columns.pop(BUILDING, feature_names(features))
+    if kind == TERRAIN:
+        names = columns.pop(PATCH, [TERRAIN] * len(features))
+    else:
+        names = columns.pop(BUILDING, feature_names(features))
     levels = columns.pop(LEVEL, [""] * len(names))
     for row, polygon in enumerate(features.geometries):
         rings = polygon

@@ -12,11 +12,13 @@ import numpy as np
 
 from ..geometry.polygons import area_vector
 from ..models3d.face_triangles import triangulate_face
-from ..models3d.solids import GROUND
+from ..models3d.solids import GROUND, TERRAIN
 from .exported_models import KINDS, ExportedModel, Face
 
-# Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows and doors, as in the styles of the layers.
-_COLORS = dict(zip(KINDS, ((178, 72, 54), (226, 216, 196), (150, 140, 125), (74, 134, 184), (112, 84, 62))))
+# Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows, doors and terrain, as in the styles of layers.
+_COLORS = dict(
+    zip(KINDS, ((178, 72, 54), (226, 216, 196), (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108)))
+)
 
 # Codes of glTF 2.0: types of numbers, and what a part of the buffer is for.
 _FLOAT, _UINT = 5126, 5125
@@ -65,7 +67,7 @@ def glb(
     file = _File()
     primitives = _primitives(rows, placed, np.asarray(middle, float), file)
     of_models = [{"name": model.name, **model.facts} for model in models]
-    of_faces = [{"kind": face.kind, **({} if face.kind == GROUND else face.facts)} for _, face in rows]
+    of_faces = [{"kind": face.kind, **({} if face.kind in (GROUND, TERRAIN) else face.facts)} for _, face in rows]
     tables = [_property_table(name, facts, file) for name, facts in (("building", of_models), ("face", of_faces))]
     schema = {"id": "models", "classes": {table["class"]: described for described, table in tables}}
     root = {

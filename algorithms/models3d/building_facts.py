@@ -13,7 +13,7 @@ from ..stage import Field
 from .building_models import BuildingModel
 from .mending import LARGE
 from .roof_points import RULES
-from .solids import ROOF, WALL, Solid
+from .solids import GROUND, ROOF, TERRAIN, WALL, Solid
 
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
 _FLAT = 5.0
@@ -126,6 +126,11 @@ class NamedModel:
     model: BuildingModel
     attributes: Optional[dict[str, Any]] = None
 
+    @property
+    def is_terrain(self) -> bool:
+        """Whether it is terrain between buildings."""
+        return self.model.level == TERRAIN
+
     def record(self) -> dict[str, Any]:
         """Return it as plain values, which JSON keeps to the last bit."""
         facts = {field.name: getattr(self.model, field.name) for field in fields(self.model) if field.name != "solids"}
@@ -212,17 +217,18 @@ def _check(model: BuildingModel) -> int:
 def _eave(solids: Sequence[Solid]) -> float:
     """Return the height (m) of the eaves: a quantile, by length, of the upper edges of the walls down to the ground."""
     edges = []
-    for solid, face in faces_of(solids, WALL):
-        ground = solid.vertices[:, 2].min()
-        corner = solid.vertices[solid.faces[face][0]]
-        if corner[:, 2].min() > ground:
-            continue
-        start, end = corner, np.roll(corner, -1, axis=0)
-        is_upper = np.minimum(start[:, 2], end[:, 2]) > ground
-        length = np.hypot(*(end - start)[is_upper, :2].T)
-        # The middles of the quarters of an edge have its heights.
-        for share in (0.125, 0.375, 0.625, 0.875):
-            edges.append(np.column_stack([(start + share * (end - start))[is_upper, 2], length / 4]))
+    for solid in solids:
+        base = [v for _, face in faces_of([solid], GROUND) for ring in solid.faces[face] for v in ring]
+        for ring in (solid.faces[face][0] for _, face in faces_of([solid], WALL)):
+            is_base = np.isin(ring, base)
+            if not is_base.any():
+                continue
+            start, is_upper = solid.vertices[ring], ~(is_base | np.roll(is_base, -1))
+            end = np.roll(start, -1, axis=0)
+            length = np.hypot(*(end - start)[is_upper, :2].T)
+            # The middles of the quarters of an edge have its heights.
+            for share in (0.125, 0.375, 0.625, 0.875):
+                edges.append(np.column_stack([(start + share * (end - start))[is_upper, 2], length / 4]))
     height, length = np.concatenate(edges)[np.argsort(np.concatenate(edges)[:, 0], kind="stable")].T
     return float(height[np.searchsorted(np.cumsum(length), _EAVE * length.sum())])
 

@@ -24,6 +24,9 @@ _SCALE = 10.0**-DECIMALS
 
 SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface", WINDOW: "Window", DOOR: "Door"}
 
+# The type of triangulated terrain.
+RELIEF = "TINRelief"
+
 # Decimals of attributes.
 _DIGITS = 3
 
@@ -132,7 +135,15 @@ class _Vertices:
 
 
 def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
-    """Return the city object of a building with a geometry for each level of detail."""
+    """Return the city object of a building with a geometry for each level of detail, or of terrain."""
+    if one.is_terrain:
+        (solid,) = one.model.best
+        numbers = vertices.numbers(solid.vertices)
+        triangles = [[[numbers[v] for v in ring] for ring in rings] for rings in solid.faces]
+        return {
+            "type": RELIEF,
+            "geometry": [{"type": "CompositeSurface", "lod": "1", "boundaries": triangles}],
+        }
     geometry = []
     for level, solids in one.model.solids.items():
         parts = [_shell(one, solid, vertices, level == one.model.level) for solid in solids]

@@ -157,7 +157,7 @@ def reconstruct_block(
     segments = facade_segments(facades)
     fitted, seen = fitted_to_walls(footprints, segments)
     monitor.progress(0.1)
-    buildings, _, roofs, models, _ = reconstruct_roofs(
+    buildings, _, roofs, _, models, _ = reconstruct_roofs(
         xyz, classification, fitted, min_plane_area=min_plane_area, sampling=sampling, monitor=monitor.part(0.1, 0.9)
     )
     pierced, done = _pierced(models, _openings(openings))

@@ -25,6 +25,7 @@ from .building_facts import (
     faces_of,
 )
 from .building_models import LEVELS, Settings, model_building
+from .joined_terrain import PATCH, TERRAIN_FIELDS, on_terrain, terrain_layer, triangulate_terrain
 from .model_inputs import (
     GROUND_PERCENTILE,
     TOLERANCE_TEXT,
@@ -81,12 +82,14 @@ _TopPercentile = Annotated[
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
         Layer("walls", "Walls", "Polygon", WALL_FIELDS, style="model_walls"),
         Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
+        Layer("terrain", "Terrain", "Polygon", TERRAIN_FIELDS, style="model_terrain"),
     ),
     files=(
         TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "footprints"),
         TextFile("obj", "Wavefront OBJ", wavefront.FORMATS, wavefront.obj_pieces, NamedModel, "footprints"),
     ),
     cost=70.0,
+    reach=lambda tunables: PATCH if tunables["terrain_tolerance"] else 0.0,
 )
 def reconstruct_roofs(
     xyz,
@@ -110,6 +113,14 @@ def reconstruct_roofs(
         float, Param("At level 1.3, parts of a roof that step by less are one part.", within="[0, 100] m")
     ] = 3.0,
     top_percentile: _TopPercentile = 70.0,
+    terrain_tolerance: Annotated[
+        float,
+        Param(
+            "Largest height of ground points above or below a terrain of triangles, on which the walls end; 0.2 m is "
+            "usual. 0: no terrain, and a level ground under each building.",
+            within="[0, 10] m",
+        ),
+    ] = 0.0,
     max_slope: Annotated[float, Param("Slope of the steepest roof plane.", within="[1, 85]°", advanced=True)] = 75.0,
     tolerance: _Tolerance = None,
     id_field: Annotated[
@@ -124,7 +135,7 @@ def reconstruct_roofs(
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
-    """Model buildings as closed solids of roof planes, walls and a level ground, at levels of detail from 1.2 to 2.2.
+    """Model buildings as closed solids of roof planes, walls and ground, at levels of detail from 1.2 to 2.2.
 
     Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above
     another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost
@@ -145,6 +156,8 @@ def reconstruct_roofs(
         The ground of each building, at its height, with the attributes of the model.
     walls, roofs : LayerFeatures
         The other faces of the best level of each building, as polygons with heights.
+    terrain : LayerFeatures
+        Triangles of the terrain around the buildings, with their outlines as edges; none without a tolerance.
     cityjson, obj : list of NamedModel
         The same for one file: CityJSON 2.0 or CityJSONSeq with all levels and semantic surfaces, and Wavefront OBJ.
 
@@ -160,6 +173,11 @@ def reconstruct_roofs(
     with a fault takes the plane of a neighbor or becomes level. Parts of a footprint that touch in a point only are
     solids of their own. A level that is farther from the points than a simpler one is left out. The ground is level,
     at the ``GROUND_PERCENTILE``th percentile of the ground points nearest to the outline. Curved roofs become strips.
+
+    With a tolerance of the terrain, the lower edges of all walls are edges of its triangles, so that there is no gap,
+    and the ground of a solid is in triangles, too. Where that is no valid solid, as where terrain lies above an eave,
+    its ground is level, as low as the lowest terrain at its walls. CityJSON has the terrain as ``TINRelief``, without
+    it in surveys in tiles; it has no geometry for the line where terrain and walls meet.
 
     Unlike in the publications, lines cut only the cells along which planes adjoin, so that the cost
     grows with the border of planes and not with the square of their number. A border costs its length and the
@@ -190,7 +208,7 @@ def reconstruct_roofs(
     """
     if not len(footprints):
         monitor.none_found("There are no footprints, so there are no models.")
-        return _building_layer([]), _face_layer([], WALL), _face_layer([], ROOF), [], []
+        return _building_layer([]), _face_layer([], WALL), _face_layer([], ROOF), terrain_layer([]), [], []
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)
     if tolerance is None:
@@ -199,9 +217,13 @@ def reconstruct_roofs(
     settings = Settings(
         point_spacing(building), tolerance, min_plane_area, max_slope, min_step, top_percentile, level_of_detail
     )
-    models = _modelled(building, are_low(building, settings.spacing), ground, outlines, settings, monitor)
-    layers = _building_layer(models), _face_layer(models, WALL), _face_layer(models, ROOF)
-    return *layers, models, models
+    part = monitor.part(0.0, 0.8 if terrain_tolerance else 1.0)
+    models, patches = _modelled(building, are_low(building, settings.spacing), ground, outlines, settings, part), []
+    if terrain_tolerance and models:
+        terrain = triangulate_terrain(ground, models, terrain_tolerance, monitor.part(0.8, 1.0))
+        models, patches = on_terrain(models, terrain), terrain.models()
+    layers = _building_layer(models), _face_layer(models, WALL), _face_layer(models, ROOF), terrain_layer(patches)
+    return *layers, [*models, *patches], [*models, *patches]
 
 
 @dataclass(frozen=True)
@@ -259,7 +281,8 @@ def _modelled(
             model = model_building(building[over], is_low[over], around, outline.rings, base, settings)
             model.terrain = terrain
             if model.level:
-                models.append(NamedModel(outline.name, outline.rings, model, outline.attributes))
+                rings = [np.column_stack([ring, np.full(len(ring), base)]) for ring in outline.rings]
+                models.append(NamedModel(outline.name, rings, model, outline.attributes))
             else:
                 failed.append((outline.name, model.reason))
         monitor.progress((number + 1) / len(outlines))
@@ -290,8 +313,7 @@ def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monit
 
 def _building_layer(models: list[NamedModel]) -> LayerFeatures:
     """Return the grounds of buildings."""
-    rings = [[np.column_stack([ring, np.full(len(ring), one.model.base)]) for ring in one.rings] for one in models]
-    layer = LayerFeatures.numbered(list(zip(rings, map(building_attributes, models))), BUILDING_FIELDS)
+    layer = LayerFeatures.numbered([(one.rings, building_attributes(one)) for one in models], BUILDING_FIELDS)
     of_map = [one.attributes or {} for one in models]
     names = dict.fromkeys(name for facts in of_map for name in facts)
     layer.columns.update({name: [facts.get(name) for facts in of_map] for name in names})

@@ -36,7 +36,7 @@ def obj_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> 
     yield f"# offset {offset[0]:.0f} {offset[1]:.0f} 0\n"
     number = 1
     for one, name in zip(models, object_names(models, frame)):
-        yield "o building_" + re.sub(r"[^\w.-]+", "_", name) + "\n"
+        yield "o " + re.sub(r"[^\w.-]+", "_", name if one.is_terrain else f"building_{name}") + "\n"
         for solid in one.model.best:
             positions = frame.to_map(solid.vertices) - offset
             yield "".join(f"v {x:.{DECIMALS}f} {y:.{DECIMALS}f} {z:.{DECIMALS}f}\n" for x, y, z in positions.tolist())

@@ -3,7 +3,7 @@ Failure: the ground of a model is level
 =======================================
 
 A house on a slope of 15°, from the side. *Model buildings* ends its walls at the lowest ground around
-(white), so that uphill they go on below the terrain.
+(white), so that uphill they go on below the terrain. With a *Terrain tolerance* they end on it.
 """
 
 import matplotlib.pyplot as plt

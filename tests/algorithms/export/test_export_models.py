@@ -45,7 +45,7 @@ def from_layers(models):
 
 
 def from_cityjson(models, called=CITYJSON):
-    features, code = read_cityjson("".join(cityjson_pieces(models[3], called, FRAME)))
+    features, code = read_cityjson("".join(cityjson_pieces(models[4], called, FRAME)))
     assert code == FRAME.crs
     rings = [[ring - [85_000, 447_000, 0] for ring in rings] for rings in features.geometries]
     return export_models(cityjson=LayerFeatures(rings, features.columns))[0]
@@ -67,7 +67,7 @@ def test_glb_has_the_volumes_and_areas_of_the_solids(models, source):
     across = np.cross(positions[:, 1] - positions[:, 0], positions[:, 2] - positions[:, 0]) / 2
     area = np.linalg.norm(across, axis=1)
     np.testing.assert_allclose(across / area[:, None], normals[:, 0], atol=1e-5)
-    for number, one in enumerate(models[3]):
+    for number, one in enumerate(models[4]):
         of_one = building == number
         assert_closed(positions[of_one])
         volume = np.einsum("ij,ij->", positions[of_one, 0], across[of_one]) / 3

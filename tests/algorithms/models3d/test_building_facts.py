@@ -4,7 +4,7 @@ import numpy as np
 
 from lidar_buildings.algorithms.models3d.building_facts import NamedModel, building_attributes, roof_type
 from lidar_buildings.algorithms.models3d.building_models import BuildingModel
-from lidar_buildings.algorithms.models3d.solids import ROOF, WALL, Solid
+from lidar_buildings.algorithms.models3d.solids import GROUND, ROOF, WALL, Solid
 
 
 def roof(*rings):
@@ -42,7 +42,7 @@ def test_one_large_face_off_its_points_makes_a_model_doubtful():
     box = [[0, 1, 2, 3], [7, 6, 5, 4], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
     low = [(0, 0, 0), (0, 5, 0), (5, 5, 0), (5, 0, 0)]
     corners = np.array([*low, *[(x, y, 6) for x, y, _ in low]], float)
-    solid = Solid(corners, [[ring] for ring in box], ["GroundSurface", ROOF, *[WALL] * 4], [0, 0, *range(4)])
+    solid = Solid(corners, [[ring] for ring in box], [GROUND, ROOF, *[WALL] * 4], [0, 0, *range(4)])
 
     def facts(weakest):
         shares = {"explained": 0.9, "off": 0.03, "covered": 1.0, "weakest": weakest}

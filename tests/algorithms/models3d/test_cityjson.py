@@ -12,6 +12,7 @@ import pytest
 
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces
 from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
+from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
 
 jsonschema = pytest.importorskip("jsonschema", reason="the package jsonschema is not installed")
@@ -68,6 +69,22 @@ def test_each_line_of_a_sequence_passes_its_schema(models):
     assert errors(head, "cityjson") == []
     assert len(features) == 2
     assert [errors(feature, "cityjsonfeature") for feature in features] == [[], []]
+
+
+@pytest.mark.parametrize("called", [CITYJSON, CITYJSON_SEQ])
+def test_terrain_passes_the_schema(called):
+    x, y = np.mgrid[0:20:0.5, 0:20:0.5].reshape(2, -1)
+    is_house = (abs(x - 9) < 4) & (abs(y - 9) < 5)
+    ring = np.array([[5, 4], [13, 4], [13, 14], [5, 14], [5, 4.0]])
+    xyz = np.column_stack([x, y, np.where(is_house, 8.0, 0.1 * x)])
+    house = LayerFeatures([[ring]], {})
+    items = reconstruct_roofs(xyz, np.where(is_house, 6, 2), house, terrain_tolerance=0.2)[4]
+    lines = "".join(cityjson_pieces(items, called, MapFrame(np.asarray))).strip()
+    wholes = [json.loads(line) for line in lines.split("\n" if called == CITYJSON_SEQ else "\0")]
+    objects = {name: one for whole in wholes for name, one in whole["CityObjects"].items()}
+    assert objects["terrain-1"]["type"] == "TINRelief"
+    kinds = ["cityjson", *["cityjsonfeature"] * 2]
+    assert [error for whole, kind in zip(wholes, kinds) for error in errors(whole, kind)] == []
 
 
 def test_the_schema_finds_faults(models):

@@ -1,0 +1,170 @@
+"""Terrain and walls meet: each lower edge of a wall is an edge of the terrain, or of a neighbor's wall."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
+from lidar_buildings.algorithms.export.export_models import export_models
+from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces
+from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
+from lidar_buildings.algorithms.models3d.wavefront import obj_pieces
+from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
+from lidar_buildings.tests.solid_validity import assert_valid_cityjson, assert_valid_sequence
+
+TOLERANCE = 0.15
+
+
+def hill(x, y):
+    """Return the height of terrain that falls by 20 % and bends; sides of patches are at 0, 50 and 100 m."""
+    return 0.2 * x + 1.5 * np.sin(y / 9) + 0.8 * np.sin(x / 7)
+
+
+def town(count=3, density=6.0):
+    """Return points and classes of pairs of houses with a common wall, each turned otherwise, and their footprints."""
+    rng, side = np.random.default_rng(0), 22.0
+    x, y = rng.uniform(0, count * side, (2, round((count * side) ** 2 * density)))
+    z, classes, rings = hill(x, y) + rng.normal(0, 0.02, len(x)), np.full(len(x), 2), []
+    for east, north in side * (np.mgrid[:count, :count].reshape(2, -1).T + 0.5):
+        c, s = np.cos(angle := rng.uniform(0, np.pi)), np.sin(angle)
+        along, across = (x - east) * c + (y - north) * s, (y - north) * c - (x - east) * s
+        for start, end, depth, height in ((-7, 0, 4.0, 9), (0, 6, 3.0, 8)):
+            inside = (along > start) & (along < end) & (abs(across) < depth)
+            z[inside] = hill(east, north) + height - 0.6 * abs(across[inside])
+            classes[inside] = 6
+            ring = [[start, -depth], [end, -depth], [end, depth], [start, depth], [start, -depth]]
+            rings.append([np.array(ring) @ [[c, s], [-s, c]] + [east, north]])
+    return np.column_stack([x, y, z]), classes, LayerFeatures(rings, {"id": np.arange(len(rings))})
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return town()
+
+
+@pytest.fixture(scope="module")
+def made(scene):
+    xyz, classes, footprints = scene
+    return reconstruct_roofs(xyz, classes, footprints, terrain_tolerance=TOLERANCE)
+
+
+def positions(xyz):
+    return [tuple(row) for row in np.rint(np.asarray(xyz) * 1e4).astype(int).tolist()]
+
+
+def lower_edges(solid):
+    """Return the edges of walls between two corners of the ground, as walls run along them."""
+    faces = list(zip(solid.faces, solid.kinds))
+    base = {v for rings, kind in faces if kind == "ground" for ring in rings for v in ring}
+    rings = [ring for rings, kind in faces if kind == "wall" for ring in rings]
+    edges = [edge for ring in rings for edge in zip(ring, [*ring[1:], ring[0]]) if base.issuperset(edge)]
+    return [tuple(positions(solid.vertices[list(edge)])) for edge in edges]
+
+
+def edges_of_terrain(layer):
+    rings = [positions(ring) for (ring,) in layer.geometries]
+    return {edge for ring in rings for edge in zip(ring, ring[1:])}
+
+
+def open_edges(items, layer):
+    """Return the lower edges of all walls, and those along which neither terrain nor a wall of a neighbor runs."""
+    lower = [
+        e
+        for one in items
+        if not one.is_terrain
+        for s in one.model.solids.values()
+        for solid in s
+        for e in lower_edges(solid)
+    ]
+    beyond = {(b, a) for a, b in edges_of_terrain(layer) | set(lower)}
+    return lower, [edge for edge in lower if edge not in beyond]
+
+
+def test_walls_end_on_edges_of_the_terrain(made):
+    *_, terrain, items, _ = made
+    lower, gaps = open_edges(items, terrain)
+    assert len(lower) > 18 * 4 * 3
+    assert gaps == []
+    # Without a terrain they end at the lowest ground, level.
+    z = np.array(lower)[:, :, 2] / 1e4
+    assert np.ptp(z, axis=1).max() > 0.5
+    xy = np.array(lower)[:, 0, :2].T / 1e4
+    assert z[:, 0] == pytest.approx(hill(*xy), abs=0.15)
+
+
+def test_terrain_is_within_the_tolerance_and_not_below_buildings(scene, made):
+    xyz, classes, _ = scene
+    corners = np.array([ring[:3] for (ring,) in made[3].geometries])
+    middle = corners.mean(axis=1)
+    # Along the end of the points, triangles are narrow and seen by none.
+    middle = middle[(np.abs(middle[:, :2] - 33) < 32).all(axis=1)]
+    assert len(middle) > 350
+    assert middle[:, 2] == pytest.approx(hill(*middle[:, :2].T), abs=TOLERANCE + 0.05)
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] / 2
+    assert across.min() > 0, "a triangle looks down"
+    # The square less 18 houses of 56 and 36 m².
+    assert across.sum() == pytest.approx(66**2 - 9 * (56 + 36), rel=0.01)
+    assert len(corners) < (classes == 2).sum() / 20
+
+
+def test_sides_of_patches_have_no_cracks(made):
+    """Each edge inside is there in both directions, or the edge of a house; up to 2 m from the end the sides end."""
+    edges = edges_of_terrain(made[3])
+    lower = {edge for one in made[4] if not one.is_terrain for solid in one.model.best for edge in lower_edges(solid)}
+    alone = np.array([edge for edge in edges if edge[::-1] not in edges and edge[::-1] not in lower])[:, :, :2] / 1e4
+    assert (np.abs(alone - 33) > 31).any(axis=(1, 2)).all()
+    names = set(made[3].columns["patch"])
+    assert len(names) == 4
+
+
+def test_solids_and_files_are_valid(made):
+    *_, cityjson, _ = made
+    frame = MapFrame(np.asarray, "EPSG:25832")
+    whole = assert_valid_cityjson("".join(cityjson_pieces(cityjson, CITYJSON, frame)))
+    kinds = [one["type"] for one in whole["CityObjects"].values()]
+    assert (kinds.count("Building"), kinds.count("TINRelief")) == (18, 4)
+    assert_valid_sequence("".join(cityjson_pieces(cityjson, CITYJSON_SEQ, frame)))
+    assert "".join(obj_pieces(cityjson, "OBJ", frame)).count("g terrain") == 4
+
+
+def test_roofs_and_attributes_are_those_of_level_ground(scene, made):
+    buildings, walls, roofs, none, *_ = reconstruct_roofs(*scene)
+    assert len(none) == 0
+    for one, other in zip(roofs.geometries, made[2].geometries):
+        np.testing.assert_array_equal(one[0], other[0])
+    for name in ("level", "ground", "eave_height", "ridge_height", "rms", "check"):
+        assert buildings.columns[name] == made[0].columns[name]
+    assert np.less(made[0].columns["volume"], buildings.columns["volume"]).mean() > 0.9
+
+
+def test_exports_show_the_terrain(made):
+    buildings, walls, roofs, terrain, cityjson, _ = made
+    features, _ = read_cityjson("".join(cityjson_pieces(cityjson, CITYJSON, MapFrame(np.asarray))))
+    for models in (export_models(buildings, walls, roofs, terrain=terrain)[0], export_models(cityjson=features)[0]):
+        patches = [one for one in models if one.best[0].kind == "terrain"]
+        assert [one.name for one in patches] == [f"terrain-{number}" for number in range(1, 5)]
+        assert sum(len(one.best) for one in patches) == len(terrain)
+        assert len(models) == 22
+
+
+def test_where_terrain_lies_above_an_eave_the_ground_is_level_and_low(scene):
+    """A house in a hill: walls can't end above their own roof, so they go down to the lowest terrain."""
+    xyz, classes, footprints = scene
+    xyz = xyz.copy()
+    xyz[classes == 2, 2] += 2.5 * np.maximum(xyz[classes == 2, 0] - 55, 0)
+    items = reconstruct_roofs(xyz, classes, footprints, terrain_tolerance=TOLERANCE)[4]
+    levels = [solid.kinds.count("ground") == 1 for one in items if not one.is_terrain for solid in one.model.best]
+    assert 0 < sum(levels) < 9
+    assert_valid_cityjson("".join(cityjson_pieces(items, CITYJSON, MapFrame(np.asarray))))
+
+
+def test_common_walls_a_millimeter_apart_stay_valid(scene):
+    """Maps have the wall of two houses twice, not quite at one place."""
+    xyz, classes, footprints = scene
+    rng = np.random.default_rng(1)
+    moved = [
+        [ring[:, :2] + np.append(off := rng.normal(0, 0.001, (4, 2)), off[:1], axis=0)]
+        for (ring,) in footprints.geometries
+    ]
+    items = reconstruct_roofs(xyz, classes, LayerFeatures(moved, footprints.columns), terrain_tolerance=TOLERANCE)[4]
+    assert_valid_cityjson("".join(cityjson_pieces(items, CITYJSON, MapFrame(np.asarray))))
+    assert all(solid.kinds.count("ground") > 1 for one in items[:18] for solid in one.model.best)
