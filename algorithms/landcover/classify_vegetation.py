@@ -7,9 +7,10 @@ from typing import Annotated, NamedTuple, Optional
 import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
+from ..cloud.reasons import Reason
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Param, stage
-from .solid_objects import REACH, find_solid_objects
+from .solid_objects import REACH, are_opaque, find_solid_objects
 
 # Points of these classes may be vegetation; all others stay.
 _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, *VEGETATION)
@@ -42,6 +43,7 @@ def classify_vegetation(
     classification,
     height_above_ground,
     number_of_returns=None,
+    reason=None,
     *,
     look_for: Annotated[
         bool, Param("If not, no class changes. For models that contain this step.", label="Look for vegetation")
@@ -88,7 +90,8 @@ def classify_vegetation(
     """Classify low, medium and high vegetation: points above the ground without another class.
 
     Cars, garden walls, fences, boats and poles stay unclassified (1): objects whose surfaces are smooth and reflect the
-    whole pulse, and slender upright ones. Ground, buildings, water, noise and all other classes stay as they are.
+    whole pulse, and slender upright ones. So do decks with ramps, footbridges among them, of any height. Ground,
+    buildings, water, noise and all other classes stay as they are.
 
     Parameters
     ----------
@@ -100,6 +103,8 @@ def classify_vegetation(
         Heights, m.
     number_of_returns : ndarray of shape (n,), uint8, optional
         Returns of each point's pulse. Without it all objects count as opaque.
+    reason : ndarray of shape (n,), uint8, optional
+        Reasons of 'Segment roofs', which finds raised surfaces that continue into the ground: decks with ramps.
 
     Returns
     -------
@@ -147,6 +152,8 @@ def classify_vegetation(
     plants = np.flatnonzero(is_open & (height_above_ground >= min_height))
     has_passed = np.zeros(len(plants), bool) if number_of_returns is None else number_of_returns[plants] > 1
     is_solid = find_solid_objects(xyz[plants], height_above_ground[plants], has_passed, sampling, monitor)
+    decks = np.flatnonzero(np.zeros(len(plants), bool) if reason is None else reason[plants] == Reason.INTO_GROUND)
+    is_solid[decks] |= are_opaque(xyz[plants[decks]], has_passed[decks], sampling, monitor)
     classes[is_open] = PointClass.UNCLASSIFIED
     plants = plants[~is_solid]
     layer = np.searchsorted([medium, high], height_above_ground[plants], side="right")

@@ -62,11 +62,8 @@ def find_solid_objects(
     monitor : Monitor
         Receives progress.
     """
-    gap = max(_RULES.gap_spacings * sampling.spacing, _RULES.least_gap)
-    group = connect(xyz, gap, _RULES.step, monitor.part(0, 0.6))
-    size = np.bincount(group, minlength=1)
+    group, size, is_opaque = _groups(xyz, has_passed, sampling, monitor.part(0, 0.6))
     low, top = least_of(height, group, len(size)), -least_of(-height, group, len(size))
-    is_opaque = np.bincount(group, has_passed, len(size)) < _RULES.most_passed * size
     has_enough = size >= LEAST_NEIGHBORS
     candidates = np.flatnonzero((is_opaque & has_enough & (top <= _RULES.highest))[group])
     is_smooth = _on_surfaces(xyz[candidates], sampling, monitor.part(0.6, 1))
@@ -76,6 +73,22 @@ def find_solid_objects(
     rise = top - low
     is_pole = has_enough & (rise >= _RULES.slenderness * _extent(group, xyz, size))
     return (is_solid | is_pole)[group]
+
+
+def are_opaque(xyz: np.ndarray, has_passed: np.ndarray, sampling: CloudSampling, monitor: Monitor) -> np.ndarray:
+    """Return the mask of points (n, 3), m, of groups that hardly a pulse passes, see :func:`find_solid_objects`."""
+    group, size, is_opaque = _groups(xyz, has_passed, sampling, monitor)
+    return (is_opaque & (size >= LEAST_NEIGHBORS))[group]
+
+
+def _groups(
+    xyz: np.ndarray, has_passed: np.ndarray, sampling: CloudSampling, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the object of each point (n,), the points of each object (m,), and the mask of opaque objects (m,)."""
+    gap = max(_RULES.gap_spacings * sampling.spacing, _RULES.least_gap)
+    group = connect(xyz, gap, _RULES.step, monitor)
+    size = np.bincount(group, minlength=1)
+    return group, size, np.bincount(group, has_passed, len(size)) < _RULES.most_passed * size
 
 
 def _extent(group: np.ndarray, xyz: np.ndarray, size: np.ndarray) -> np.ndarray:

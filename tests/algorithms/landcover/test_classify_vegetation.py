@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.landcover.classify_vegetation import classify_vegetation
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
@@ -51,6 +52,20 @@ def test_plants_are_vegetation_by_their_height():
         assert inside.sum() > 50
         assert (made[inside] == number).mean() > 0.99
     assert (made[kind == GROUND] == 2).all()
+
+
+def test_a_high_surface_that_goes_on_into_the_ground_is_no_plant_where_no_pulse_passes_it():
+    """A footbridge of 6 m over a river was high vegetation for two thirds of its length."""
+    rng = np.random.default_rng(2)
+    deck = np.column_stack([rng.uniform((0, 0), (40, 4), (1500, 2)), rng.normal(6, 0.02, 1500)])
+    crown = np.column_stack([rng.uniform((60, 0), (70, 10), (1500, 2)), rng.normal(6, 0.02, 1500)])
+    xyz, height = np.concatenate([deck, crown]), np.full(3000, 6.0, np.float32)
+    returns = np.where(np.arange(3000) < 1500, 1, 1 + (rng.random(3000) < 0.5))
+    reason = np.full(3000, Reason.INTO_GROUND, np.uint8)
+    made = classify_vegetation(xyz, np.ones(3000, np.uint8), height, returns, reason)
+    assert (made[:1500] == 1).mean() > 0.99
+    assert (made[1500:] == 5).mean() > 0.99
+    assert (classify_vegetation(xyz, np.ones(3000, np.uint8), height, returns) == 5).all()
 
 
 @pytest.mark.parametrize("solid", [CAR, WALL, POLE])
