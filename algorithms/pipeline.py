@@ -9,6 +9,9 @@ from typing import Any, Optional
 from .stage import CLOUD, REPORT, Declared, InputLayer, Stage, Tunable
 from .stages import STAGES
 
+# The second cloud among what a step may depend on.
+REFERENCE = "reference"
+
 
 @dataclass(frozen=True)
 class Step:
@@ -19,7 +22,9 @@ class Step:
     whose cloud it works on instead. ``layers`` says which of its input layers is a layer of an
     earlier step, ``{"new": "walls.footprints"}``; the composite asks for all others,
     under the input layer's own name. A stage that merges is given all clouds of the composite, one that
-    reads a reference the second cloud. ``only_with`` names a layer of the composite without which it is not run.
+    reads a reference the second cloud. ``only_with`` names layers of the composite, or ``"reference"``, the second
+    cloud, of which one must be given for it to be run. A step with a reference is run whatever outputs are wanted, for
+    its numbers.
     """
 
     name: str
@@ -27,7 +32,7 @@ class Step:
     tunables: dict[str, Any] = field(default_factory=dict)
     cloud: str = ""
     layers: dict[str, str] = field(default_factory=dict)
-    only_with: str = ""
+    only_with: tuple[str, ...] = ()
 
     @property
     def stage(self) -> Stage:
@@ -136,6 +141,11 @@ class Pipeline:
         return next((step.stage for step in self.steps if step.stage.reads_reference), None)
 
     @property
+    def needs_reference(self) -> bool:
+        """Whether it can't do without the second cloud."""
+        return self.compared is not None and self.compared.needs_reference
+
+    @property
     def input_title(self) -> str:
         """Label of the cloud that the composite is given: where there are two, what distinguishes it from the other."""
         return (self.compared or self.steps[0].stage).input_title
@@ -154,34 +164,36 @@ class Pipeline:
     def outputs(self) -> tuple[Output, ...]:
         """All outputs in the order of steps; where several have one name, that of the step is put before it.
 
-        The last cloud and the last report keep their plain names.
+        The last cloud keeps its plain name, and so does the last report but that on a reference.
         """
         makers = [step for step in self.steps if step.stage.makes_cloud]
         found = [(step, of) for step in self.steps for of in step.stage.outputs]
         names = [of for _, of in found]
+        reports = [step for step, of in found if of == REPORT and REFERENCE not in step.only_with]
         outputs = []
         for step, of in found:
-            last = {CLOUD: makers, REPORT: [one for one, made in found if made == REPORT]}.get(of)
+            last = {CLOUD: makers, REPORT: reports}.get(of)
             is_single = step is last[-1] if last else names.count(of) == 1
             if is_single or of != CLOUD or step.name in self.kept:
                 outputs.append(Output(of if is_single else f"{step.name}_{of}", step, of))
         return tuple(outputs)
 
-    def steps_for(self, wanted: Collection[str], layers: Optional[Collection[str]] = None) -> tuple[Step, ...]:
+    def steps_for(self, wanted: Collection[str], given: Optional[Collection[str]] = None) -> tuple[Step, ...]:
         """Return the steps, in order, that the outputs of these names are made by or depend on.
 
-        A step that only measures runs with the layers that it measures: their numbers are given with them. ``layers``
-        are those that the composite is given, by name; None is all that it can be given.
+        A step that only measures runs with the layers that it measures: their numbers are given with them. ``given``
+        are the layers that the composite is given, by name, and the reference; None is all that it can be given.
         """
         asked = {(output.step.name, output.of) for output in self.outputs if output.name in wanted}
         needed, steps = set(asked), []
         for step in reversed(self.steps):
-            if step.only_with and layers is not None and step.only_with not in layers:
+            if step.only_with and given is not None and not set(step.only_with) & set(given):
                 continue
             made = {(step.name, of) for of in step.stage.outputs}
             read = {made_by(layer) for layer in step.layers.values()}
             only_measures = made == {(step.name, REPORT)}
-            if made & needed or (only_measures and read & asked):
+            assesses = REFERENCE in step.only_with and given is not None
+            if made & needed or (only_measures and read & asked) or assesses:
                 steps.append(step)
                 needed |= {*read, (self.cloud_of(step) or "", CLOUD)}
         return tuple(reversed(steps))

@@ -17,7 +17,7 @@ from .cloud.dimensions import DIMENSIONS
 from .cloud.merging import in_one_crs, merge_records
 from .geometry.grid import plan_box
 from .memory import return_freed
-from .pipeline import CLOUD, REPORT, Pipeline, Step
+from .pipeline import CLOUD, REFERENCE, REPORT, Pipeline, Step
 from .sampling.cloud_sampling import CloudSampling, without_noise
 from .stage import (
     DIMENSION,
@@ -391,13 +391,14 @@ def run_pipeline(
     ValueError
         If a tunable or layer is unknown, a layer or the second cloud is missing, or a step refuses its data.
     """
-    if pipeline.compared is not None and reference is None:
+    if pipeline.needs_reference and reference is None:
         raise ValueError(f"{pipeline.title} reads a second point cloud (reference); give one.")
     monitor = monitor or Monitor()
     chosen = {step.name: of_step for step, of_step in pipeline.by_step(tunables)}
     given = given_layers(pipeline.name, pipeline.input_layers.values(), input_layers or {})
     names = [output.name for output in pipeline.outputs] if wanted is None else wanted
-    steps = pipeline.steps_for(names, [name for name, layer in given.items() if layer is not None])
+    there = [name for name, one in {**given, REFERENCE: reference}.items() if one is not None]
+    steps = pipeline.steps_for(names, there)
     # Later steps change the cloud that they work on: a cloud that is kept as it was is copied when it is made.
     kept = {
         output.step.name for output in pipeline.outputs if output.name in names and output.of == CLOUD != output.name

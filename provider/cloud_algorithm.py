@@ -197,7 +197,8 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         wanted = [made for made in self.made if parameters.get(made.name) not in UNWANTED]
         found = {one: find_input_layer(self, one, parameters, context) for one in inputs.layers}
         given = [one.name for one, layer in found.items() if layer is not None]
-        unmade = [made for made in wanted if made.only_with and made.only_with not in given]
+        given += [REFERENCE.lower()] * (parameters.get(REFERENCE) not in UNWANTED)
+        unmade = [made for made in wanted if made.only_with and not set(made.only_with) & set(given)]
         wanted = [made for made in wanted if made not in unmade]
         job = Job(tunables, wanted)
         job.unmade = unmade
@@ -216,7 +217,8 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             job.spacing = spacing / crs.factors if spacing else None
         read = [*files_read(job.paths), *input_layer_files(self, inputs.layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read, job.clouds)
-        if job.reference:
+        # What is classified anew may well be assessed by the classes that it had.
+        if job.reference and (inputs.needs_reference or all(made.declared != CLOUD for made in self.made)):
             refuse_same(job.clouds, job.reference)
         for path in job.paths:
             check_readable(path, box=job.box)
@@ -239,7 +241,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             monitor = self.monitor(feedback, log)
             if self.job.unmade:
                 titles = ", ".join(made.title for made in self.job.unmade)
-                monitor.inform(f"Not made, as the layer that they compare with is not given: {titles}.")
+                monitor.inform(f"Not made, as what they compare with is not given: {titles}.")
             read = self._read(parameters, context, monitor.part(0.0, self.shares[0]))
             results = self.compute(read, monitor.part(*self.shares))
             monitor.end_steps()

@@ -29,7 +29,7 @@ class Made:
     declared: Declared
     optional: bool = True
     by_default: bool = True  #: Whether the dialog makes it unless told otherwise
-    only_with: str = ""  #: Name of the layer without which it is not made
+    only_with: tuple[str, ...] = ()  #: Names of layers, or of the reference, of which one must be given
 
     @property
     def key(self) -> str:

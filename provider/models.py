@@ -119,8 +119,14 @@ def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
     The designer runs a model with QGIS's own parameters; those for layers take no LAS and LAZ where QGIS has no PDAL.
     """
     if pipeline.compared is not None:
-        both = ((INPUT, pipeline.input_title), (REFERENCE, pipeline.compared.reference_title))
-        return [QgsProcessingParameterFile(name, title, fileFilter=FILTER) for name, title in both]
+        both = (
+            (INPUT, pipeline.input_title, False),
+            (REFERENCE, pipeline.compared.reference_title, not pipeline.needs_reference),
+        )
+        return [
+            QgsProcessingParameterFile(name, title, optional=optional, fileFilter=FILTER)
+            for name, title, optional in both
+        ]
     if pipeline.merges:
         return [QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", Qgis.ProcessingSourceType.File)]
     if not pipeline.reads_cloud:
@@ -185,6 +191,8 @@ def _add_step(model: QgsProcessingModelAlgorithm, pipeline: Pipeline, step: Step
     child = QgsProcessingModelChildAlgorithm(f"{PROVIDER_ID}:{step.stage.id}")
     child.setChildId(step.name)
     child.setDescription(step.stage.title)
+    # A model runs all of its steps: who has a reference activates the one that needs it.
+    child.setActive(REFERENCE.lower() not in step.only_with)
     for name, source in _sources(pipeline, step).items():
         child.addParameterSources(name, [source])
     made = [output for output in pipeline.outputs if output.step is step]

@@ -56,7 +56,7 @@ class PipelineAlgorithm(CloudAlgorithm):
             pipeline.input_title,
             tuple(pipeline.input_layers.values()),
             pipeline.compared,
-            pipeline.compared is not None,
+            pipeline.needs_reference,
         )
         self.made = [_made(pipeline, output) for output in sorted(pipeline.outputs, key=_rank)]
 

@@ -178,6 +178,7 @@ def assess_buildings(
     reference = _side(grid, cell[top], true[top], predicted[top], min_area)
     result = _side(grid, cell[top], predicted[top], true[top], min_area)
     values.update(_object_rates(reference, result), cell_size=cell_size)
+    monitor.inform(_summary(values))
     objects = _objects(grid, (reference, cell[true]), (result, cell[predicted]), min_area)
     monitor.progress(0.9)
     return objects, Report(values, _page(xyz, predicted, true, values, min_area))
@@ -301,6 +302,16 @@ def _add(layer: LayerFeatures, kind: str, grid: Grid, side: _Side, chosen: np.nd
     layer.columns["points"] += np.bincount(group[position[inside]], minlength=count).tolist()
     layer.columns["covered"] += (np.bincount(group, side.shared[chosen], count) / size).tolist()
     layer.geometries += outline_cells(grid, cells, group)
+
+
+def _summary(values: dict) -> str:
+    """Return the rates of points and of buildings in a sentence each."""
+    titles = (("points", "Points"), ("objects", "Buildings"))
+    return " ".join(
+        f"{title}: completeness {percent(values[f'{of}_completeness'])}, "
+        f"correctness {percent(values[f'{of}_correctness'])}, F-score {percent(values[f'{of}_f'])}."
+        for of, title in titles
+    )
 
 
 def _page(xyz: np.ndarray, predicted: np.ndarray, true: np.ndarray, values: dict, min_area: float) -> str:

@@ -54,7 +54,7 @@ class SurveySteps:
         given = find(outcome.survey) if find else {}
         chosen = {step.name: of_step for step, of_step in settings.pipeline.by_step(settings.tunables)}
         for step in steps:
-            if step.only_with and given.get(step.only_with) is None:
+            if step.only_with and all(given.get(name) is None for name in step.only_with):
                 continue
             monitor = settings.monitor.part(JOINED, JOINED, f"{step.name}_")
             cloud = self._shown(view) if step.stage.shows else None

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..pipeline import Pipeline, Step, made_by
+from ..pipeline import REFERENCE, Pipeline, Step, made_by
 from ..stage import Layer, TextFile
 
 # Steps of this group decide which points there are and which of them are noise.
@@ -15,12 +15,12 @@ _PREPARATION = "Preparation"
 
 
 def of_survey(pipeline: Pipeline) -> Pipeline:
-    """Return a composite without the steps that merge clouds: the files of a survey are one cloud."""
-    merging = [step for step in pipeline.steps if step.stage.merges]
-    superfluous = {name for name, (step, _) in pipeline.parameters.items() if step in merging}
+    """Return a composite without steps that merge clouds, as the files of a survey are one, or assess the result."""
+    left_out = [step for step in pipeline.steps if step.stage.merges or REFERENCE in step.only_with]
+    superfluous = {name for name, (step, _) in pipeline.parameters.items() if step in left_out}
     return replace(
         pipeline,
-        steps=tuple(step for step in pipeline.steps if step not in merging),
+        steps=tuple(step for step in pipeline.steps if step not in left_out),
         shown=tuple(name for name in pipeline.shown if name not in superfluous),
     )
 

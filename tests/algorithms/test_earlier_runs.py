@@ -36,7 +36,9 @@ def scene(name):
 def modeled(name, cloud, monitor=None):
     merges = PIPELINES[name].merges
     given = [cloud.copy(), cloud.copy()] if merges else cloud.copy()
-    return run_pipeline(PIPELINES[name], given, monitor, reference=street() if PIPELINES[name].compared else None)
+    return run_pipeline(
+        PIPELINES[name], given, monitor, reference=street() if PIPELINES[name].needs_reference else None
+    )
 
 
 @cache
