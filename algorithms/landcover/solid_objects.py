@@ -76,7 +76,19 @@ def find_solid_objects(
 
 
 def are_opaque(xyz: np.ndarray, has_passed: np.ndarray, sampling: CloudSampling, monitor: Monitor) -> np.ndarray:
-    """Return the mask of points (n, 3), m, of groups that hardly a pulse passes, see :func:`find_solid_objects`."""
+    """Return the mask of points (n,) of groups that hardly a pulse passes.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points, m.
+    has_passed : ndarray of shape (n,), bool
+        Whether their pulses are known to have had several returns.
+    sampling : CloudSampling
+        That of the whole cloud.
+    monitor : Monitor
+        Receives progress.
+    """
     group, size, is_opaque = _groups(xyz, has_passed, sampling, monitor)
     return (is_opaque & (size >= LEAST_NEIGHBORS))[group]
 

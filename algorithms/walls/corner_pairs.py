@@ -92,7 +92,19 @@ class CornerPairs:
 
 
 def sequential_lines(xy: np.ndarray, tolerance: float, min_points: int, seed: int) -> list[WallLine]:
-    """Return lines of at least so many points (n, 2), m, within a tolerance (m): by RANSAC, each taken out in turn."""
+    """Return lines by RANSAC, each taken out in turn.
+
+    Parameters
+    ----------
+    xy : ndarray of shape (n, 2), float64
+        Positions in plan, m.
+    tolerance : float
+        Greatest distance of a point from its line, m.
+    min_points : int
+        Least number of points on a line.
+    seed : int
+        Start of the random numbers.
+    """
     rng, left, lines = np.random.default_rng(seed), np.arange(len(xy)), []
     while len(left) >= min_points:
         on_line = left[_on_best_line(xy[left], tolerance, rng)]
@@ -104,7 +116,7 @@ def sequential_lines(xy: np.ndarray, tolerance: float, min_points: int, seed: in
 
 
 def _on_best_line(xy: np.ndarray, tolerance: float, rng: np.random.Generator) -> np.ndarray:
-    """Return which points (n,) lie on the line, of those through pairs of them, that holds most."""
+    """Return the mask of points (n,) on the line that holds most, of those through pairs of points."""
     start, end = xy[rng.integers(0, len(xy), (2, _TRIALS))]
     step = end - start
     length = np.hypot(*step.T)
