@@ -49,26 +49,26 @@ _LEAST_AREA = 1e-6
 
 TERRAIN_FIELDS = (
     Field("id", int, "number of the triangle, from 1"),
-    Field("patch", str, f"square of {PATCH:g} m that it lies in"),
+    Field("patch", str, f"square of {PATCH:g} m that it lies in, by its column and row"),
 )
 
 
 @dataclass(frozen=True)
 class Terrain:
-    """Triangles of the terrain outside buildings: nodes (n, 3), m, and of each patch their numbers (f, 3)."""
+    """Triangles of the terrain outside buildings: nodes (n, 3), m, and their numbers (f, 3) by name of the patch."""
 
     nodes: np.ndarray
-    patches: list[np.ndarray]
+    patches: dict[str, np.ndarray]
 
     def models(self) -> list[NamedModel]:
         """Return the patches as items of files."""
         found = []
-        for number, facets in enumerate(self.patches, start=1):
+        for name, facets in self.patches.items():
             used, rows = np.unique(facets, return_inverse=True)
             faces = [[ring] for ring in rows.reshape(-1, 3).tolist()]
             solid = Solid(self.nodes[used], faces, [TERRAIN] * len(faces), [-1] * len(faces))
             model = BuildingModel(np.nan, TERRAIN, solids={TERRAIN: [solid]})
-            found.append(NamedModel(f"{TERRAIN}-{number}", [], model, {}))
+            found.append(NamedModel(name, [], model, {}))
         return found
 
 
@@ -116,7 +116,8 @@ def triangulate_terrain(ground: np.ndarray, models: list[NamedModel], tolerance:
     points, is_ground = np.concatenate([free, along]), np.arange(len(free) + len(along)) < len(free)
     cells, cell_of = np.unique(_cells(points), axis=0, return_inverse=True)
     cell_of_piece = _cells(plan[pieces].mean(axis=1))
-    grown, patches, count = [nodes], [], len(nodes)
+    grown, count = [nodes], len(nodes)
+    patches: dict[str, np.ndarray] = {}
     for number, (cell, rows) in enumerate(zip(cells, split_groups(cell_of.ravel(), len(cells)))):
         monitor.progress(0.3 + 0.7 * number / len(cells))
         near = pieces[(cell_of_piece == cell).all(axis=1)]
@@ -125,14 +126,16 @@ def triangulate_terrain(ground: np.ndarray, models: list[NamedModel], tolerance:
             is_free &= ~is_ground[rows] | (nearest_edge_distances(points[rows, :2], *plan[near.T]) > _BESIDE)
         is_own = (np.abs(plan - (cell + 0.5) * PATCH) <= 0.5 * PATCH + _SAME).all(axis=1) & np.isfinite(heights)
         own, shift = np.flatnonzero(is_own), np.append(cell * PATCH, 0.0)
-        seen = points[rows[is_free]] - shift
-        local, facets = _patch(nodes[own] - shift, np.searchsorted(own, near), seen, tolerance)
+        # Rounded, so that nodes on one circle have the same triangles wherever the origin of the coordinates is.
+        begun, seen = (some.round(DECIMALS) for some in (nodes[own] - shift, points[rows[is_free]] - shift))
+        local, facets = _patch(begun, np.searchsorted(own, near), seen, tolerance)
         facets = facets[~are_in_polygons(local[facets, :2].mean(axis=1) + shift[:2], polygons, Monitor())]
         numbers = np.append(own, count + np.arange(len(local) - len(own)))
-        patches.append(numbers[facets])
+        if len(facets):
+            patches[f"{TERRAIN} {cell[0]:.0f} {cell[1]:.0f}"] = numbers[facets]
         grown.append(local[len(own) :] + shift)
         count += len(grown[-1])
-    return Terrain(np.concatenate(grown).round(DECIMALS), [one for one in patches if len(one)])
+    return Terrain(np.concatenate(grown).round(DECIMALS), patches)
 
 
 def _cells(plan: np.ndarray) -> np.ndarray:

@@ -82,7 +82,7 @@ def test_terrain_passes_the_schema(called):
     lines = "".join(cityjson_pieces(items, called, MapFrame(np.asarray))).strip()
     wholes = [json.loads(line) for line in lines.split("\n" if called == CITYJSON_SEQ else "\0")]
     objects = {name: one for whole in wholes for name, one in whole["CityObjects"].items()}
-    assert objects["terrain-1"]["type"] == "TINRelief"
+    assert objects["terrain 0 0"]["type"] == "TINRelief"
     kinds = ["cityjson", *["cityjsonfeature"] * 2]
     assert [error for whole, kind in zip(wholes, kinds) for error in errors(whole, kind)] == []
 

@@ -141,7 +141,7 @@ def test_exports_show_the_terrain(made):
     features, _ = read_cityjson("".join(cityjson_pieces(cityjson, CITYJSON, MapFrame(np.asarray))))
     for models in (export_models(buildings, walls, roofs, terrain=terrain)[0], export_models(cityjson=features)[0]):
         patches = [one for one in models if one.best[0].kind == "terrain"]
-        assert [one.name for one in patches] == [f"terrain-{number}" for number in range(1, 5)]
+        assert [one.name for one in patches] == [f"terrain {column} {row}" for column in (0, 1) for row in (0, 1)]
         assert sum(len(one.best) for one in patches) == len(terrain)
         assert len(models) == 22
 
