@@ -37,7 +37,7 @@ MENU = "LiDAR Buildings"
 FIND_IN_VIEW = "Find buildings in this view…"
 
 # The algorithm that finds buildings.
-_DETECT = f"{PROVIDER_ID}:detectbuildings"
+DETECT = f"{PROVIDER_ID}:detectbuildings"
 
 # Points that it works on in a minute, from file to file, on the slowest computer that it was measured on (2 cores).
 _POINTS_PER_MINUTE = 2_000_000
@@ -119,7 +119,7 @@ def open_dialog(iface: Any) -> None:
 
     parameters = view_parameters(iface)
     if not parameters or _is_wanted(iface, parameters):
-        execAlgorithmDialog(_DETECT, parameters)
+        execAlgorithmDialog(DETECT, parameters)
 
 
 def _is_wanted(iface: Any, parameters: dict[str, Any]) -> bool:
@@ -146,7 +146,7 @@ def _is_wanted(iface: Any, parameters: dict[str, Any]) -> bool:
 
 def _size_of_view(parameters: dict[str, Any]) -> Optional[Size]:
     """Return how much of the cloud on the web lies in the view, None of one on this computer."""
-    algorithm, context = QgsApplication.processingRegistry().createAlgorithmById(_DETECT), QgsProcessingContext()
+    algorithm, context = QgsApplication.processingRegistry().createAlgorithmById(DETECT), QgsProcessingContext()
     context.setProject(QgsProject.instance())
     path = cloud_path(algorithm, INPUT, parameters, context)
     if not is_on_web(path):

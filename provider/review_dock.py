@@ -23,12 +23,14 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ..algorithms.buildings.reviewed_buildings import DELETED, KEPT, REVIEW
+from ..algorithms.buildings.reviewed_buildings import DELETED, KEPT, REVIEW, REVIEWED
 from ..algorithms.quality.report_buildings import SURE
-from .menu import REVIEW_WINDOW
+from .input_layers import input_layer_name
+from .inputs import INPUT
+from .menu import DETECT, REVIEW_WINDOW
 from .questions import push_with_button
 from .review import CONFIDENCE, Review, is_reviewable
-from .review_views import PointViews
+from .review_views import PointViews, clouds_for
 from .view3d import look_at, view_angles
 
 # Columns of the list: attributes, and what they are called.
@@ -77,7 +79,8 @@ def show_review(iface: Any, layer: Optional[QgsVectorLayer] = None) -> ReviewDoc
 
 def offer_review(iface: Any, layer: QgsVectorLayer) -> None:
     """Say how many buildings a run has found, with a button for their review."""
-    doubtful = QgsFeatureRequest(QgsExpression(next(iter(_FILTERS)))).setFlags(Qgis.FeatureRequestFlag.NoGeometry)
+    open_ones = f'{next(iter(_FILTERS))} AND "{REVIEW}" IS NULL'
+    doubtful = QgsFeatureRequest(QgsExpression(open_ones)).setFlags(Qgis.FeatureRequestFlag.NoGeometry)
     count, name = sum(1 for _ in layer.getFeatures(doubtful)), layer.id()
     push_with_button(
         iface,
@@ -136,6 +139,7 @@ class ReviewDock(QDockWidget):
             ("Undo", "", lambda review: review.layer.undoStack().undo()),
             ("Save", "", Review.save),
             ("Remove deleted", "", Review.remove_deleted),
+            ("Run again…", "", self.run_again),
         )
         for number, (text, key, run) in enumerate(given):
             action = QAction(f"{text} ({key})" if key else text, self)
@@ -261,6 +265,14 @@ class ReviewDock(QDockWidget):
         review.prepare_division(self._current())
         self._tool = self.canvas.mapTool()
         self.iface.actionSplitFeatures().trigger()
+
+    def run_again(self, review: Review) -> None:
+        """Open the dialog that finds buildings, with the cloud and with these decisions."""
+        from processing import execAlgorithmDialog
+
+        review.save()
+        cloud = next((one.id() for one in clouds_for(review.layer)), None)
+        execAlgorithmDialog(DETECT, {INPUT: cloud, input_layer_name(REVIEWED): review.layer.id()})
 
     def _current(self) -> int:
         """Return the current building, or refuse."""

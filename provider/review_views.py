@@ -117,10 +117,7 @@ def _cloud_around(layer: QgsVectorLayer, outline: QgsGeometry) -> tuple[Path, np
 
     The last number is the width of the surroundings in them.
     """
-    root = QgsProject.instance().layerTreeRoot()
-    node = root.findLayer(layer.id())
-    nodes = [*(node.parent().findLayers() if node else ()), *root.findLayers()]
-    for cloud in (node.layer() for node in nodes if isinstance(node.layer(), QgsPointCloudLayer)):
+    for cloud in clouds_for(layer):
         moved = QgsGeometry(outline)
         try:
             moved.transform(QgsCoordinateTransform(crs_of_layer(layer), cloud.crs(), QgsProject.instance()))
@@ -132,3 +129,11 @@ def _cloud_around(layer: QgsVectorLayer, outline: QgsGeometry) -> tuple[Path, np
             corners = np.array([(corner.x(), corner.y()) for corner in ring.points()])
             return file, corners, _AROUND / meters_per_unit(cloud.crs())[0]
     raise ValueError("The project has no point cloud here.")
+
+
+def clouds_for(layer: QgsVectorLayer) -> list[QgsPointCloudLayer]:
+    """Return the clouds of the project, those of the group of a layer first."""
+    root = QgsProject.instance().layerTreeRoot()
+    node = root.findLayer(layer.id())
+    nodes = [*(node.parent().findLayers() if node else ()), *root.findLayers()]
+    return [node.layer() for node in nodes if isinstance(node.layer(), QgsPointCloudLayer)]

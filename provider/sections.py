@@ -10,6 +10,7 @@ from ..algorithms.help import step_label, step_title
 from ..algorithms.pipeline import Pipeline, Step
 from ..algorithms.stage import DIMENSION, Tunable
 from ..algorithms.tiling.settings import READ_SETTINGS, SETTINGS, Setting
+from .input_layers import input_layer_name
 from .inputs import CRS
 from .parameters import parameter_name
 
@@ -76,7 +77,8 @@ def sections_of(algorithm: Any) -> list[Section]:
 
 def _of_steps(pipeline: Pipeline) -> list[Section]:
     """Return a group for each step with parameters, after one for those that steps share."""
-    sections = {"": Section("All steps")}
+    folded = [layer for layer in pipeline.input_layers.values() if layer.advanced]
+    sections = {"": Section("All steps", labels={input_layer_name(layer): layer.title for layer in folded})}
     sections.update({step.name: Section(step_title(step)) for step in pipeline.steps})
     for name, (step, tunable) in pipeline.parameters.items():
         is_shared = name in pipeline.shared

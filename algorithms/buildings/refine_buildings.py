@@ -117,8 +117,8 @@ def refine_buildings(
     intensity : ndarray of shape (n,), uint16, optional
         Used where it differs between points.
     reviewed : LayerFeatures, optional
-        Footprints with decisions. Raised points within one that was kept or changed become building where most of them
-        are not yet; points of deleted ones cease to be. Decisions are no labels: they would change nothing else.
+        Footprints with decisions. Raised points within one that was kept or changed become building where hardly
+        any is yet; points of deleted ones cease to be. Decisions are no labels: they would change nothing else.
 
     Returns
     -------

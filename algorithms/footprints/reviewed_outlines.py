@@ -12,9 +12,6 @@ from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..stage import LayerFeatures, Monitor
 from .footprint_attributes import FIELDS
 
-# Share of an outline beyond which it is the building of another one, or of several.
-_SAME = 0.5
-
 
 def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> LayerFeatures:
     """Return the outlines that stay as they were reviewed, with their attributes, before the others that were found.
@@ -31,7 +28,7 @@ def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> 
     one, other, shared = one[order], other[order], shared[order]
     is_decided = np.isin(other, review.rows)
     covered = np.bincount(one[is_decided], shared[is_decided], len(found))
-    others = np.flatnonzero(covered <= _SAME * own.area).tolist()
+    others = np.flatnonzero(2 * covered <= own.area).tolist()
     ids = np.asarray(layer.columns.get("id", ""))
     is_numbered = ids.dtype.kind in "if"
     # "fid" is the number that a GeoPackage gives its rows.
@@ -39,7 +36,7 @@ def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> 
     cluster = dict(zip(other.tolist(), one.tolist()))
     kept["cluster_id"] = [found.columns["cluster_id"][cluster[row]] if row in cluster else 0 for row in staying]
     new = {name: [values[row] for row in others] for name, values in found.columns.items()}
-    is_same = ~is_decided & is_numbered & (shared > _SAME * np.maximum(own.area[one], given.area[other]))
+    is_same = ~is_decided & is_numbered & (2 * shared > np.maximum(own.area[one], given.area[other]))
     before = dict(zip(one[is_same].tolist(), ids[other[is_same]].tolist() if is_numbered else ()))
     new["id"] = [before.get(row) for row in others]
     columns = {

@@ -7,7 +7,8 @@ clouds, ``turned`` of the same when cells fall elsewhere, ``harder`` of the same
 of real houses, trees, cars, fences and poles on simulated ground, ``footprints`` of outlines, ``outlines`` of how
 stable these are, compared with Building-Regulariser's, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and
 ``confidence`` of simulated scenes, whose truth is exact, and ``maps`` of old maps with known differences. ``photos``
-are real clouds of matched images, ``drone`` simulated ones, ``likeness`` compares the two.
+are real clouds of matched images, ``drone`` simulated ones, ``likeness`` compares the two. ``review`` is how many
+decisions on buildings of real clouds and simulated towns it takes until no false one is left.
 
 Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
 Python lines that the tests hold the program to.
@@ -43,6 +44,7 @@ from lidar_buildings.tests.benchmarks.likeness import likeness  # noqa: E402
 from lidar_buildings.tests.benchmarks.outlines import outlines  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import Table, print_tables  # noqa: E402
+from lidar_buildings.tests.benchmarks.review import review  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, estate, scanned  # noqa: E402
 from lidar_buildings.tests.benchmarks.uneven import evenly, in_bands, in_pairs, on_lines, on_zigzags  # noqa: E402
 from lidar_buildings.tests.pits import scene as with_pits  # noqa: E402
@@ -567,6 +569,7 @@ TABLES = {
             noise_apart,
             photos,
             likeness,
+            review,
         )
     },
     **SIMULATED,

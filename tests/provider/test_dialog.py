@@ -46,6 +46,7 @@ def test_parameters_of_a_step_are_a_group_that_is_folded(dialog):
     assert panel.wrappers["GROUND_CELL_SIZE"].wrappedLabel().text() == "Grid cell size (m)"
     assert panel.wrappers["ROOFS_MIN_HEIGHT"].wrappedLabel().text() == "Roofs: minimum height (m)"
     assert not ground.isAncestorOf(panel.wrappers["GROUND_MAX_BUILDING_SIZE"].wrappedWidget())
+    assert group(dialog, "All steps").isAncestorOf(panel._parts("REVIEWED")[1])
     assert not panel.findChild(type(panel._advanced()), "grpAdvanced").isVisibleTo(panel)
 
 

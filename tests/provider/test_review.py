@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from datetime import datetime
+from types import SimpleNamespace
 
 import pytest
 from qgis.core import (
@@ -342,6 +344,10 @@ def test_a_run_that_made_footprints_offers_the_review(layer, qgis_iface, context
     item.findChild(QPushButton).click()
     dock = qgis_iface.mainWindow().findChild(QDockWidget, "LidarBuildingsReview")
     assert dock.review.layer == layer
+    # Only those without a decision are counted.
+    dock.review.decide(dock._fid, "kept")
+    styles.Styler("footprints").postProcessLayer(layer, context, log)
+    assert qgis_iface.messageBar().currentItem().text() == "4 buildings, 1 of them doubtful."
     qgis_iface.messageBar().clearWidgets()
     assert request.getfixturevalue("dock") is dock
 
@@ -351,6 +357,19 @@ def test_a_layer_that_leaves_the_project_is_forgotten(dock, layer):
     QCoreApplication.processEvents()
     assert dock.review is None
     assert listed(dock) == []
+
+
+def test_the_run_is_offered_again_with_the_decisions(dock, layer, monkeypatch, town_file):
+    given = []
+    processing = SimpleNamespace(execAlgorithmDialog=lambda name, parameters: given.append(parameters))
+    monkeypatch.setitem(sys.modules, "processing", processing)
+    press(dock, Qt.Key.Key_D)
+    next(one for one in dock.actions() if one.text() == "Run again…").trigger()
+    cloud = QgsPointCloudLayer(str(town_file), "town", "pdal")
+    QgsProject.instance().addMapLayer(cloud)
+    next(one for one in dock.actions() if one.text() == "Run again…").trigger()
+    assert given == [{"INPUT": one, "REVIEWED": layer.id()} for one in (None, cloud.id())]
+    assert not layer.isModified(), "the run reads what is stored"
 
 
 def test_reviewed_outlines_come_back_as_their_file_has_them(context, log, town_file, tmp_path):
