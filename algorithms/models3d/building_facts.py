@@ -104,6 +104,7 @@ ROOF_FIELDS = (
     Field("eave", float, "elevation of its lowest corner", "m"),
     Field("ridge", float, "elevation of its highest corner", "m"),
     Field("rms", float, "root mean square height of its points above or below it", "m"),
+    Field("parapet", float, "height of a parapet on its outer edges, if it is level; empty without one", "m"),
 )
 WALL_FIELDS = (
     Field("id", int, "number of the face, from 1"),
@@ -114,7 +115,7 @@ WALL_FIELDS = (
 
 
 # Facts by plane, whose numbers JSON would make text.
-_OF_PLANES = ("face_rms", "face_on")
+_OF_PLANES = ("face_rms", "face_on", "face_parapet")
 
 
 @dataclass(frozen=True)
@@ -241,9 +242,16 @@ def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
     if solid.kinds[face] != ROOF:
         return facts
     z = solid.vertices[solid.faces[face][0]][:, 2]
-    rms, on = (of_plane.get(solid.planes[face], math.nan) for of_plane in (one.model.face_rms, one.model.face_on))
+    rms, on, rim = (getattr(one.model, name).get(solid.planes[face], math.nan) for name in _OF_PLANES)
     heights = {"eave": float(z.min()), "ridge": float(z.max())}
-    return {**facts, "slope": slope, "usable_area": area * on, **heights, "rms": rms}
+    return {
+        **facts,
+        "slope": slope,
+        "usable_area": area * on,
+        **heights,
+        "rms": rms,
+        "parapet": rim if slope < _FLAT else math.nan,
+    }
 
 
 def roof_type(solids: Sequence[Solid]) -> str:

@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.groups import components
+from ..geometry.line_segments import nearest_edge_distances
 from .mending import LARGE, mended
 from .roof_partition import FARTHEST, Partition, covered_share, divide_footprint, empty_partition
 from .roof_planes import RoofPlanes, find_roof_planes, selected_planes, with_level_patches
@@ -26,6 +27,11 @@ _COARSE_AREA, _COARSE_SHARE = 10.0, 0.5
 
 # Percentile of the heights of roof points that is the ridge's, as in 'Extract footprints': chimneys rise above it.
 _RIDGE = 98
+
+# Points within this distance (m) of the outline, in plan, are on a parapet if they are so high above a level face (m):
+# above chimney caps and gutters, below a storey. This share of them is that high where there is a parapet: one of 0.3 m
+# has 55 to 72 %, in clouds of 4 to 20 points per m².
+_RIM, _RAISED, _RIM_SHARE = 0.5, (0.15, 1.5), 0.4
 
 # A point of the roof is explained by the model within this many tolerances.
 _EXPLAINED = 1.5
@@ -73,6 +79,7 @@ class BuildingModel:
     n_points: int = 0  #: Number of points of the building
     face_rms: dict[int, float] = field(default_factory=dict)  #: Root mean square by plane of the best level (m)
     face_on: dict[int, float] = field(default_factory=dict)  #: Share of the points of these planes that lie on them
+    face_parapet: dict[int, float] = field(default_factory=dict)  #: Height above these planes at the outline (m)
 
     @property
     def best(self) -> list[Solid]:
@@ -279,7 +286,17 @@ def _enter(
     inside = partition.label >= 0
     area = np.bincount(partition.label[inside], partition.cells.areas()[inside])
     model.face_on = {plane: _explained(off, top) for plane, off in off_of.items() if len(off)}
+    sides = np.concatenate([np.stack([ring[:-1], ring[1:]]) for ring in top.rings], axis=1)
+    on_rim = over & ~top.is_low & (nearest_edge_distances(top.xyz[:, :2], *sides) <= _RIM)
+    model.face_parapet = {plane: _parapet(above[on_rim & (label == plane)]) for plane in off_of}
     model.weakest = min((on for plane, on in model.face_on.items() if area[plane] >= LARGE), default=1.0)
+
+
+def _parapet(above: np.ndarray) -> float:
+    """Return the height (m) of a parapet, of points at the outline above a face (n,), m; NaN without any."""
+    low, high = _RAISED
+    raised = above[(above > low) & (above < high)]
+    return float(np.median(raised)) if len(raised) > _RIM_SHARE * len(above) else np.nan
 
 
 def _explained(off: np.ndarray, top: _Top) -> float:

@@ -92,6 +92,25 @@ def test_usable_area_is_without_what_is_not_modelled():
     assert roofs["azimuth"][lost.argmax()] == pytest.approx(180, abs=2)
 
 
+@pytest.mark.parametrize("density", [5.0, 20.0])
+def test_level_roofs_know_the_height_of_their_parapet(density):
+    """Sides of a rim of 0.3 m are faces or not; points on the wall of a higher neighbor are no rim."""
+    xyz, classes, footprints = scene(SHAPES["flat"], density=density)
+    x, y = xyz[:, :2].T
+    assert np.isnan(reconstructed(xyz, classes, footprints)[0]["roofs"].columns["parapet"]).all()
+    rim = (classes == 6) & (np.minimum.reduce([x, 12 - x, y, 8 - y]) < 0.3)
+    raised = xyz + np.outer(rim, [0, 0, 0.45])
+    roofs = reconstructed(raised, classes, footprints)[0]["roofs"].columns
+    assert roofs["parapet"][np.argmax(roofs["area"])] == pytest.approx(0.45, abs=0.03)
+    rng = np.random.default_rng(0)
+    count = round(40 * density)
+    wall = np.column_stack([rng.uniform(0, 12, count), rng.normal(0.1, 0.02, count), rng.uniform(6, 9, count)])
+    beside = np.concatenate([xyz, wall]), np.append(classes, np.full(count, 6))
+    assert np.isnan(reconstructed(*beside, footprints)[0]["roofs"].columns["parapet"]).all()
+    gable = scene(SHAPES["gable"], density=density)
+    assert np.isnan(reconstructed(*gable)[0]["roofs"].columns["parapet"]).all()
+
+
 def test_simpler_levels_have_level_tops():
     scanned = scene(SHAPES["steps"])
     simple, _, _ = reconstructed(*scanned, level_of_detail="1.2", top_percentile=50.0)
