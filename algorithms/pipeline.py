@@ -181,8 +181,9 @@ class Pipeline:
     def steps_for(self, wanted: Collection[str], given: Optional[Collection[str]] = None) -> tuple[Step, ...]:
         """Return the steps, in order, that the outputs of these names are made by or depend on.
 
-        A step that only measures runs with the layers that it measures: their numbers are given with them. ``given``
-        are the layers that the composite is given, by name, and the reference; None is all that it can be given.
+        A step that only measures runs with the layers or the cloud that it measures: numbers are given with them.
+        ``given`` are the layers that the composite is given, by name, and the reference; None is all that it can be
+        given.
         """
         asked = {(output.step.name, output.of) for output in self.outputs if output.name in wanted}
         needed, steps = set(asked), []
@@ -193,7 +194,8 @@ class Pipeline:
             read = {made_by(layer) for layer in step.layers.values()}
             only_measures = made == {(step.name, REPORT)}
             assesses = REFERENCE in step.only_with and given is not None
-            if made & needed or (only_measures and read & asked) or assesses:
+            measured = read or {(self.cloud_of(step) or "", CLOUD)}
+            if made & needed or (only_measures and measured & asked) or assesses:
                 steps.append(step)
                 needed |= {*read, (self.cloud_of(step) or "", CLOUD)}
         return tuple(reversed(steps))

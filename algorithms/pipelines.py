@@ -170,7 +170,8 @@ _PIPELINES = (
             "others. Then it describes the neighborhood of each point, and sorts points by the largest of linearity, "
             "planarity and scattering: wires and edges, ground and walls, crowns and bushes. The features stay in the "
             "cloud. The neighborhood of 50 points gives smooth results on noisy scans; 'optimal' chooses a number for "
-            "each point and keeps more detail. In tiles, the "
+            "each point and keeps more detail. A report counts what thinning left, and compares the shares of the "
+            "three kinds in both neighborhoods. In tiles, the "
             "files of a survey are one cloud, also where they overlap: they are not moved, and points keep the "
             "numbers of their sources."
         ),
@@ -189,6 +190,7 @@ _PIPELINES = (
                 {"features": ("linearity", "planarity", "scattering", "verticality", "optimal_neighbors")},
             ),
             Step("structure", "classify_dimensionality"),
+            Step("report", "report_structure"),
         ),
         shown=("voxels_voxel_size", "features_neighborhood", "features_n_neighbors", "merge_transforms"),
     ),

@@ -27,6 +27,7 @@ _MODULES = (
     "terrain.rasterize_terrain",
     "features.compute_features",
     "features.classify_dimensionality",
+    "features.report_structure",
     "segmentation.segment_roofs",
     "segmentation.segment_regions",
     "segmentation.segment_clusters",

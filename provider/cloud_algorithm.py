@@ -217,7 +217,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             job.spacing = spacing / crs.factors if spacing else None
         read = [*files_read(job.paths), *input_layer_files(self, inputs.layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read, job.clouds)
-        # What is classified anew may well be assessed by the classes that it had.
+        # A cloud that is classified anew may well be assessed by the classes that it had.
         if job.reference and (inputs.needs_reference or all(made.declared != CLOUD for made in self.made)):
             refuse_same(job.clouds, job.reference)
         for path in job.paths:

@@ -247,6 +247,7 @@ def scene() -> dict[str, np.ndarray]:
         "voxel_count": np.ones(len(xy), np.uint32),
         "entropy": entropy.astype(np.float32),
         **{name: rng.random(len(xy)).astype(np.float32) for name in ("linearity", "planarity", "scattering")},
+        "dimensionality": rng.integers(0, 4, len(xy)).astype(np.uint8),
         "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan, np.nan], np.float32)[kind],
         "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan, np.nan, np.nan], np.float32)[kind],
         "reason": np.array([0, 2, 2, 11, 0, 0, 0], np.uint8)[kind],

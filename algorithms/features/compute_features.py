@@ -93,6 +93,9 @@ _OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
 # surfaces with 0.64 points per square meter and more, the 100 of 'optimal' with 1.3.
 _REACH = 5.0
 
+# Smallest and largest neighborhood that 'optimal' tries where it is not set, as published.
+MIN_NEIGHBORS, MAX_NEIGHBORS = 10, 100
+
 _Features = Annotated[
     tuple[str, ...], Param("What to compute; each becomes a dimension of the cloud.", choices=tuple(_FEATURES))
 ]
@@ -106,7 +109,7 @@ _Radius = Annotated[
     ),
 ]
 
-_NNeighbors = Annotated[
+NNeighbors = Annotated[
     int,
     Param(
         "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
@@ -146,7 +149,7 @@ def compute_features(
             choices=("nearest", "radius", "optimal"),
         ),
     ] = "nearest",
-    n_neighbors: _NNeighbors = 50,
+    n_neighbors: NNeighbors = 50,
     radius: _Radius = None,
     min_neighbors: Annotated[
         int,
@@ -155,7 +158,7 @@ def compute_features(
             label="Minimum nearest points",
             within="[3, 1000]",
         ),
-    ] = 10,
+    ] = MIN_NEIGHBORS,
     max_neighbors: Annotated[
         int,
         Param(
@@ -163,7 +166,7 @@ def compute_features(
             label="Maximum nearest points",
             within="[3, 1000]",
         ),
-    ] = 100,
+    ] = MAX_NEIGHBORS,
     neighbors_step: _NeighborsStep = 1,
     features: _Features = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
     sampling: CloudSampling = MEASURED,

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..pipeline import REFERENCE, Pipeline, Step, made_by
+from ..pipeline import REFERENCE, REPORT, Pipeline, Step, made_by
 from ..stage import Layer, TextFile
 
 # Steps of this group decide which points there are and which of them are noise.
@@ -15,14 +15,19 @@ _PREPARATION = "Preparation"
 
 
 def of_survey(pipeline: Pipeline) -> Pipeline:
-    """Return a composite without steps that merge clouds, as the files of a survey are one, or assess the result."""
-    left_out = [step for step in pipeline.steps if step.stage.merges or REFERENCE in step.only_with]
+    """Return a composite without steps that merge clouds, as the files of a survey are one, or only measure points."""
+    left_out = [step for step in pipeline.steps if step.stage.merges or _only_measures(step)]
     superfluous = {name for name, (step, _) in pipeline.parameters.items() if step in left_out}
     return replace(
         pipeline,
         steps=tuple(step for step in pipeline.steps if step not in left_out),
         shown=tuple(name for name in pipeline.shown if name not in superfluous),
     )
+
+
+def _only_measures(step: Step) -> bool:
+    """Whether a step measures points, or assesses them, and makes nothing of them."""
+    return REFERENCE in step.only_with or (step.stage.needs_cloud and set(step.stage.outputs) == {REPORT})
 
 
 def in_blocks(pipeline: Pipeline) -> Pipeline:
