@@ -13,7 +13,7 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_fits import Cylinder
 from .stem_search import BREAST, find_stems, ground_level
 from .surface_normals import refuse_line
-from .tree_structure import Branch, Slices, branches_of, self_supporting_slices, smooth, voxels_of
+from .tree_structure import Branch, Slices, branches_of, lengths_beyond, self_supporting_slices, smooth, voxels_of
 
 # Side of a voxel (spacings): chance leaves few voxels of bark empty.
 _VOXEL_SPACINGS = 2.0
@@ -28,8 +28,11 @@ _GAP_VOXELS = 8.0
 # piece whose cross section is a circle. Stems at breast height are recognized by the same share.
 _ROUND = 0.2
 
-# Largest measured radius (of that estimated): wider ones are leaves. Simulated branches have 1.4.
+# Largest measured radius (of that estimated): wider ones are leaves.
 _WIDEST = 3.0
+
+# Largest measured radius (of the smallest measured nearer to the root): wood grows no thicker outward, but for noise.
+_SWELLING = 1.1
 
 # Length (m) of the pieces of a branch that have a radius of their own: branches taper little over it.
 _PIECE = 0.5
@@ -124,9 +127,10 @@ def segment_tree(
     length: shadows part stems and branches in every scan. Points farther from the middle line than ``_WITHIN`` times
     the median of their piece of ``_PIECE`` m are leaves. The radius of a piece is the median distance of its points
     from the line. That must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances
-    scatter by less than ``_ROUND`` of it, as those of a circle do. The estimate is a cone: stem and branches grow
-    thinner toward their tips as the stem does from its diameter at breast height. It counts where points show no
-    circle, unless they lie closer to the line. A stem too slender to carry itself belongs to the thicker one that it
+    scatter by less than ``_ROUND`` of it, as those of a circle do. Nor may it exceed radii nearer to the root by
+    more than a tenth. Elsewhere it is estimated: forks keep the area of the wood (pipe model), in proportion to the
+    length of all branches beyond, from the nearest radius measured toward the root, or from the stem's at breast
+    height. A stem too slender to carry itself belongs to the thicker one that it
     grows from. A branch is crooked if its chord is shorter than 0.6 of its length.
 
     References
@@ -135,6 +139,8 @@ def segment_tree(
     929-933. [gorte2004]
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
     section 5.4. [vosselman2004]
+    Shinozaki, K., Yoda, K., Hozumi, K., Kira, T., 1964. A quantitative analysis of plant form: the pipe model theory.
+    Japanese Journal of Ecology 14 (3), 97-105. [shinozaki1964]
     McMahon, T. A., 1973. Size and shape in biology. Science 179, 1201-1204. [mcmahon1973]
 
     Examples
@@ -196,7 +202,8 @@ def _measured(
     ``stems`` are the positions (s, 3) of stems at breast height, their radii (s,), m, and the side of a voxel (m).
     """
     feet, radii, voxel_size = stems
-    taper_of: dict[int, float] = {}
+    # For each slice the square of a radius per length of branches beyond, m, and the smallest radius measured, m.
+    beyond, wood = lengths_beyond(slices, of_slice), np.full((len(slices.positions), 2), np.inf)
     branch = np.where(of_point >= 0, of_slice[of_point], -1)
     parts = split_groups(branch, len(branches))
     label = np.zeros(len(xyz), np.int32)
@@ -217,13 +224,16 @@ def _measured(
         length = float(along[-1])
         ends = np.append(np.arange(n_pieces) * _PIECE, length)
         stem = int(np.argmin(np.linalg.norm(feet[:, None] - line, axis=2).min(axis=1)))
+        ahead = beyond[one.slices]
         if one.order == 0:
-            breast = float(along[np.argmin(np.linalg.norm(line - feet[stem], axis=1))])
-            taper_of[one.tree] = float(radii[stem]) / max(length - breast, _PIECE)
-        taper = taper_of[one.tree]
-        cone = taper * (length - (ends[1:] + ends[:-1]) / 2)
-        is_round = _are_round(distance, piece, reach) & (reach >= voxel_size / 2) & (reach <= _WIDEST * cone)
-        radius = np.where(is_round, reach, np.minimum(reach, cone))
+            breast = int(np.argmin(np.linalg.norm(line - feet[stem], axis=1)))
+            wood[one.slices[0], 0] = radii[stem] ** 2 / max(ahead[breast], _PIECE)
+        else:
+            ahead[0] = ahead[1] + steps[0]
+        ahead = np.interp((ends[1:] + ends[:-1]) / 2, along, ahead)
+        may_be = _are_round(distance, piece, reach) & (reach >= voxel_size / 2)
+        radius, is_round, states = _radii(reach, may_be, ahead, wood[one.slices[0]])
+        wood[one.slices[1:]] = states[(along[1:] / _PIECE).astype(np.int64)]
         row = {
             "id": number,
             "tree": one.tree + 1,
@@ -239,6 +249,34 @@ def _measured(
         lines.append(line)
     columns["points"] = np.bincount(label, minlength=len(branches) + 1)[1:].tolist()
     return label, LayerFeatures(lines, columns)
+
+
+def _radii(
+    reach: np.ndarray, may_be: np.ndarray, ahead: np.ndarray, wood: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the radii (p,), m, of the pieces of a branch from its base, which are measured, and the wood (p, 2) there.
+
+    Parameters
+    ----------
+    reach : ndarray of shape (p,)
+        Distances of their points from the line, m.
+    may_be : ndarray of shape (p,), bool
+        Those that have a circle.
+    ahead : ndarray of shape (p,)
+        Length of all branches beyond, m.
+    wood : ndarray of shape (2,)
+        At the base: square of a radius per length beyond, m, and the smallest radius measured, m.
+    """
+    radius, is_measured, states = np.empty(len(reach)), np.zeros(len(reach), bool), np.empty((len(reach), 2))
+    share, thinnest = wood.tolist()
+    for i, (distance, length) in enumerate(zip(reach.tolist(), ahead.tolist())):
+        estimate = np.sqrt(share * length)
+        is_measured[i] = may_be[i] and distance <= min(_WIDEST * estimate, _SWELLING * thinnest)
+        radius[i] = distance if is_measured[i] else estimate
+        if is_measured[i]:
+            share, thinnest = distance**2 / max(length, _PIECE / 2), min(thinnest, distance)
+        states[i] = share, thinnest
+    return radius, is_measured, states
 
 
 def _off_line(line: np.ndarray, at: np.ndarray, xyz: np.ndarray) -> np.ndarray:

@@ -245,6 +245,16 @@ def branches_of(slices: Slices, min_length: float, monitor: Monitor) -> tuple[li
     return branches, branch
 
 
+def lengths_beyond(slices: Slices, branch: np.ndarray) -> np.ndarray:
+    """Return the length (s,), m, of all branches beyond each slice, from the branch (s,) of each, -1 for leaves."""
+    step = np.linalg.norm(slices.positions - slices.positions[slices.parent], axis=1)
+    beyond = np.zeros(len(branch))
+    # Slices come after those that they grow from.
+    for one in np.flatnonzero((branch >= 0) & (slices.parent >= 0))[::-1]:
+        beyond[slices.parent[one]] += beyond[one] + step[one]
+    return beyond
+
+
 def smooth(line: np.ndarray) -> np.ndarray:
     """Return a line (k, 3) without the steps of its voxels: inner vertices move halfway to the mean of their neighbors.
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.shapes import tree_structure
-from lidar_buildings.algorithms.shapes.segment_tree import segment_tree
+from lidar_buildings.algorithms.shapes.segment_tree import _radii, segment_tree
 from lidar_buildings.algorithms.shapes.stem_search import find_stems, ground_level
 from lidar_buildings.algorithms.simulation.simulate_tree import simulate_tree
 from lidar_buildings.algorithms.stage import Monitor
@@ -50,6 +50,42 @@ def test_the_stem_is_found_with_its_diameter_and_length(found):
     # A cone from the base, a little thicker than at breast height, to 0.35 of that at the top.
     assert columns["volume"][0] == pytest.approx(np.pi / 3 * 9 * 0.11**2 * (1 + 0.35 + 0.35**2), rel=0.15)
     assert np.isnan(columns["dbh"][1:]).all()
+
+
+@pytest.mark.parametrize(
+    ("tunables", "is_one_sided"),
+    [({}, False), ({"height": 14.0, "dbh": 0.3, "n_branches": 14}, False), ({"leaves": 1.0}, False), ({}, True)],
+)
+def test_branches_have_their_wood(tunables, is_one_sided):
+    """Branches of first order had half of it, those of second order a seventh; half of all where one side is seen."""
+    xyz, classification, truth, branches = simulate_tree(**{**SMALL, **tunables})
+    kept = np.ones(len(xyz), bool)
+    for number, line in enumerate(branches.geometries if is_one_sided else (), start=1):
+        own = np.flatnonzero(truth == number)
+        offset = xyz[own] - line[np.linalg.norm(xyz[own, None] - line, axis=2).argmin(axis=1)]
+        kept[own] = offset[:, 0] < 0.2 * np.abs(offset[:, 1])
+    columns = {name: np.array(one) for name, one in segment_tree(xyz[kept], classification[kept])[1].columns.items()}
+    order, length, radius = (np.array(branches.columns[name]) for name in ("branch_order", "length", "radius"))
+    # Each a cone whose tip has 0.35 of the radius of its base.
+    wood = np.pi / 3 * length * radius**2 * (1 + 0.35 + 0.35**2)
+    assert columns["volume"].sum() == pytest.approx(wood.sum(), rel=0.3 if is_one_sided else 0.1)
+    assert columns["volume"][columns["branch_order"] == 1].sum() == pytest.approx(wood[order == 1].sum(), rel=0.35)
+    assert 0.5 < columns["volume"][columns["branch_order"] == 2].sum() / wood[order == 2].sum() < 2
+
+
+def test_leaves_do_not_swell_branches(found):
+    """Round clumps of them far out on a branch made all beyond thicker than the stem."""
+    radius, order = (np.array(found[1].columns[name]) for name in ("radius", "branch_order"))
+    assert radius[order > 0].max() < 0.6 * radius[0]
+
+
+def test_a_measured_radius_that_swells_is_estimated():
+    """From 0.1 m at 4 m of branches beyond: half of the length has 0.71 of the radius, whatever is measured there."""
+    reach, ahead = np.array([0.1, 0.25, 0.07]), np.array([4.0, 2.0, 1.0])
+    radius, is_measured, wood = _radii(reach, np.array([True, True, True]), ahead, np.array([0.0025, np.inf]))
+    assert is_measured.tolist() == [True, False, True]
+    assert radius == pytest.approx([0.1, 0.1 / np.sqrt(2), 0.07])
+    assert wood[-1].tolist() == pytest.approx([0.07**2 / 1.0, 0.07])
 
 
 def test_radii_that_voxels_cannot_carry_are_estimated(tree, found):
