@@ -164,6 +164,29 @@ TABLES = {
         ),
         "accuracy.py buildings",
     ),
+    "review": Shown(
+        ("cloud", "points per m²"),
+        (
+            Column("buildings", "buildings", 0),
+            Column("false", "false", 0),
+            Column("doubtful", "doubtful", 0),
+            Column("false ones among them", "false of these", 0),
+            Column("decisions until none is left", "decisions", 0),
+            Column("in random order", "decisions at random", 0),
+            Column("F, %", "F", 2),
+            Column("then", "F after", 2),
+            Column("objects that are buildings, %", "objects: corr.", 1),
+            Column("then", "objects: corr. after", 1),
+        ),
+        (
+            *(Row(labels, "review", (("cloud", name),)) for name, labels in _CLOUDS.items()),
+            *(
+                Row((f"simulated town in trees, {nth}", "1.5"), "review", (("cloud", f"town in trees {seed}"),))
+                for seed, nth in ((1, "one"), (2, "another"))
+            ),
+        ),
+        "accuracy.py review",
+    ),
     "photos": Shown(
         ("cloud", "points per m²"),
         (*_RATES, _F, Column("largest false building, m²", "largest false, m²", 0)),

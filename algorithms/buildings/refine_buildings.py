@@ -126,7 +126,8 @@ def refine_buildings(
         Points that look like buildings become 6, points of buildings that don't become 1; ground, water, bridge decks,
         noise and points up to 0.5 m above the ground never change.
     cluster_id : ndarray of shape (n,), int32
-        Buildings from 1 without gaps; points that become building get the nearest one.
+        Buildings from 1 without gaps; points that become building get the nearest one, and those of
+        reviewed buildings that were deleted keep theirs.
     confidence : ndarray of shape (n,), float32, or None
         Points that change get their probability, other points of buildings the geometric mean of theirs and it; None
         where not given.

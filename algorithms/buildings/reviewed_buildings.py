@@ -89,10 +89,12 @@ class ReviewedBuildings:
         # Of a building that was found, trees over it leave a quarter of the points at least, on fifteen clouds.
         becomes = np.flatnonzero(may & (owner < self.stay) & ~is_building & (4 * found < raised)[owner])
         ceases = np.flatnonzero(is_building & (owner >= self.stay))
-        number = cluster_id.max(initial=0) + 1 + owner[becomes]
+        # Deleted ones keep their number, so that outlines are drawn as if nothing was deleted, and then left out.
+        number = cluster_id.copy()
+        number[becomes] = cluster_id.max(initial=0) + 1 + owner[becomes]
         return (
             with_changed(classification, PointClass.BUILDING, becomes, PointClass.UNCLASSIFIED, ceases),
-            without_gaps(with_changed(cluster_id, number, becomes, 0, ceases)),
+            without_gaps(number),
             None if confidence is None else with_changed(confidence, 1.0, becomes, 0.0, ceases),
             None if reason is None else with_changed(reason, Reason.KEPT, becomes, Reason.DELETED, ceases),
         )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..buildings.reviewed_buildings import REVIEWED, ReviewedBuildings
 from ..cloud.asprs import PointClass
-from ..cloud.reasons import ADDED
+from ..cloud.reasons import ADDED, Reason
 from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
 from ..params import MinBuildingArea
@@ -172,7 +172,11 @@ def extract_footprints(
     >>> len(footprints), round(float(footprints.columns["area"][0]))
     (1, 71)
     """
-    building, review = _building_points(classification, cluster_id, monitor), ReviewedBuildings.of(reviewed)
+    review = ReviewedBuildings.of(reviewed)
+    if review is not None and reason is not None:
+        # The neighbors of deleted buildings are drawn as before.
+        classification = np.where(reason == Reason.DELETED, PointClass.BUILDING, classification)
+    building = _building_points(classification, cluster_id, monitor)
     if not len(building) or not np.ptp(plan_box(xyz.take(building, axis=0)), axis=0).any():
         return with_reviewed(_features([], [], min_area), review)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.

@@ -17,7 +17,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.sufficiency import why_doubtful
 from ..stage import InputLayer, LayerFeatures, Measure, Report, feature_names, stage
 
-# Clusters of simulated towns with at least this confidence were all buildings, and 70 % of those below, down to 0.5.
+# Of 514 buildings of seven real clouds, 45 had less than this confidence, 15 of the 16 false ones among them.
 SURE = 0.7
 
 # Confidence below which a building is as likely as not.

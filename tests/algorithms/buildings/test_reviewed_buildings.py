@@ -35,7 +35,7 @@ def test_deleted_buildings_go_with_their_edges_and_kept_ones_come_back():
     given = xyz, xyz[:, 2], (classes, cluster, sure, np.zeros(len(xyz), np.uint8)), Monitor()
     found, number, confidence, reason = review(DELETED, KEPT, CHANGED, None).decide(*given)
     np.testing.assert_array_equal(found, np.repeat([1, 6, 2, 1, 6, 5, 6], sizes))
-    np.testing.assert_array_equal(number, np.repeat([0, 3, 0, 0, 1, 0, 2], sizes))
+    np.testing.assert_array_equal(number, np.repeat([1, 4, 0, 0, 2, 0, 3], sizes))
     np.testing.assert_array_equal(reason, np.repeat([Reason.DELETED, Reason.KEPT, 0, 0, 0, 0, 0], sizes))
     np.testing.assert_array_equal(
         confidence, np.repeat(np.float32([0.0, 1.0, np.nan, np.nan, 0.6, np.nan, 0.6]), sizes)
@@ -49,7 +49,7 @@ def test_only_the_part_within_its_outline_is_deleted_from_a_row():
     arrays = np.full(30, 6, np.uint8), np.ones(30, np.int32), None, None
     found, number, confidence, reason = review(DELETED).decide(xyz, xyz[:, 2], arrays, Monitor())
     np.testing.assert_array_equal(found, np.repeat([1, 6], [10, 20]))
-    np.testing.assert_array_equal(number, np.repeat([0, 1], [10, 20]))
+    assert (number == 1).all()
     assert confidence is None
     assert reason is None
 

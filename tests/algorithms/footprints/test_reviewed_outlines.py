@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
 from lidar_buildings.algorithms.stage import LayerFeatures
 from lidar_buildings.tests.builders import roof
@@ -70,3 +71,22 @@ def test_names_of_a_map_are_no_numbers(street):
     assert found.columns["map_id"] == ["NL.1", None, None, None, None]
     missing = reviewed(old, ["kept", None, None, None], id=np.array([np.nan, 7, 8, 9]))
     assert extract_footprints(**given, reviewed=missing).columns["id"] == [10, 7, 8, 9, 11]
+
+
+def test_neighbors_of_a_deleted_house_are_drawn_as_before(rng):
+    """A row of three, the middle one higher: without its points the others would be no row."""
+    parts = [roof(rng, x, 0, 8, 10, z, density=10) for x, z in ((0, 5.0), (8, 8.0), (16, 5.0))]
+    number = np.repeat([1, 2, 3], [len(part) for part in parts])
+    xyz, classes, row = np.concatenate(parts), np.full(len(number), 6), np.ones(len(number), int)
+    before = extract_footprints(xyz, classes, row, xyz[:, 2])
+    assert len(before) == 3
+    middle = int(np.argmax(before.columns["height"]))
+    decisions = ["deleted" if house == middle else None for house in range(3)]
+    deleted = np.where(number == 2, 1, classes), row, xyz[:, 2]
+    reason = np.where(number == 2, Reason.DELETED, 0)
+    found = extract_footprints(xyz, *deleted, reason=reason, reviewed=reviewed(before, decisions))
+    others = [rings for house, rings in enumerate(before.geometries) if house != middle]
+    assert len(found) == 2
+    for one, other in zip(found.geometries, others):
+        np.testing.assert_array_equal(one[0], other[0])
+    assert len(extract_footprints(xyz, *deleted, reason=reason)) == 2
