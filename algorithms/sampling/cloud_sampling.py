@@ -41,11 +41,20 @@ _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
 # Name of the noise of the ground among what parts of a cloud take of the whole.
 GROUND_NOISE = "ground_noise"
 
+# How far (m) before the least coordinates cells begin. Files store coordinates in whole steps, hardly ever less than a
+# tenth of a millimeter: none lies on the border of two cells then, where rounding decides between them.
+_BEFORE = 3e-5
+
 # The default of a stage's argument ``sampling``: where it is called alone, it is given that of its own points.
 MEASURED: Any = None
 
 # Returns the numbers that a table shows.
 Learn = Callable[[np.ndarray], tuple[float, ...]]
+
+
+def corner_before(low: np.ndarray) -> np.ndarray:
+    """Return the corner (2,) at which cells begin, given the least easting and northing ``low`` (2,) of a cloud, m."""
+    return low - _BEFORE
 
 
 class CloudSampling:
@@ -98,12 +107,12 @@ class CloudSampling:
         if classification is None:
             return cls(lambda: xyz)
         counted = without_noise(classification)
-        return cls(lambda: xyz.compress(counted, axis=0), corner=plan_box(xyz)[0])
+        return cls(lambda: xyz.compress(counted, axis=0), corner=corner_before(plan_box(xyz)[0]))
 
     @cached_property
     def corner(self) -> np.ndarray:
         """Least easting and northing (2,) of the cloud, or of the survey that it is a part of, m."""
-        return plan_box(self._points())[0]
+        return corner_before(plan_box(self._points())[0])
 
     def from_corner(self, xyz: np.ndarray) -> np.ndarray:
         """Return points (n, 3), m, with easting and northing from the corner, where the cells of all stages begin."""

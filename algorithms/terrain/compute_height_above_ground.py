@@ -7,6 +7,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, fixed_grid_over
 from ..geometry.tiled_tin import TiledTin
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.kinds import SCENE
 from ..stage import stage
 from .on_decks import on_decks
@@ -20,7 +21,7 @@ from .on_decks import on_decks
     reach=SCENE.ground_within,
     cost=3.5,
 )
-def compute_height_above_ground(xyz, classification, *, monitor=None):
+def compute_height_above_ground(xyz, classification, *, sampling: CloudSampling = MEASURED, monitor=None):
     """Measure how high each point lies above the ground points around it.
 
     The ground is the triangulated surface (TIN) of the points of class 2, evened out over half a meter.
@@ -68,6 +69,7 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
+    xyz = sampling.from_corner(xyz)
     above = np.flatnonzero(~is_ground)
     surface = TiledTin(_means(xyz[is_ground]))
     elevation = surface.elevation(xyz[above], monitor)

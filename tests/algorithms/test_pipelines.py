@@ -58,6 +58,20 @@ def detected():
     return outcome, truth
 
 
+@pytest.mark.parametrize("shift", [(0.37, 0.83), (1234.37, 87.83)])
+def test_the_same_classes_wherever_the_cloud_lies(shift):
+    """Half a percent of the points changed their class in a cloud that was moved by less than a meter."""
+    xyz = np.round(hamlet()[0], 3)
+    one, other = (
+        run_pipeline(PIPELINES["detect_buildings"], create_cloud({"xyz": np.round(xyz + by, 3)}), wanted=["output"])
+        for by in ([500.0, 500.0, 0.0], [500.0 + shift[0], 500.0 + shift[1], 0.0])
+    )
+    np.testing.assert_array_equal(one.cloud.get("classification"), other.cloud.get("classification"))
+    np.testing.assert_allclose(
+        one.cloud.get("height_above_ground"), other.cloud.get("height_above_ground"), rtol=0, atol=1e-3
+    )
+
+
 def test_the_default_chain_finds_the_hamlet(detected):
     outcome, truth = detected
     classes = outcome.cloud.get("classification")

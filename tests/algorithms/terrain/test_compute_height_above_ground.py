@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import LinearNDInterpolator
 
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.terrain.compute_height_above_ground import compute_height_above_ground
 from lidar_buildings.tests.builders import FAR
@@ -95,9 +96,19 @@ def test_points_above_change_nothing(rng):
     """Only ground makes ground: heights of points don't depend on each other."""
     xyz = rng.uniform(0, 50, (600, 3))
     classification = np.repeat([2, 1], 300)
-    everything = compute_height_above_ground(xyz, classification)
-    some = compute_height_above_ground(xyz[:350], classification[:350])
+    sampling = CloudSampling.of(xyz)
+    everything = compute_height_above_ground(xyz, classification, sampling=sampling)
+    some = compute_height_above_ground(xyz[:350], classification[:350], sampling=sampling)
     np.testing.assert_array_equal(everything[:350], some)
+
+
+def test_heights_do_not_depend_on_where_the_cloud_lies(rng):
+    """The cells whose means are nodes began at multiples of their size, wherever the cloud begins."""
+    xyz = np.round(rng.uniform(0, 50, (6000, 3)) * [1, 1, 0.02], 3)
+    classification = np.repeat([2, 1], 3000)
+    height = compute_height_above_ground(xyz, classification)
+    moved = compute_height_above_ground(np.round(xyz + [1234.37, 87.83, 0], 3), classification)
+    np.testing.assert_allclose(moved, height, atol=1e-6)
 
 
 def test_objects_on_a_bridge_are_measured_from_its_deck():
