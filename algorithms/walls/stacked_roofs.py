@@ -8,7 +8,7 @@ from ..geometry.grid import find_cells, raster_cells
 from ..geometry.groups import topmost
 
 # A roof of which more than this share of the border meets one larger roof is a part of that one. A house between two
-# others of its size has at most a third of it next to each, an annex in a nook half; a stair house at the edge of a
+# others of its size has at most a third of it next to each, an annex in a nook half. A stair house at the edge of a
 # roof has three quarters.
 _ENCLOSED = 0.6
 
