@@ -65,7 +65,8 @@ class Pipeline:
     an output of its own. So are the clouds of the steps that ``kept`` names. ``shared`` gives, for each tunable that is
     one parameter of the composite, the names of the steps it goes to, which declare it alike and with one default.
     ``shown`` are the parameters that users meet first, in this order; all others are folded away. ``switched_off`` are
-    layers that are loaded switched off: those of steps that another step has taken further.
+    layers that are loaded switched off: those of steps that another step has taken further. The seconds of the steps of
+    one that is ``timed`` are among its numbers.
     """
 
     name: str
@@ -80,6 +81,7 @@ class Pipeline:
     shown: tuple[str, ...] = ()
     kept: tuple[str, ...] = ()
     switched_off: tuple[str, ...] = ()
+    timed: bool = False
 
     def parameter(self, step: Step, tunable: str) -> str:
         """Return what the composite calls a step's tunable: ``ground_cell_size``, shared ``min_area``."""

@@ -193,6 +193,7 @@ _PIPELINES = (
             Step("report", "report_structure"),
         ),
         shown=("voxels_voxel_size", "features_neighborhood", "features_n_neighbors", "merge_transforms"),
+        timed=True,
     ),
     Pipeline(
         name="map_footprints",

@@ -135,7 +135,7 @@ class ChainMonitor(FeedbackMonitor):
 
     def __init__(self, feedback: QgsProcessingFeedback, log: RunLog) -> None:
         super().__init__(feedback, log=log)
-        self._title = _READING
+        self._title, self._name = _READING, "reading"
         self._held: list[str] = []
         self._summary: list[str] = []
         self._sums_up = False
@@ -152,7 +152,7 @@ class ChainMonitor(FeedbackMonitor):
         """Begin a step, and end the one before it."""
         self._end_step(stage.title)
         self._log.begin(stage, tunables)
-        self._title, self._began = stage.title, time.monotonic()
+        self._title, self._name, self._began = stage.title, name, time.monotonic()
         self._sums_up = bool(stage.measures) and not stage.makes_cloud
         return _StepMonitor(self, self._log, stage, tunables, name, start, end)
 
@@ -160,7 +160,7 @@ class ChainMonitor(FeedbackMonitor):
         """End the last step: all is computed, and is written next."""
         super().end_steps()
         self._end_step(_WRITING.lower())
-        self._title, self._began = _WRITING, time.monotonic()
+        self._title, self._name, self._began = _WRITING, "writing", time.monotonic()
 
     def end(self) -> None:
         """End the run, and show its summary."""
@@ -193,7 +193,8 @@ class ChainMonitor(FeedbackMonitor):
 
     def _end_step(self, following: str = "") -> None:
         """Show the line of the step that ran: its seconds, what comes next, and how much time is left."""
-        line = f"{self._title}: {time.monotonic() - self._began:.1f} s"
+        self.values[f"{self._name}_seconds"] = seconds = time.monotonic() - self._began
+        line = f"{self._title}: {seconds:.1f} s"
         coming = [f"next: {following}"] if following else []
         if following and self._fraction > _TOO_EARLY:
             left = (time.monotonic() - self._start) * (1 - self._fraction) / self._fraction

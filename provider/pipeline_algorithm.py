@@ -20,6 +20,9 @@ from .run_log import RunLog
 from .styles import switch_off
 from .vectors import number
 
+# The number of each step of a composite that is timed, and its title.
+_TIME = {"SECONDS": "Seconds"}
+
 # Outputs of this rank and of higher ones are intermediate results.
 _INTERMEDIATE = 3
 
@@ -78,7 +81,7 @@ class PipelineAlgorithm(CloudAlgorithm):
         return {
             step_output_name(step, name): output_label(step, title)
             for step in self.pipeline.steps
-            for name, title in number_outputs(step.stage).items()
+            for name, title in {**number_outputs(step.stage), **(_TIME if self.pipeline.timed else {})}.items()
         }
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
@@ -108,6 +111,8 @@ class PipelineAlgorithm(CloudAlgorithm):
                 given = self.job.tunables[self.pipeline.parameter(step, tunable.name)]
                 used = values.get(f"{step.name}_{tunable.name}") if given is None else given
                 numbers[step_output_name(step, used_name(tunable))] = number(used)
+            for name in _TIME if self.pipeline.timed else ():
+                numbers[step_output_name(step, name)] = number(values[f"{step.name}_{name.lower()}"])
         for output in self.pipeline.outputs:
             report = results.reports.get(output.name)
             for measure in output.step.stage.measures if report is not None else ():

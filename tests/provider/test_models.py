@@ -171,7 +171,11 @@ def test_structure_of_two_clouds_is_in_qgis_what_it_is_in_memory(provider, conte
     other = create_cloud({"xyz": cloud.to_map(cloud.get("xyz")) + [30.0, 5.0, 2.0]}, "EPSG:28992")
     write_cloud(other, out / "other.laz")
     given = {"INPUTS": [str(village), str(out / "other.laz")], "VOXELS_VOXEL_SIZE": 0.8, "OUTPUT": str(out / "a.laz")}
-    run("interpretstructure", given, context, log)
+    result = run("interpretstructure", given, context, log)
+    seconds = {name: value for name, value in result.items() if name.endswith("_SECONDS")}
+    assert set(seconds) == {f"{step.name.upper()}_SECONDS" for step in PIPELINES["interpret_structure"].steps}
+    assert seconds["FEATURES_SECONDS"] > 0
+    assert result["REPORT_LEFT"] == pytest.approx(100 * result["REPORT_POINTS"] / result["REPORT_ORIGINAL_POINTS"])
     clouds = [read_cloud(village), read_cloud(out / "other.laz")]
     expected = run_pipeline(PIPELINES["interpret_structure"], clouds, voxels_voxel_size=0.8).cloud
     assert set(expected.get("dimensionality")) >= {2, 3}
