@@ -83,6 +83,7 @@ class Inputs:
     layers: tuple[InputLayer, ...]
     compared: Optional[Stage] = None  #: The stage that reads the second cloud
     needs_reference: bool = False
+    needs_cloud: bool = True
 
 
 @dataclass
@@ -162,7 +163,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Declare inputs, tunables and outputs."""
         inputs = self.inputs
         if inputs.clouds:
-            self.addParameter(input_parameter(inputs.several, inputs.title))
+            self.addParameter(input_parameter(inputs.several, inputs.title, inputs.needs_cloud))
         if inputs.compared is not None:
             self.addParameter(reference_parameter(inputs.compared))
         for input_layer in inputs.layers:
@@ -204,7 +205,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         job.unmade = unmade
         # Others last as long as their layers.
         job.systems = [layer.sourceCrs().authid() for one, layer in found.items() if one.read and layer is not None]
-        if inputs.clouds:
+        if inputs.clouds and (inputs.needs_cloud or parameters.get(INPUT) not in UNWANTED):
             job.clouds = input_paths(self, inputs.several, parameters, context)
             job.layer = name_of_layer(parameters.get(INPUT))
         if inputs.compared is not None and (inputs.needs_reference or parameters.get(REFERENCE) not in UNWANTED):

@@ -52,12 +52,17 @@ def with_setting(
     return with_help(definition, setting.help)
 
 
-def input_parameter(several: bool, title: str = "Point cloud") -> QgsProcessingParameterDefinition:
+def input_parameter(
+    several: bool, title: str = "Point cloud", is_needed: bool = True
+) -> QgsProcessingParameterDefinition:
     """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
     if several:
         return with_help(CloudsParameter(INPUTS, "Point clouds"), "Files, layers or addresses on the web, one or more.")
     of_one = "File or layer of the points, or an address on the web (https://…) of COPC, EPT, VPC or STAC items."
-    return with_help(CloudParameter(INPUT, title), of_one)
+    definition = CloudParameter(INPUT, title)
+    if not is_needed:
+        definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Optional)
+    return with_help(definition, of_one)
 
 
 def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:

@@ -33,7 +33,13 @@ class StageAlgorithm(CloudAlgorithm):
         self.stage = self.declared = stage
         compared = stage if stage.reads_reference else None
         self.inputs = Inputs(
-            stage.reads_cloud, stage.merges, stage.input_title, stage.input_layers, compared, stage.needs_reference
+            stage.reads_cloud,
+            stage.merges,
+            stage.input_title,
+            stage.input_layers,
+            compared,
+            stage.needs_reference,
+            stage.needs_cloud,
         )
         self.creates = bool(stage.creates)
         self.made = _made(stage)

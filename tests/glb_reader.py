@@ -31,7 +31,7 @@ class Glb:
     def accessor(self, number):
         one = self.root["accessors"][number]
         values = np.frombuffer(self.view(one["bufferView"]), DTYPES[one["componentType"]])
-        values = values.reshape((one["count"], 3) if one["type"] == "VEC3" else one["count"])
+        values = values.reshape((one["count"], int(one["type"][3:])) if one["type"] != "SCALAR" else one["count"])
         np.testing.assert_array_equal(values.reshape(one["count"], -1).min(axis=0), one["min"])
         np.testing.assert_array_equal(values.reshape(one["count"], -1).max(axis=0), one["max"])
         return values

@@ -15,6 +15,7 @@ from ..stage import InputLayer, MapFrame, Param, Piece, TextFile, stage
 from .cityjson_faces import ENDINGS, read_cityjson
 from .exported_models import ExportedModel, exported_models
 from .gltf import glb
+from .textures import textured
 from .tileset import tileset_pieces
 
 # The page around a file, with "@GLB@" in its place.
@@ -60,6 +61,7 @@ def _layer(name: str, title: str, text: str) -> InputLayer:
             read=read_cityjson,
         ),
     ),
+    input_title="Point cloud with colors",
     files=(
         TextFile("glb", "GLB", {"GLB": (".glb",)}, glb_pieces),
         TextFile("page", "Web page", {"HTML": (".html",)}, page_pieces),
@@ -67,6 +69,10 @@ def _layer(name: str, title: str, text: str) -> InputLayer:
     ),
 )
 def export_models(
+    xyz=None,
+    red=None,
+    green=None,
+    blue=None,
     buildings=None,
     walls=None,
     roofs=None,
@@ -83,6 +89,14 @@ def export_models(
             within="[-120, 120] m",
         ),
     ] = 0.0,
+    texel_size: Annotated[
+        float,
+        Param(
+            "Side of the texels of images on roofs, walls and terrain, where a point cloud with colors is given; about "
+            "the distance between its points.",
+            within="[0.01, 10] m",
+        ),
+    ] = 0.25,
     monitor=None,
 ):
     """Write models of buildings for browsers and other programs, from the layers of a run or from CityJSON.
@@ -95,6 +109,10 @@ def export_models(
 
     Parameters
     ----------
+    xyz : ndarray of shape (n, 3), optional
+        Coordinates (m) of points that color the faces.
+    red, green, blue : ndarrays of shape (n,), optional
+        Their colors.
     buildings, walls, roofs, openings, terrain : LayerFeatures, optional
         Layers of "Reconstruct roofs" or "Model city block".
     cityjson : LayerFeatures, optional
@@ -108,7 +126,7 @@ def export_models(
     Raises
     ------
     ValueError
-        If there is nothing to export, or no polygon has heights.
+        If there is nothing to export, or no polygon has heights, or points have no colors.
 
     Notes
     -----
@@ -116,6 +134,10 @@ def export_models(
     with its coordinate reference system. Attributes are ``EXT_structural_metadata``, one table of buildings and one of
     faces. Layers have the finest level only, CityJSON has all; the grounds of layers lack corners that walls have, so
     that surfaces are closed without gaps from CityJSON only.
+
+    With a point cloud, each face that it shows has an image of the mean colors of the points within 0.3 m; texels
+    between points have the color of the nearest one. Other faces, such as walls in most airborne clouds, and simpler
+    levels of detail keep the color of their kind.
 
     A tile of a quadtree has up to 100 buildings, in one file for each level of detail. Its geometric error is the
     height by which the worst corner of a roof is off at that level (root mean square of the buildings). Positions on
@@ -143,6 +165,12 @@ def export_models(
         )
     if left_out:
         monitor.warn(f"{left_out} polygons have no heights and are left out.")
+    if xyz is not None:
+        if red is None or green is None or blue is None:
+            raise ValueError("The point cloud has no colors; choose one that has, or none.")
+        models = textured(models, xyz, np.column_stack([red, green, blue]), texel_size, monitor)
+        n_images = sum(face.texture is not None for model in models for face in model.best)
+        monitor.inform(f"{n_images} faces have images.")
     n_patches = sum(model.best[0].kind == TERRAIN for model in models)
     faces = sum(len(model.best) for model in models)
     monitor.inform(f"{len(models) - n_patches} buildings and {n_patches} patches of terrain with {faces} faces.")

@@ -30,12 +30,22 @@ _UPRIGHT = 0.17
 
 
 @dataclass(frozen=True)
+class Texture:
+    """An image (rows, columns, 3), uint8, on a face: where it begins (3,), m, and its axes (2, 3), texels per m."""
+
+    start: np.ndarray
+    axes: np.ndarray
+    image: np.ndarray
+
+
+@dataclass(frozen=True)
 class Face:
     """A plane polygon of a model: closed rings (k, 3), m, the exterior first, counterclockwise seen from outside."""
 
     kind: str
     rings: list[np.ndarray]
     facts: dict[str, Any]
+    texture: Optional[Texture] = None
 
     @property
     def corners(self) -> np.ndarray:

@@ -14,6 +14,7 @@ from ..geometry.polygons import area_vector
 from ..models3d.face_triangles import triangulate_face
 from ..models3d.solids import GROUND, TERRAIN
 from .exported_models import KINDS, ExportedModel, Face
+from .textures import Atlas, atlas_of, png
 
 # Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows, doors and terrain, as in the styles of layers.
 _COLORS = dict(
@@ -65,7 +66,9 @@ def glb(
     rows = [(number, face) for number, model in enumerate(models) for face in model.at(level)]
     rows.sort(key=lambda row: KINDS.index(row[1].kind))
     file = _File()
-    primitives = _primitives(rows, placed, np.asarray(middle, float), file)
+    is_textured = any(face.texture is not None for _, face in rows)
+    atlas = atlas_of([_image(face) for _, face in rows]) if is_textured else None
+    primitives = _primitives(rows, placed, np.asarray(middle, float), file, atlas)
     of_models = [{"name": model.name, **model.facts} for model in models]
     of_faces = [{"kind": face.kind, **({} if face.kind in (GROUND, TERRAIN) else face.facts)} for _, face in rows]
     tables = [_property_table(name, facts, file) for name, facts in (("building", of_models), ("face", of_faces))]
@@ -76,17 +79,37 @@ def glb(
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0, "translation": (_Y_UP @ middle).tolist()}],
         "meshes": [{"primitives": primitives}],
-        "materials": [_material(kind) for kind in KINDS],
+        "materials": [_material(kind, is_textured) for kind in KINDS],
+        **(_images(png(atlas.image), file) if atlas else {}),
         "extensionsUsed": ["EXT_mesh_features", "EXT_structural_metadata"],
         "extensions": {"EXT_structural_metadata": {"schema": schema, "propertyTables": [table for _, table in tables]}},
     }
     return file.packed(root)
 
 
-def _material(kind: str) -> dict[str, Any]:
+def _image(face: Face) -> np.ndarray:
+    """Return the image on a face, one texel of the color of its kind where it has none."""
+    return np.array([[_COLORS[face.kind]]], np.uint8) if face.texture is None else face.texture.image
+
+
+def _images(raw: bytes, file: _File) -> dict[str, Any]:
+    """Return the one image of a file as glTF declares it."""
+    image = {"bufferView": file.view(raw), "mimeType": "image/png"}
+    return {
+        "images": [image],
+        "samplers": [{"wrapS": 33071, "wrapT": 33071}],
+        "textures": [{"source": 0, "sampler": 0}],
+    }
+
+
+def _material(kind: str, is_textured: bool) -> dict[str, Any]:
     # glTF stores linear light; screens and styles use the sRGB curve.
     shares = ((np.array(_COLORS[kind]) / 255 + 0.055) / 1.055) ** 2.4
-    surface = {"baseColorFactor": [*np.round(shares, 4).tolist(), 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9}
+    surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.9}
+    if is_textured:
+        surface["baseColorTexture"] = {"index": 0}
+    else:
+        surface["baseColorFactor"] = [*np.round(shares, 4).tolist(), 1.0]
     return {"name": kind, "pbrMetallicRoughness": surface, "doubleSided": True}
 
 
@@ -108,12 +131,12 @@ class _File:
         return len(self.views) - 1
 
     def accessor(self, values: np.ndarray, code: int, target: int) -> int:
-        """Add numbers (n,) or positions (n, 3); return the number of their accessor."""
+        """Add numbers (n,) or positions (n, 2 or 3); return the number of their accessor."""
         made = np.ascontiguousarray(values, "<f4" if code == _FLOAT else "<u4")
         described = {"bufferView": self.view(made.tobytes(), target), "componentType": code, "count": len(made)}
         columns = made.reshape(len(made), -1)
         ends = {"min": columns.min(axis=0).tolist(), "max": columns.max(axis=0).tolist()}
-        self.accessors.append({**described, "type": "SCALAR" if made.ndim == 1 else "VEC3", **ends})
+        self.accessors.append({**described, "type": "SCALAR" if made.ndim == 1 else f"VEC{made.shape[1]}", **ends})
         return len(self.accessors) - 1
 
     def packed(self, root: dict[str, Any]) -> bytes:
@@ -127,7 +150,11 @@ class _File:
 
 
 def _primitives(
-    rows: list[tuple[int, Face]], placed: Callable[[np.ndarray], np.ndarray], middle: np.ndarray, file: _File
+    rows: list[tuple[int, Face]],
+    placed: Callable[[np.ndarray], np.ndarray],
+    middle: np.ndarray,
+    file: _File,
+    atlas: Optional[Atlas],
 ) -> list[dict[str, Any]]:
     """Return the primitives of faces, with the numbers of their buildings, in the order of kinds."""
     corners = [face.corners for _, face in rows]
@@ -151,6 +178,9 @@ def _primitives(
             "_FEATURE_ID_0": building[of_vertex],
             "_FEATURE_ID_1": of_vertex,
         }
+        if atlas is not None:
+            places = [atlas.coordinates(row, rows[row][1].texture, corners[row]) for row in range(first, last)]
+            attributes["TEXCOORD_0"] = np.concatenate(places)
         counts = len(np.unique(building[first:last])), last - first
         made.append(
             {

@@ -93,6 +93,8 @@ def test_layers_and_cityjson_are_exported_alike(house, provider, context, log, o
     run("reconstructroofs", {**house, **wanted, "CITYJSON": text}, context, log)
     run("exportmodels", {**wanted, "GLB": str(out / "layers.glb")}, context, log)
     run("exportmodels", {"CITYJSON": text, "GLB": str(out / "file.glb")}, context, log)
+    with pytest.raises(QgsProcessingException, match="has no colors"):
+        run("exportmodels", {"CITYJSON": text, "INPUT": house["INPUT"], "GLB": str(out / "no.glb")}, context, log)
     layers, file = (Glb((out / f"{name}.glb").read_bytes()).triangles()[0] for name in ("layers", "file"))
     assert len(layers) == len(file) == 2 * 2 + 2 * 2 + 2 * 3 + 2
     corners = [np.unique(one.reshape(-1, 3).round(3), axis=0) for one in (layers, file)]

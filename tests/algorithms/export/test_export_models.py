@@ -41,7 +41,7 @@ def glb_of(models, frame=FRAME):
 
 def from_layers(models):
     buildings, walls, roofs, *_ = models
-    return export_models(buildings, walls, roofs)[0]
+    return export_models(buildings=buildings, walls=walls, roofs=roofs)[0]
 
 
 def from_cityjson(models, called=CITYJSON):
@@ -114,7 +114,7 @@ def test_windows_and_holes_stay_closed():
     footprints = LayerFeatures([[RINGS[0]]], {"id": ["a"]})
     facades, openings = LayerFeatures([front], {}), LayerFeatures([window], {"kind": ["window"]})
     buildings, walls, roofs, set_openings, _ = reconstruct_block(*scene(), footprints, facades, openings)
-    glb = glb_of(export_models(buildings, walls, roofs, set_openings)[0])
+    glb = glb_of(export_models(buildings=buildings, walls=walls, roofs=roofs, openings=set_openings)[0])
     positions, _, _, _, material = glb.triangles()
     assert_closed(positions)
     across = np.cross(positions[:, 1] - positions[:, 0], positions[:, 2] - positions[:, 0]) / 2
@@ -163,4 +163,4 @@ def test_other_files_are_refused(text):
 
 def test_flat_polygons_are_refused():
     with pytest.raises(ValueError, match=r"no model to export \(1 polygons without heights\)"):
-        export_models(LayerFeatures([[RINGS[0]]], {"id": [1]}))
+        export_models(buildings=LayerFeatures([[RINGS[0]]], {"id": [1]}))

@@ -139,7 +139,8 @@ def test_roofs_and_attributes_are_those_of_level_ground(scene, made):
 def test_exports_show_the_terrain(made):
     buildings, walls, roofs, terrain, cityjson, _ = made
     features, _ = read_cityjson("".join(cityjson_pieces(cityjson, CITYJSON, MapFrame(np.asarray))))
-    for models in (export_models(buildings, walls, roofs, terrain=terrain)[0], export_models(cityjson=features)[0]):
+    layers = {"buildings": buildings, "walls": walls, "roofs": roofs, "terrain": terrain}
+    for models in (export_models(**layers)[0], export_models(cityjson=features)[0]):
         patches = [one for one in models if one.best[0].kind == "terrain"]
         assert [one.name for one in patches] == [f"terrain {column} {row}" for column in (0, 1) for row in (0, 1)]
         assert sum(len(one.best) for one in patches) == len(terrain)
