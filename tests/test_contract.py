@@ -104,7 +104,7 @@ KEEPS_ATTRIBUTES = {
 }
 # The layer of a review has decisions.
 DECISIONS = {"reviewed": {"review": ["kept", None]}}
-# Automatic tunables that matter only beside another setting.
+# Automatic tunables that matter only with another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
     ("compute_features", "radius"): {"neighborhood": "radius"},
     ("segment_planes_hough", "n_neighbors"): {"method": "normals"},
@@ -701,7 +701,7 @@ def test_sampling_is_documented_and_no_tunable(stage):
 
 @pytest.mark.parametrize("stage", SAMPLERS, ids=lambda stage: stage.name)
 def test_a_sampling_that_is_given_is_the_one_that_counts(stage, monkeypatch):
-    """That of the same points changes nothing, and the stage measures none of its own beside it."""
+    """That of the same points changes nothing, and the stage measures none of its own besides."""
     settings = [more for (owner, _), more in USED_WITH.items() if owner == stage.name]
     extra = settings[0] if settings else {}
     expected = made_by(stage, **extra)[0]

@@ -63,7 +63,7 @@ _FOR_BUILDING = frozenset(
     }
 )
 
-# Reasons of points that belong to a building by the roof beside them: walls, edges, equipment on it.
+# Reasons of points that belong to a building by the roof next to them: walls, edges, equipment on it.
 ADDED = (Reason.ATTACHED, Reason.LIKE_BUILDINGS)
 
 _TEXTS = {
@@ -71,11 +71,11 @@ _TEXTS = {
     Reason.PLANE: "Building: low entropy, typical of planes.",
     Reason.SOLID_PLANE: "Building: low entropy, typical of planes, and impenetrable to the laser beam.",
     Reason.SOLID: "Building: moderate entropy, but the laser beam hardly penetrates it.",
-    Reason.ATTACHED: "Building: connected to the roof above, below or beside it.",
+    Reason.ATTACHED: "Building: connected to the roof above, below or next to it.",
     Reason.NEXT_TO_BUILDINGS: "Building: low entropy, and adjacent to or surrounded by buildings, where points seen "
     "past an edge are no evidence of vegetation.",
     Reason.SURFACE: "Building: planar over meters, like what surrounds it (matched images).",
-    Reason.LIKE_BUILDINGS: "Building: beside a building, and like the buildings of the scene.",
+    Reason.LIKE_BUILDINGS: "Building: next to a building, and like the buildings of the scene.",
     Reason.KEPT: "Building: kept or drawn by a reviewer.",
     Reason.ROUGH: "Not a building: high entropy, typical of tree crowns.",
     Reason.PENETRATED: "Not a building: low entropy, but the laser beam penetrates it.",

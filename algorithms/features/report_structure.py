@@ -52,9 +52,9 @@ def report_structure(
 ):
     """Report what thinning left, and the shares of linear, planar and volumetric points in two neighborhoods.
 
-    Beside the classes that points have, both neighborhoods of 'Compute features' are tried on some of the points: a
-    number of nearest ones, and the number of least eigenentropy. A page shows the shares, how many points the second
-    takes, and a map.
+    In addition to the classes that points have, both neighborhoods of 'Compute features' are tried on some of the
+    points: a number of nearest ones, and the number of least eigenentropy. A page shows the shares, how many points the
+    second takes, and a map.
 
     Parameters
     ----------

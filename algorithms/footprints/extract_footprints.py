@@ -108,12 +108,12 @@ def extract_footprints(
     xyz : ndarray of shape (n, 3)
         Coordinates (m).
     classification : ndarray of shape (n,)
-        Classes; points of class 6 are outlined, lower ones beside them show where a roof ends.
+        Classes; points of class 6 are outlined, lower ones next to them show where a roof ends.
     cluster_id : ndarray of shape (n,), optional
         Building of each point, from 1; points of 0 are left out. Without it, points that lie together are a building.
     height_above_ground : ndarray of shape (n,), optional
         Heights (m), for the attributes and to distinguish low parts from the houses of a row; for these it is otherwise
-        taken over the lowest point of the buildings that lie together or beside them.
+        taken over the lowest point of the buildings that lie together or next to them.
     cluster_entropy, confidence, weakest_evidence : ndarray of shape (n,), optional
         What :func:`.classify_buildings` returns of these names, for the attributes only.
     reason : ndarray of shape (n,), optional
@@ -131,10 +131,10 @@ def extract_footprints(
 
     Notes
     -----
-    A point lies on a wall if another one of its building is more than 0.4 m higher beside it, steeper than 72°. So does
-    a point that a later step added to the building, if another one is more than a meter (or three spacings) higher.
-    Points on walls belong to the building but don't widen its outline. One point counts for each cell with an area of
-    half a spacing squared.
+    A point lies on a wall if another one of its building is more than 0.4 m higher next to it, steeper than 72°. So
+    does a point that a later step added to the building, if another one is more than a meter (or three spacings)
+    higher. Points on walls belong to the building but don't widen its outline. One point counts for each cell with an
+    area of half a spacing squared.
 
     Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the
     other points around them, and against what is missing to the density of the roofs around. Gaps with roofs all
@@ -230,7 +230,7 @@ class _Part:
 
     members: np.ndarray  #: (m,), int64: all their points in the cloud
     roof: np.ndarray  #: (p,), int64: points of their roofs in the cloud
-    beside: np.ndarray  #: (q,), int64: non-building ones beside
+    beside: np.ndarray  #: (q,), int64: non-building ones next to
     label: np.ndarray  #: (p,), int64: cluster of each roof point
 
 
@@ -263,7 +263,7 @@ def _building_points(classification: np.ndarray, cluster_id: Optional[np.ndarray
 def _parts(
     measures: PointMeasures, classification: np.ndarray, building: np.ndarray, cluster: np.ndarray, spacing: float
 ) -> list[_Part]:
-    """Return the parts of building points that lie apart, with the points beside them that show where roofs end."""
+    """Return the parts of building points that lie apart, with the points next to them that show where roofs end."""
     xyz, reason = measures.xyz, measures.reason
     # Sorted by cluster and coordinates, so that sums over points do not depend on the order of the cloud.
     order = np.lexsort((*xyz[building].T, cluster))
@@ -286,16 +286,16 @@ def _has_area(plan: np.ndarray) -> bool:
 
 
 def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the rows of building points that can be outlined alone, and of the non-building points beside them.
+    """Return the rows of building points that can be outlined alone, and of the non-building points next to them.
 
-    All are positions in plan (n, 2) and (m, 2), m from the corner of the whole. A non-building point beside two groups
+    All are positions in plan (n, 2) and (m, 2), m from the corner of the whole. A non-building point next to two groups
     of buildings shows for both where their roofs end.
     """
     grid = fixed_grid_over(np.concatenate([building, non_building]), apart)
     cells, cell = distinct(grid.number(building))
     count, group = connected_cells(grid, cells)
     own = group[cell]
-    # Non-building points lie in a cell of a group or beside one.
+    # Non-building points lie in a cell of a group or next to one.
     non_building_cell = grid.number(non_building)
     pairs = [np.zeros(0, np.int64)]
     for step in (0, *grid.around):

@@ -15,7 +15,7 @@ _BETWEEN_LOOKS = 100
 
 
 def are_in_polygons(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> np.ndarray:
-    """Return which points lie in at least one polygon, holes left out; arguments as for :func:`holders`."""
+    """Return the mask of points that lie in at least one polygon, holes left out; arguments as for :func:`holders`."""
     return holders(plan, polygons, monitor) >= 0
 
 
@@ -83,7 +83,7 @@ class _Rows:
 
 
 def are_within(plan: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return which points (n, 2) lie within the edges (m, 2, 2) of rings: an odd number of edges lie to their east."""
+    """Return the mask of points (n, 2) within the edges (m, 2, 2) of rings: an odd number lies to their east."""
     order = np.argsort(plan[:, 1], kind="stable")
     x, y = plan[order].T
     # From the lower end of each edge to the upper one, which belongs to the next edge.

@@ -58,7 +58,7 @@ BUILDING_FIELDS = (
     Field("level", str, "level of detail that it has: 1.2, 1.3, 2.0 or 2.2"),
     Field("reason", str, "why it has a simpler level than was asked for, empty where it has that one"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other"),
-    Field("ground", float, "elevation of its base, near that of the lowest ground beside it", "m"),
+    Field("ground", float, "elevation of its base, near that of the lowest ground next to it", "m"),
     Field("eave_height", float, "lower quartile of the heights above the terrain at which its roof ends outside", "m"),
     Field("ridge_height", float, "98th percentile of the heights of its roof points above the terrain", "m"),
     Field("roof_area", float, "area of its roof, in its slopes", "m²"),

@@ -115,7 +115,7 @@ def model_building(
     limits = HeightsAround(around - [*origin, 0.0])
     top = _Top(local, is_low, plan, planes, settings, base)
     if np.median(xyz[top.is_roof, 2]) <= base:
-        model.reason = "its roof is not above the ground beside it"
+        model.reason = "its roof is not above the ground next to it"
         return model
     for level in LEVELS[: LEVELS.index(settings.level) + 1]:
         if level == COARSE != settings.level:
@@ -237,7 +237,7 @@ def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
 
 
 def _above_model(top: _Top, partition: Partition) -> tuple[np.ndarray, np.ndarray]:
-    """Return the heights (n,), m, of the points above the model, NaN beside it, and the planes over or under them."""
+    """Return the heights (n,), m, of the points above the model, NaN outside it, and the planes over or under them."""
     label = np.full(len(top.xyz), -1)
     for cell in np.flatnonzero(partition.label >= 0):
         label[partition.cells.members[cell]] = partition.label[cell]

@@ -38,7 +38,7 @@ SEEN, PARTLY, TREES, ABSENT, EMPTY = "seen", "partly seen", "under trees", "no b
 # Share of what was not seen of a footprint that vegetation covers where this is the reason.
 _HIDDEN = 0.5
 
-# Unclassified points farther than this (spacings) in plan from those on planes are of plants beside a roof.
+# Unclassified points farther than this (spacings) in plan from those on planes are of plants next to a roof.
 _APART = 2.0
 
 # Points nearest to a position in plan that show whether it lies under something, itself among them.
@@ -72,7 +72,7 @@ _FIELDS = (
         f"{SEEN}; {PARTLY}: points of the building on less than {CHECKS.covered:.0%} of the footprint; {TREES}: so, "
         f"with vegetation over most of the rest; {ABSENT}: only other points; {EMPTY}: none at all",
     ),
-    Field("h_ground", float, "elevation of the ground, near that of the lowest beside the building", "m"),
+    Field("h_ground", float, "elevation of the ground, near that of the lowest next to the building", "m"),
     Field("h_roof_min", float, "least elevation of its roof, the 1st percentile", "m"),
     Field("h_roof_50p", float, "median elevation of its roof", "m"),
     Field("h_roof_70p", float, "70th percentile of the elevations of its roof, the top at level of detail 1.2", "m"),
@@ -158,7 +158,7 @@ def compute_building_heights(
     the median of these. Eaves are looked for where no other footprint adjoins.
 
     Where no point has class 6, roofs are the planes among the unclassified points ``_LEAST_HEIGHT`` m or more above the
-    ground, and those clearly above them or beside them are vegetation.
+    ground, and those clearly above them or next to them are vegetation.
 
     References
     ----------
@@ -307,7 +307,7 @@ def _state(n_points: int, has_roof: bool, covered: float, trees: float) -> str:
 
 
 def _are_plants(xyz: np.ndarray, is_on: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the mask of points (n, 3), m, clearly above or beside the points on planes (n,), bool; all without planes.
+    """Return the mask of points (n, 3), m, clearly above or next to those on planes (n,), bool; all without planes.
 
     The others off planes are walls, chimneys and edges.
     """

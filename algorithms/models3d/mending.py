@@ -58,7 +58,7 @@ _STRAIGHT = 0.3
 
 @dataclass
 class _Piece:
-    """A connected part of a footprint: its solid, the cells beside each face, and the plane of each cell."""
+    """A connected part of a footprint: its solid, the cells next to each face, and the plane of each cell."""
 
     solid: Solid
     cells: list[list[int]]
@@ -355,7 +355,7 @@ class _Mending:
         return inward / np.hypot(*inward)
 
     def relabel(self, faces: list[tuple[_Piece, int]], may_lower: bool) -> bool:
-        """Give the smallest part beside each face another plane; return whether any had one to take.
+        """Give the smallest part next to each face another plane; return whether any had one to take.
 
         With ``may_lower`` that is its own at first, a little lower.
         """

@@ -68,7 +68,7 @@ def tell_without_area(n_sound: int, count: int, monitor: Monitor) -> None:
 
 
 def rows_near(xyz: np.ndarray, rings: list, margin: float = 0.0) -> np.ndarray:
-    """Return which points, of those in the order of their eastings, lie in the box around a footprint, ``margin`` m."""
+    """Return the rows of points, in the order of their eastings, in the box around a footprint, ``margin`` m."""
     (west, south), (east, north) = rings[0].min(axis=0) - margin, rings[0].max(axis=0) + margin
     rows = np.arange(np.searchsorted(xyz[:, 0], west), np.searchsorted(xyz[:, 0], east, side="right"))
     return rows[(xyz[rows, 1] >= south) & (xyz[rows, 1] <= north)]

@@ -10,8 +10,8 @@ from ..geometry.delaunay import triangulate
 from ..geometry.groups import members, split_groups
 from .roof_planes import RoofPlanes
 
-# Points of two planes are beside each other where a triangle joins them whose side is at most this long (spacings, or m
-# if that is more).
+# Points of two planes are next to each other where a triangle joins them whose side is at most this long (spacings, or
+# m if that is more).
 _BESIDE_SPACINGS, _BESIDE = 6.0, 2.0
 
 # Planes whose slopes differ by less than this (rise per meter) have no intersection that the points could place. Planes
@@ -111,7 +111,7 @@ def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.nda
 
 
 class _Border:
-    """Where two planes are beside each other: positions (m, 2) between their points, and the points of both (k, 2)."""
+    """Where two planes are next to each other: positions (m, 2) between their points, and the points of both (k, 2)."""
 
     def __init__(
         self, planes: RoofPlanes, pair: tuple[int, int], positions: np.ndarray, points: list[np.ndarray], spacing: float

@@ -53,14 +53,14 @@ _FORBIDDEN = 1000.0
 class Partition:
     """Cells of a footprint, and the planes on top of them."""
 
-    cells: Subdivision  #: The cells; those beside the footprint too
+    cells: Subdivision  #: The cells; those outside the footprint too
     label: np.ndarray  #: (cells,): plane of each cell, -1 outside of the footprint
     coefficients: np.ndarray  #: (m, 3): the planes z = a x + b y + c
     cost: np.ndarray = field(repr=False)  #: (cells, m): what each plane costs in each cell, m² that are not explained
 
 
 def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:
-    """Return which positions (n, 2) a polygon holds."""
+    """Return the mask of positions (n, 2) in a polygon."""
     return are_within(xy, sides_of_rings(rings))
 
 
@@ -93,7 +93,7 @@ def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarra
 
 
 def _are_inside(cells: Subdivision, rings: list) -> np.ndarray:
-    """Return which cells lie inside a footprint; very narrow ones as the neighbor along their longest edge does.
+    """Return the mask of cells inside a footprint; very narrow ones as the neighbor along their longest edge.
 
     Lines along a facade that are nearly in line leave wedges of millimeters between each other.
     """
@@ -133,7 +133,7 @@ def divide_footprint(
     xyz : ndarray of shape (n, 3)
         Points over the footprint (m), relative to a position nearby.
     is_top : ndarray of shape (n,), bool
-        Which of them have no higher point beside them.
+        Which of them have no higher point next to them.
     planes : RoofPlanes
         Their planes, at least one.
     rings : list of ndarray

@@ -92,7 +92,7 @@ def with_level_patches(
     xyz : ndarray of shape (n, 3)
         Points of the building (m).
     is_top : ndarray of shape (n,), bool
-        Which of them have no higher point beside them.
+        Which of them have no higher point next to them.
     planes : RoofPlanes
         The planes of its roof.
     spacing : float

@@ -20,8 +20,8 @@ _ABOVE = 0.5
 class Rules:
     """Which points lie on top, and which of them lie off a model."""
 
-    #: A point that lies under another one of a building by this (m), in its cell or in one beside, is on a wall or on a
-    #: floor seen through glass
+    #: A point that lies under another one of a building by this (m), in its cell or in a neighboring one, is on a wall
+    #: or on a floor seen through glass
     below: float = 1.0
     #: cell, cell_spacings: Side of the cells (m, and point spacings; the larger one counts)
     cell: float = 0.5
@@ -40,7 +40,7 @@ RULES = Rules()
 
 
 def are_low(xyz: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points (n,) have another one in their cell, or in one beside, that is clearly higher."""
+    """Return the mask of points (n,) with a clearly higher one in their cell, or in a neighboring one."""
     grid = grid_over(xyz, RULES.cell_size(spacing))
     number = grid.number(xyz)
     cells, inverse = np.unique(number, return_inverse=True)
@@ -54,9 +54,9 @@ def are_low(xyz: np.ndarray, spacing: float) -> np.ndarray:
 
 
 def are_on_roof(above: np.ndarray, is_low: np.ndarray) -> np.ndarray:
-    """Return which points (n,) are on top of a roof, by their heights ``above`` (n,), m, the face over or under them.
+    """Return the mask of points (n,) on top of a roof, by their heights ``above`` (n,), m, the face over or under them.
 
-    Points that have a higher one beside them, ``is_low`` (n,), lie on walls if they are far under the model.
+    Points that have a higher one next to them, ``is_low`` (n,), lie on walls if they are far under the model.
     """
     return ~is_low | (above > -RULES.below)
 

@@ -20,7 +20,7 @@ _STRAIGHT = 0.0005
 
 
 def build_solid(levels: Levels) -> tuple[Solid, list[list[int]]]:
-    """Return the solid between a level ground and the planes of cells, and the cells beside each of its faces.
+    """Return the solid between a level ground and the planes of cells, and the cells next to each of its faces.
 
     Cells get vertices where roofs cross. The levels have no crowded vertices (:meth:`.Levels.crowded`), at which edges
     would have more than two faces.
@@ -31,7 +31,7 @@ def build_solid(levels: Levels) -> tuple[Solid, list[list[int]]]:
 
 @dataclass(frozen=True)
 class _Wall:
-    """A wall: its ring, the vertices in plan from which and to which it runs, and the cells beside it."""
+    """A wall: its ring, the vertices in plan from which and to which it runs, and the cells next to it."""
 
     ring: Ring
     start: int
@@ -63,7 +63,7 @@ class _Builder:
         self.plan = np.array(levels.positions)[:, :2]
 
     def solid(self) -> tuple[Solid, list[list[int]]]:
-        """Return the solid without superfluous vertices, and the cells beside each face."""
+        """Return the solid without superfluous vertices, and the cells next to each face."""
         faces: list[_Built] = []
         part = self._parts()
         cells_of: dict[int, list[int]] = defaultdict(list)
@@ -87,7 +87,7 @@ class _Builder:
         return edges
 
     def _parts(self) -> dict[int, int]:
-        """Return which connected part of equal planes each cell is in."""
+        """Return the number of the connected part of equal planes of each cell."""
         pairs = [(cell, self.cells.cell_of[v, u]) for u, v, cell, plane, beyond in self.edges if beyond == plane]
         group = groups_of(pairs, len(self.cells))
         return {cell: number for cell, number in enumerate(group) if self.label[cell] >= 0}
@@ -97,7 +97,7 @@ class _Builder:
         return [(number[v, BASE], number[u, BASE]) for u, v, _, _, beyond in self.edges if beyond == BASE]
 
     def _walls(self) -> list[tuple[Ring, list[int]]]:
-        """Return the walls, those in line with each other as one, and the cells beside each."""
+        """Return the walls, those in line with each other as one, and the cells next to each."""
         walls = []
         for u, v, cell, plane, beyond in self.edges:
             if beyond != plane:
@@ -124,7 +124,7 @@ class _Builder:
         return numbers[numbers.index(low) : numbers.index(high) + 1]
 
     def _joined(self, walls: list[_Wall]) -> list[tuple[Ring, list[int]]]:
-        """Return walls with neighbors in one line joined, and the cells beside each."""
+        """Return walls with neighbors in one line joined, and the cells next to each."""
         owner = {edge: i for i, wall in enumerate(walls) for edge in edges_around(wall.ring)}
         pairs = []
         for (a, b), i in owner.items():

@@ -213,7 +213,7 @@ class _Face:
         return len(links) > count - 1 - max(groups_of(links, count))
 
     def holds(self, xyz: np.ndarray) -> np.ndarray:
-        """Return which positions (n,) of the plane lie in the face, farther from its edges than corners may be."""
+        """Return the mask of positions (n,) of the plane in the face, farther from its edges than corners may be."""
         plan = self.in_plane(xyz)
         inside = are_within(plan, np.stack([self.start, self.end], axis=1))
         return inside & (nearest_edge_distances(plan, self.start, self.end) > RULES.apart)

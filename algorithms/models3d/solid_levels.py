@@ -39,7 +39,7 @@ _CROWD = 4
 class Levels:
     """Heights at the vertices of a partition: one for each plane there, and one of planes that meet.
 
-    Vertices move in plan, by centimeters, to where the planes beside them intersect: faces stay plane.
+    Vertices move in plan, by centimeters, to where the planes next to them intersect: faces stay plane.
 
     ``label`` (cells,) is the plane of each cell, -1 outside; ``coefficients`` (m, 3) are those of z = a x + b y + c;
     ``base`` (m) is the height of the ground.
@@ -217,7 +217,7 @@ class Levels:
             self.positions.append((*plan, z))
 
     def part_crossing_roofs(self) -> None:
-        """Put a vertex where one of two planes beside an edge comes from below the other."""
+        """Put a vertex where one of two planes next to an edge comes from below the other."""
         for u, v in list(self.cells.cell_of):
             if u > v:
                 continue

@@ -174,7 +174,7 @@ def _in_order(boxes: Boxes, values: np.ndarray) -> np.ndarray:
 
 
 def _cores(boxes: Boxes, is_near, min_points: int, monitor: Monitor) -> np.ndarray:
-    """Return which points (n,), in the order of the boxes, have enough neighbors."""
+    """Return the mask of points (n,), in the order of the boxes, with enough neighbors."""
     count = np.repeat(boxes.size, boxes.size)
     steps = around()
     for done, offset in enumerate(steps, start=1):

@@ -167,7 +167,7 @@ def _positions(survey: Survey, window: Window) -> np.ndarray:
 
 
 def _inside(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return which positions (n, 2) lie in a box (2, 2), its upper edges not in it."""
+    """Return the mask of positions (n, 2) that lie in a box (2, 2), its upper edges not in it."""
     return ((positions >= box[0]) & (positions < box[1])).all(axis=1)
 
 

@@ -62,7 +62,7 @@ def run_in_tiles(
     paths : iterable of str or Path
         Files, virtual point clouds or folders. Each file becomes a tile of the same name; a file of more points than
         ``options.largest_file`` becomes tiles of the size of a block. It is cut by its index where it is a COPC file,
-        else into pieces that lie uncompressed beside the tiles while they are worked on.
+        else into pieces that lie uncompressed next to the tiles while they are worked on.
     folder : str or Path
         Where the tiles go; it is made where it is missing.
     monitor : Monitor, optional

@@ -129,7 +129,7 @@ CUT_INTO_TILES = SurveyTool(
         "The tiles are those of a lattice that starts at the origin of the coordinates; each is named by its lower "
         "left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a "
         "lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that "
-        "memory does not grow with them; on the disk the points lie once uncompressed beside the tiles while they are "
+        "memory does not grow with them; on the disk the points lie once uncompressed next to the tiles while they are "
         "made. A virtual point cloud over all tiles is written with them."
     ),
 )

@@ -80,7 +80,7 @@ class CornerPairs:
         return [cells.positions[[*ring, ring[0]]] for ring in rings], np.isin(self.at, vertices)
 
     def _is_wall(self) -> np.ndarray:
-        """Return which pieces (e,) of lines between two crossings lie on an edge."""
+        """Return the mask of pieces (e,) of lines between two crossings that lie on an edge."""
         pieces, lines = self.cells.edges, self.cells.crossing[self.at]
         is_wall = np.zeros(len(pieces.line), bool)
         for i, j, *_ in self.edges:

@@ -271,7 +271,7 @@ def fit_line(xy: np.ndarray, points: np.ndarray) -> WallLine:
 
 
 def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[WallLine]:
-    """Join lines that are one wall: collinear pieces beside a gap, and doubles side by side."""
+    """Join lines that are one wall: collinear pieces next to a gap, and doubles side by side."""
     merged: list[WallLine] = []
     for line in sorted(lines, key=lambda line: -np.ptp(line.along)):
         for i, other in enumerate(merged):

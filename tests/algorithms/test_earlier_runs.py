@@ -49,7 +49,7 @@ def street():
 
 
 def written(name):
-    """The dimensions beside LAS fields that steps of a composite write."""
+    """The dimensions besides LAS fields that steps of a composite write."""
     names = dict.fromkeys(name for step in PIPELINES[name].steps for name in step.stage.writes)
     return [one for one in names if not DIMENSIONS[one].standard]
 

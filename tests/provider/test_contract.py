@@ -178,7 +178,7 @@ def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm)
 
 
 def test_only_what_a_stage_is_for_must_be_asked_for(stage, algorithm):
-    """The cloud, or else the first layer; of numbers, several rasters and layers beside files each does by itself."""
+    """The cloud, or else the first layer; of numbers, several rasters and layers besides files each does by itself."""
     destinations = algorithm.destinationParameterDefinitions()
     needed = [d.name() for d in destinations if not d.flags() & Qgis.ProcessingParameterFlag.Optional]
     choice = stage.measures or len(stage.rasters) > 1 or stage.files

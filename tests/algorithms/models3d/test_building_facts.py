@@ -29,7 +29,7 @@ def test_a_large_flat_dormer_below_the_ridge_is_no_flat_top():
 
 
 def test_a_hip_may_be_of_two_faces():
-    """The front is two faces, one beside the other 5 cm lower; the hip at one end is large."""
+    """The front is two faces, one next to the other 5 cm lower; the hip at one end is large."""
     front = [(0, 0, 6), (5, 0, 6), (5, 4, 10), (0, 4, 10)]
     beside = [(5, 0, 5.95), (10, 0, 5.95), (6, 4, 9.95), (5, 4, 9.95)]
     back = [(10, 8, 6), (0, 8, 6), (0, 4, 10), (6, 4, 10)]

@@ -24,7 +24,7 @@ def test_a_high_corner_is_better_than_a_simpler_level():
 
 
 def test_where_a_roof_has_no_points_those_of_a_neighbor_limit_it():
-    """The slope has no points beyond an easting of 9 m; a shed beside the footprint there is 3 m high."""
+    """The slope has no points beyond an easting of 9 m; a shed next to the footprint there is 3 m high."""
     xy = np.random.default_rng(0).uniform((0, 0), (9, 8), (1000, 2))
     roof = np.column_stack([xy, 6.0 + 0.5 * xy[:, 0]])
     shed = np.random.default_rng(1).uniform((12.1, 0, 2.99), (14, 8, 3.01), (300, 3))

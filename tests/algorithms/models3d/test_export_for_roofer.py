@@ -10,7 +10,7 @@ RING = np.array([[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]], float)
 
 
 def exported(geometries, ids, classes=(6, 2, 1, 6, 2, 7), **tunables):
-    # On the roof, beside it, a tree over it, far away twice, noise.
+    # On the roof, next to it, a tree over it, far away twice, noise.
     xyz = np.array([[5, 5, 6], [12, 5, 0], [5, 6, 9], [300, 5, 6], [300, 6, 0], [5, 5, 50]], float)
     monitor = Monitor()
     made = export_for_roofer(

@@ -187,7 +187,7 @@ def test_a_fault_costs_a_large_part_one_cell(monkeypatch):
 
 
 def test_planes_meet_where_they_intersect():
-    """The cut lies 3 cm beside the ridge; the corner on the outline moves along it, and there is no step of 5 cm."""
+    """The cut lies 3 cm next to the ridge; the corner on the outline moves along it, and there is no step of 5 cm."""
     xyz = level_points()
     planes = [[0.8, 0, 2.0], [-0.8, 0, 11.6]]
     parts = partition(xyz, [6.03], planes, lambda x: int(x > 6))
@@ -221,7 +221,7 @@ def test_points_on_no_plane_form_a_level_patch():
 
 
 def test_a_wedge_at_the_edge_of_the_rectangle_stays_outside():
-    """A narrow cell beside the footprint that reached the rectangle took the state of its neighbor inside."""
+    """A narrow cell next to the footprint that reached the rectangle took the state of its neighbor inside."""
     ring = np.array([[0, 0], [12, 0], [12, 8], [6, 8.012], [0, 8], [0, 0]], float)
     for turn in np.deg2rad(np.arange(0, 90, 7)):
         turned = ring @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]

@@ -350,7 +350,7 @@ def test_a_roof_below_the_ground_beside_it_has_no_model_and_the_reason_is_report
     assert len(layers["buildings"]) == 1
     (warning,) = monitor.warnings
     assert "1 of 2 footprints have points but no model" in warning
-    assert "its roof is not above the ground beside it" in warning
+    assert "its roof is not above the ground next to it" in warning
 
 
 def test_footprint_that_crosses_itself_gives_valid_solids():

@@ -1,4 +1,4 @@
-"""Solids that break one rule of val3dity each, as its documentation lists them, and valid ones beside them."""
+"""Solids that break one rule of val3dity each, as its documentation lists them, and valid ones next to them."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,7 @@ def spiked(height):
 
 
 def narrow(width, off):
-    """Return a cube with a vertex ``width`` beside corner 7 on the top edge to 6, ``off`` above the top."""
+    """Return a cube with a vertex ``width`` next to corner 7 on the top edge to 6, ``off`` above the top."""
     place = [1 - width, 1, 1 + off]
     faces = [SIDES[0], [4, 5, 7, 8, 6], *SIDES[2:4], [3, 2, 6, 8, 7], SIDES[5]]
     return solid(np.concatenate([CUBE, [place]]), faces)
@@ -132,7 +132,7 @@ def test_faces_that_lie_on_each_other_are_folded():
 
 def test_faults_are_named_by_face():
     assert set(faults_of(narrow(0.3, 0.03))) == {1}
-    # Vertex 8 is off both the top and nothing else: the wall beside it is still plane.
+    # Vertex 8 is off both the top and nothing else: the wall next to it is still plane.
     assert 4 not in faults_of(narrow(0.3, 0.03))
 
 
