@@ -40,7 +40,8 @@ FORMS = {
     "let go, hears": Form(r"\blet go\b|\bhears?\b", 0.1),
     "none as a predicate": Form(r"(?-i:\b(?:is|are|be) none\b)", 0.1),
     "what is, for a noun": Form(r"\bwhat is\b(?! (?:missing|wrong|normal|new))", 0.1),
-    "beside, for a comparison": Form(r"\bbeside (?:the (?:old |base )?maps?\b|the truth|other (?:work|programs))", 0.1),
+    "return which, for a mask": Form(r"\breturns? which\b", 0.05),
+    "beside, for next to": Form(r"\bbeside\b", 0.1),
 }
 SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.01
 
