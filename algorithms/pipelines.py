@@ -242,13 +242,12 @@ _PIPELINES = (
         tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,RANSAC,DBSCAN,cloth,CSF,Hrutka",
         summary="Map the walls of buildings in a drone's point cloud by the steps of a paper of 2022, to compare with.",
         description=(
-            "The published chain without this project's additions: outliers, voxels, the cloth as ground filter, a "
-            "terrain model and heights. Planes above 2.5 m are found by RANSAC in voxels and clustered by DBSCAN to "
-            "roofs. Upright points below them are walls. In plan, lines are found among these one after the other. "
-            "Their crossings at right angles are corners, and pairs of corners with many points between are edges. "
-            "Where the paper gives no value, it follows the density and the noise of the cloud; the Notes of each step "
-            "say how. The report counts points by step (table 1), and the comparison with an old map has distances of "
-            "corners (table 2). 'Map footprints' finds more buildings and closes their outlines."
+            "The published chain without this project's additions: outliers, voxels, the cloth as ground filter, "
+            "terrain and heights. Planes above 2.5 m, found by RANSAC in voxels, are clustered by DBSCAN to roofs, and "
+            "upright points below them are walls. Crossings of their lines at right angles are corners, pairs of these "
+            "with many points between are edges. Values that the paper leaves open follow density and noise. The "
+            "report counts points by step (table 1), and the comparison with an old map has distances of corners "
+            "(table 2). 'Map footprints' finds more buildings and closes their outlines."
         ),
         references=_HRUTKA,
         steps=(

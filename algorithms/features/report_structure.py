@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..neighborhoods.covariance import Nearest, Neighborhood, Shapes, defined_eigenvalues, reduce_neighborhoods
 from ..neighborhoods.covariance import dimensionality as dimensionality_of
 from ..neighborhoods.optimal_size import Optimal
 from ..report.charts import draw_bars
-from ..report.page import Row, build_page, draw_map, draw_table, percent
-from ..stage import Measure, Monitor, Param, Report, stage
+from ..report.page import build_page, draw_map, draw_table, percent
+from ..stage import Measure, Monitor, Report, stage
 from .classify_dimensionality import classify_dimensionality
 from .compute_features import MAX_NEIGHBORS, MIN_NEIGHBORS, NNeighbors
+
+# Points that both neighborhoods are tried on: shares of them are right to a few tenths of a percent.
+_COMPARED = 20_000
 
 # The kinds of points by their number in the dimension.
 _KINDS = ("undefined", "linear", "planar", "volumetric")
@@ -40,14 +41,6 @@ def report_structure(
     voxel_count=None,
     *,
     n_neighbors: NNeighbors = 50,
-    compared: Annotated[
-        int,
-        Param(
-            "Points whose two neighborhoods are compared, spread evenly over the cloud.",
-            label="Points compared",
-            within="[100, 1_000_000_000]",
-        ),
-    ] = 20_000,
     monitor=None,
 ):
     """Report what thinning left, and the shares of linear, planar and volumetric points in two neighborhoods.
@@ -72,9 +65,9 @@ def report_structure(
 
     Notes
     -----
-    Every so many points of the order of the cloud are compared, with all others as neighbors. 'Downsample to voxels'
-    leaves points from west to east; of clouds in another order other points are compared. The seconds of all steps are
-    in the log of 'Interpret structure' and on its page.
+    About ``_COMPARED`` points, every so many in the order of the cloud, are compared, with all others as neighbors.
+    'Downsample to voxels' leaves points from west to east; of clouds in another order other points are compared. The
+    seconds of all steps are in the log of 'Interpret structure' and on its page.
 
     References
     ----------
@@ -88,7 +81,7 @@ def report_structure(
     100.0
     """
     chosen = np.zeros(len(xyz), bool)
-    chosen[:: -(-len(xyz) // compared)] = True
+    chosen[:: -(-len(xyz) // _COMPARED)] = True
     nearest, _ = _kinds(xyz, Nearest(n_neighbors), chosen, monitor.part(0.0, 0.3))
     optimal, neighbors = _kinds(xyz, Optimal(MIN_NEIGHBORS, MAX_NEIGHBORS), chosen, monitor.part(0.3, 1.0))
     original = np.nan if voxel_count is None else int(voxel_count.sum(dtype=np.int64))
@@ -100,7 +93,7 @@ def report_structure(
     values["fewer_neighbors"] = 100 * float(np.mean(neighbors < n_neighbors))
     lead = _summary(values, n_neighbors)
     monitor.inform(lead)
-    return Report(values, _page(lead, values, int(chosen.sum()), neighbors, draw_map(xyz, dimensionality, _KINDS)))
+    return Report(values, _page(lead, values, neighbors, draw_map(xyz, dimensionality, _KINDS)))
 
 
 def _kinds(
@@ -127,16 +120,10 @@ def _summary(values: dict[str, float], n_neighbors: int) -> str:
     )
 
 
-def _page(lead: str, values: dict[str, float], compared: int, neighbors: np.ndarray, picture: str) -> str:
+def _page(lead: str, values: dict[str, float], neighbors: np.ndarray, picture: str) -> str:
     """Return the page of a report."""
     rows = [[title, *(percent(values[f"{of}_{kind}"]) for kind in _KINDS[1:])] for of, title in _OF.items()]
-    fewer = percent(values["fewer_neighbors"])
-    thinned = f"Of {values['original_points']:,} before thinning." if values["left"] > 0 else "As given."
-    points = [
-        Row("Points", f"{values['points']:,}", thinned),
-        Row("Points compared", f"{compared:,}", "Whose two neighborhoods were tried."),
-        Row("Fewer neighbors than 'Nearest points'", fewer, "Of the points compared."),
-    ]
     charts = draw_table("Shares of points", ["", *_KINDS[1:]], rows) + "<h2>Neighbors of least eigenentropy</h2>"
+    charts += f"<p>Both neighborhoods were tried on {len(neighbors):,} points spread over the cloud.</p>"
     charts += draw_bars(neighbors.astype(float), "nearest points of least eigenentropy", "points")
-    return build_page("Structure of the cloud", lead, {"Points": points}, charts + picture)
+    return build_page("Structure of the cloud", lead, {}, charts + picture)

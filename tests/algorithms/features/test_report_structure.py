@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.features import report_structure as module
 from lidar_buildings.algorithms.features.classify_dimensionality import classify_dimensionality
 from lidar_buildings.algorithms.features.compute_features import compute_features
 from lidar_buildings.algorithms.features.report_structure import report_structure
@@ -34,7 +35,7 @@ def shares(xyz, **tunables):
 
 def test_shares_are_those_of_both_neighborhoods(scene):
     kinds = np.repeat([1, 2, 3, 0], [1000, 2000, 500, 500])
-    values = report_structure(scene, kinds, compared=4000).values
+    values = report_structure(scene, kinds).values
     assert [values[f"cloud_{kind}"] for kind in KINDS] == [25.0, 50.0, 12.5]
     for of, tunables in (("nearest", {}), ("optimal", {"neighborhood": "optimal"})):
         expected, neighbors = shares(scene, **tunables)
@@ -44,14 +45,12 @@ def test_shares_are_those_of_both_neighborhoods(scene):
     assert values["nearest_linear"] > 25, "the wire"
 
 
-def test_some_points_stand_for_all(scene):
+def test_some_points_stand_for_all(scene, monkeypatch):
     """Every fourth; with all others as their neighbors."""
-    expected = shares(scene)[0]
-    values = report_structure(scene, np.ones(4000, int), compared=1000).values
-    assert values["nearest_linear"] == pytest.approx(expected["linear"], abs=3)
-    report = report_structure(scene, np.ones(4000, int), compared=1000)
-    assert "<td>Whose two neighborhoods were tried.</td>" in report.html
-    assert '<td class="number">1,000</td>' in report.html
+    monkeypatch.setattr(module, "_COMPARED", 1000)
+    report = report_structure(scene, np.ones(4000, int))
+    assert report.values["nearest_linear"] == pytest.approx(shares(scene)[0]["linear"], abs=3)
+    assert "Both neighborhoods were tried on 1,000 points" in report.html
 
 
 @pytest.mark.parametrize(("count", "left"), [(5, 20.0), (None, np.nan)])
