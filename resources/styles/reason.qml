@@ -10,6 +10,7 @@
       <category value="5" label="Building: next to buildings" color="51,119,187,255" pointSize="0" render="true"/>
       <category value="7" label="Building: surface" color="17,119,136,255" pointSize="0" render="true"/>
       <category value="8" label="Building: like buildings" color="136,221,238,255" pointSize="0" render="true"/>
+      <category value="9" label="Building: kept" color="0,153,136,255" pointSize="0" render="true"/>
       <category value="11" label="Not a building: rough" color="221,170,51,255" pointSize="0" render="true"/>
       <category value="12" label="Not a building: penetrated" color="153,119,0,255" pointSize="0" render="true"/>
       <category value="13" label="Not a building: into ground" color="170,136,119,255" pointSize="0" render="true"/>
@@ -22,6 +23,7 @@
       <category value="21" label="Undecided: alike" color="120,120,120,255" pointSize="0" render="true"/>
       <category value="22" label="Undecided: without entropy" color="80,80,80,255" pointSize="0" render="true"/>
       <category value="23" label="Not a building: unlike buildings" color="238,119,51,255" pointSize="0" render="true"/>
+      <category value="24" label="Not a building: deleted" color="204,51,17,255" pointSize="0" render="true"/>
     </categories>
   </renderer>
   <blendMode>0</blendMode>
