@@ -41,10 +41,6 @@ _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
 # Name of the noise of the ground among what parts of a cloud take of the whole.
 GROUND_NOISE = "ground_noise"
 
-# How far (m) before the least coordinates cells begin. Files store coordinates in whole steps, hardly ever less than a
-# tenth of a millimeter: none lies on the border of two cells then, where rounding decides between them.
-_BEFORE = 3e-5
-
 # The default of a stage's argument ``sampling``: where it is called alone, it is given that of its own points.
 MEASURED: Any = None
 
@@ -54,7 +50,9 @@ Learn = Callable[[np.ndarray], tuple[float, ...]]
 
 def corner_before(low: np.ndarray) -> np.ndarray:
     """Return the corner (2,) at which cells begin, given the least easting and northing ``low`` (2,) of a cloud, m."""
-    return low - _BEFORE
+    # Files store coordinates in whole steps, hardly ever less than a tenth of a millimeter. With a corner off all of
+    # these, none lies on the border of two cells, where rounding would decide between them.
+    return low - 3e-5
 
 
 class CloudSampling:

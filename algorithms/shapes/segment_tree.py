@@ -128,10 +128,10 @@ def segment_tree(
     the median of their piece of ``_PIECE`` m are leaves. The radius of a piece is the median distance of its points
     from the line. That must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances
     scatter by less than ``_ROUND`` of it, as those of a circle do. Nor may it exceed radii nearer to the root by
-    more than a tenth. Elsewhere it is estimated: forks keep the area of the wood (pipe model), in proportion to the
-    length of all branches beyond, from the nearest radius measured toward the root, or from the stem's at breast
-    height. A stem too slender to carry itself belongs to the thicker one that it
-    grows from. A branch is crooked if its chord is shorter than 0.6 of its length.
+    more than a tenth. Elsewhere it is estimated from the nearest radius measured toward the root, or from the stem's at
+    breast height. Forks keep the area of the wood (pipe model), in proportion to the length of all branches beyond. A
+    stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if its chord is
+    shorter than 0.6 of its length.
 
     References
     ----------
