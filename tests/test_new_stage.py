@@ -36,7 +36,8 @@ def copy(tmp_path_factory) -> Path:
     """A copy of the project with the stage of the example, after its ten steps."""
     copy = tmp_path_factory.mktemp("copy") / "lidar_buildings"
     unneeded = shutil.ignore_patterns(
-        ".git", ".venv", "__pycache__", "_build", "demo", "dist", "benchmarks", ".*_cache"
+        *(".git", ".venv", "__pycache__", "_build", "demo", "dist", "benchmarks", ".*_cache"),
+        *(".qgis-settings", "build", "*.egg-info", ".pythons", ".hypothesis"),
     )
     shutil.copytree(ROOT, copy, ignore=unneeded)
     run(copy, "scripts/new_stage.py", "segmentation.segment_storeys")
