@@ -5,11 +5,15 @@ import pytest
 
 from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
 from lidar_buildings.algorithms.export.export_models import export_models
+from lidar_buildings.algorithms.models3d.building_facts import NamedModel
+from lidar_buildings.algorithms.models3d.building_models import BuildingModel
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces
+from lidar_buildings.algorithms.models3d.joined_terrain import Terrain, on_terrain
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
+from lidar_buildings.algorithms.models3d.solids import Solid
 from lidar_buildings.algorithms.models3d.wavefront import obj_pieces
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
-from lidar_buildings.tests.solid_validity import assert_valid_cityjson, assert_valid_sequence
+from lidar_buildings.tests.solid_validity import assert_valid_cityjson, assert_valid_sequence, assert_valid_solid
 
 TOLERANCE = 0.15
 
@@ -153,9 +157,27 @@ def test_where_terrain_lies_above_an_eave_the_ground_is_level_and_low(scene):
     xyz = xyz.copy()
     xyz[classes == 2, 2] += 2.5 * np.maximum(xyz[classes == 2, 0] - 55, 0)
     items = reconstruct_roofs(xyz, classes, footprints, terrain_tolerance=TOLERANCE)[4]
-    levels = [solid.kinds.count("ground") == 1 for one in items if not one.is_terrain for solid in one.model.best]
-    assert 0 < sum(levels) < 9
+    nodes = np.concatenate([one.model.best[0].vertices for one in items if one.is_terrain])
+    solids = [solid for one in items if not one.is_terrain for solid in one.model.best]
+    level = [solid for solid in solids if solid.kinds.count("ground") == 1]
+    assert 0 < len(level) < 9
+    for solid in level:
+        (base,) = solid.faces[solid.kinds.index("ground")]
+        apart = np.linalg.norm(nodes[:, None, :2] - solid.vertices[base, :2], axis=2).min(axis=1)
+        assert solid.vertices[base, 2].max() <= nodes[apart < 1e-3, 2].min()
     assert_valid_cityjson("".join(cityjson_pieces(items, CITYJSON, MapFrame(np.asarray))))
+
+
+def test_a_node_of_a_neighbor_almost_in_line_does_not_turn_a_wall():
+    """It is 1.5 mm before the wall, 4 mm from its corner: the triangle up from there would turn by 20°."""
+    corners = np.array([[x, y, z] for z in (0, 3) for y in (0, 4) for x in (0, 4)], float)
+    sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
+    box = Solid(corners, [[ring] for ring in sides], ["ground", "roof", *["wall"] * 4], [-1, 0, *[-1] * 4])
+    one = NamedModel("1", [corners[[0, 1, 3, 2, 0]]], BuildingModel(0.0, "2.2", solids={"2.2": [box]}))
+    nodes = np.concatenate([corners[:4], [[0.004, -0.0015, -0.0005]]])
+    (made,) = on_terrain([one], Terrain(nodes, {}))
+    assert made.model.best[0].kinds.count("ground") == 2
+    assert_valid_solid(made.model.best[0].vertices, made.model.best[0].faces)
 
 
 def test_common_walls_a_millimeter_apart_stay_valid(scene):

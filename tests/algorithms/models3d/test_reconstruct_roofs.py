@@ -103,8 +103,8 @@ def test_level_roofs_know_the_height_of_their_parapet(density):
     roofs = reconstructed(raised, classes, footprints)[0]["roofs"].columns
     assert roofs["parapet"][np.argmax(roofs["area"])] == pytest.approx(0.45, abs=0.03)
     rng = np.random.default_rng(0)
-    count = round(40 * density)
-    wall = np.column_stack([rng.uniform(0, 12, count), rng.normal(0.1, 0.02, count), rng.uniform(6, 9, count)])
+    count = round(100 * density)
+    wall = np.column_stack([rng.uniform(0, 12, count), rng.normal(0.1, 0.02, count), rng.uniform(6, 8.6, count)])
     beside = np.concatenate([xyz, wall]), np.append(classes, np.full(count, 6))
     assert np.isnan(reconstructed(*beside, footprints)[0]["roofs"].columns["parapet"]).all()
     gable = scene(SHAPES["gable"], density=density)
