@@ -55,5 +55,5 @@ class Made:
         else:
             made = QgsProcessingParameterFileDestination(self.name, self.title, "HTML files (*.html)", optional=True)
             with_help(made, "A page that shows the numbers.")
-        made.setCreateByDefault(self.by_default)
+        made.setCreateByDefault(self.by_default and not (isinstance(declared, Layer) and declared.on_demand))
         return made

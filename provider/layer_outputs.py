@@ -67,6 +67,8 @@ def write_layer(
     show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
     if not len(features):
         switch_off(context, [target])
+        if layer.on_demand:
+            monitor.warn(f"{layer.title} has no features; {layer.on_demand}.")
     return {name: target}
 
 

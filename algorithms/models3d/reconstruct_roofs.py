@@ -82,7 +82,11 @@ _TopPercentile = Annotated[
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
         Layer("walls", "Walls", "Polygon", WALL_FIELDS, style="model_walls"),
         Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
-        Layer("terrain", "Terrain", "Polygon", TERRAIN_FIELDS, style="model_terrain"),
+        Layer(
+            *("terrain", "Terrain", "Polygon", TERRAIN_FIELDS),
+            style="model_terrain",
+            on_demand="set the terrain tolerance, to 0.2 m for example",
+        ),
     ),
     files=(
         TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "footprints"),

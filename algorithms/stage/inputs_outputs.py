@@ -42,6 +42,8 @@ class Layer:
     space. ``around`` is how far beyond a feature points decide on it, m. ``whole``, where pieces of a long feature can
     be put together, is given the pieces, the largest first, and the number of their points, and returns one feature.
     Points must refer to it (``numbers`` of a field).
+
+    ``on_demand`` is, for a layer that dialogs make only when asked, the advice for one who asked and got no features.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Layer:
     radius: str = ""
     around: float = 1.0
     whole: Optional[Callable[[LayerFeatures, int], LayerFeatures]] = None
+    on_demand: str = ""
 
     def __post_init__(self) -> None:
         """Refuse fields that it does not have."""

@@ -66,6 +66,17 @@ def test_layers_have_heights_and_files_the_format_of_their_extension(house, cont
     )
 
 
+def test_a_terrain_is_made_when_it_is_asked_for(provider, house, context, log, out):
+    """Each model of buildings loaded an empty layer of terrain."""
+    definitions = provider.algorithm("modelbuildings").destinationParameterDefinitions()
+    assert [one.name() for one in definitions if not one.createByDefault()] == ["TERRAIN"]
+    made = run("reconstructroofs", {**house, "TERRAIN": str(out / "t.gpkg")}, context, log)
+    assert QgsVectorLayer(made["TERRAIN"], "").featureCount() == 0
+    assert [one for one in log.warnings if "Terrain has no features; set the terrain tolerance" in one]
+    made = run("reconstructroofs", {**house, "TERRAIN": str(out / "u.gpkg"), "TERRAIN_TOLERANCE": 0.2}, context, log)
+    assert QgsVectorLayer(made["TERRAIN"], "").featureCount() > 10
+
+
 def test_heights_of_a_large_cloud_are_measured_in_blocks(house, context, log, out, monkeypatch):
     """The same values, in the coordinates of the map."""
     rows = []
