@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
 from lidar_buildings.algorithms.export.export_models import export_models
+from lidar_buildings.algorithms.geometry.line_segments import nearest_edge_distances
 from lidar_buildings.algorithms.models3d.building_facts import NamedModel
 from lidar_buildings.algorithms.models3d.building_models import BuildingModel
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces
@@ -108,6 +109,19 @@ def test_terrain_is_within_the_tolerance_and_not_below_buildings(scene, made):
     # The square less 18 houses of 56 and 36 m².
     assert across.sum() == pytest.approx(66**2 - 9 * (56 + 36), rel=0.01)
     assert len(corners) < (classes == 2).sum() / 20
+
+
+def test_ground_points_at_walls_are_no_nodes():
+    """Flower beds a few centimeters before a wall would be steps in the terrain there."""
+    xyz, classes, footprints = town(2)
+    start, end = (np.concatenate([ring[some] for (ring,) in footprints.geometries]) for some in (slice(4), slice(1, 5)))
+    at_wall = np.flatnonzero((classes == 2) & (nearest_edge_distances(xyz[:, :2], start, end) < 0.25))
+    xyz[at_wall[::3], 2] += 0.5
+    _, _, _, terrain, *_ = reconstruct_roofs(xyz, classes, footprints, terrain_tolerance=TOLERANCE)
+    nodes = np.unique(np.concatenate([ring for (ring,) in terrain.geometries])[:, :2], axis=0)
+    off = nearest_edge_distances(nodes, start, end)
+    assert ((off < 0.005) | (off > 0.3)).all()
+    assert (off > 0.3).sum() > 50
 
 
 def test_sides_of_patches_have_no_cracks(made):
