@@ -10,8 +10,8 @@ Conventions, written once and kept by every stage:
 * Normals are unit vectors that point upward (n_z >= 0).
 * A neighborhood holds the point itself.
 * Ids (``segment_id``, ``cluster_id``) run from 1; 0 if unassigned. Undefined measures are NaN.
-* Classes are those of :class:`~.cloud.asprs.PointClass`; stages that sort points by class leave noise (7, 18) out.
-* ``noise`` is the standard deviation of points across smooth surfaces, ``roughness`` that of points of one roof or wall
+* Classes are members of :class:`~.cloud.asprs.PointClass`; stages that sort points by class leave noise (7, 18) out.
+* ``noise`` is the standard deviation of points across smooth surfaces, ``roughness`` of points of one roof or wall
   across its plane, both m; points that are wrong are noise points.
 * Withheld points never reach a stage: the runner leaves them out. They stay in the file, unless the stage makes a cloud
   of other points (``selects``, ``merges``).

@@ -24,7 +24,7 @@ PAPER_THRESHOLDS = {
 Thresholds = Annotated[
     str,
     Param(
-        "'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for "
+        "'automatic' follows the density and the noise of the cloud. The others are from the paper of 2019, for "
         "its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height "
         "difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that "
         "are set replace these.",
@@ -92,7 +92,7 @@ SurfaceNoise = Annotated[
 BridgeHeight = Annotated[
     float,
     Param(
-        "Least height of a bridge above its surroundings; in 'Classify ground segments' that of an object, too.",
+        "Least height of a bridge above its surroundings; in 'Classify ground segments' of an object, too.",
         within="[0.1, 100] m",
     ),
 ]

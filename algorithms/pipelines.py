@@ -74,7 +74,7 @@ _PIPELINES = (
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
             "Noise, ground, bridges and heights come first, then roof surfaces and clusters of everything else "
-            "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
+            "above the ground. A cluster is a building by its mean entropy, compared with planes and volumes, "
             "and by how much of the beam passes through it. Then walls are added, edges are corrected by a regression "
             "learned from the buildings themselves, water, wires and vegetation get classes, and outlines are drawn. "
             "Distances and tolerances follow the density and the noise of the cloud."
@@ -164,7 +164,7 @@ _PIPELINES = (
         title="Interpret structure",
         group="Models",
         tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann,wire,power line",
-        summary="Classify points as linear, planar or volumetric in a cloud, or in those of several scanners merged.",
+        summary="Classify points as linear, planar or volumetric in a cloud, or in several that are merged.",
         description=(
             "Merges the clouds and leaves one point per voxel, so that areas scanned for long don't count more than "
             "others. Then it describes the neighborhood of each point, and sorts points by the largest of linearity, "

@@ -111,7 +111,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
     monitor : Monitor
         Receives the progress of items that are waited for, and ends the work in all threads where it is cancelled.
     share : float
-        Share of an item's progress, 0 to 1, that making it is; the rest is that of its use.
+        Share of an item's progress, 0 to 1, that making it is; the rest is its use.
     """
     if count < 2 or n_threads() < 2:
         for item in range(count):

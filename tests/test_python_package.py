@@ -85,6 +85,12 @@ def test_it_is_imported_as_the_documentation_says(run):
     assert 0.2 < ground < 0.9
 
 
+def test_the_command_has_the_version_of_the_plugin(run):
+    text = (ROOT / "metadata.txt").read_text(encoding="utf-8")
+    (of_plugin,) = re.findall(r"^version=(.*)$", text, re.MULTILINE)
+    assert run("--version").stdout.strip() == of_plugin
+
+
 def test_the_command_says_what_is_wrong(run):
     done = run("detect", "nothing.laz", "--footprints", "f.geojson")
     assert (done.returncode, done.stderr.count("\n")) == (1, 1)

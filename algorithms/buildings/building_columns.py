@@ -81,7 +81,7 @@ class Columns:
         """Return the building (n,), int32, that each point belongs to; 0 if unassigned.
 
         Over a building these are the points up to ``clearance`` (m) above the roof, and where points above it are few,
-        those up to ``structure_height`` (m). Next to it they are those of walls: below the roof, and of no plant.
+        those up to ``structure_height`` (m). Next to it they are of walls: below the roof, and of no plant.
         """
         above = points.elevation - self.top[points.cell]
         inside = points.raised & (self.building[points.cell] > 0)

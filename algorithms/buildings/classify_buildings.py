@@ -34,7 +34,7 @@ class EntropyRules:
 
 ENTROPY = EntropyRules()
 
-# Points of each cluster whose entropy is measured, about. Those of a cluster scatter by 0.15: a mean of 256 is good to
+# Points of each cluster whose entropy is measured, about. In a cluster they scatter by 0.15: a mean of 256 is good to
 # 0.01, half of what K-means moves the threshold by.
 _MEASURED = 256
 
@@ -270,6 +270,6 @@ def _surface_neighborhood(sampling: CloudSampling, density: float, noise: float)
 
 
 def _usual_entropies(noise: float, n_neighbors: int, density: float) -> tuple[float, float]:
-    """Return the mean entropy of planes of that noise, m, and that of volumes."""
+    """Return the mean entropies of planes of that noise, m, and of volumes."""
     reach = np.sqrt(n_neighbors / (np.pi * density))
     return reference_entropies(n_neighbors, plane_roughness(noise, density) / reach)

@@ -20,7 +20,7 @@ _MIN_NEIGHBORS = 3
 
 _SPLITS = {"exact": two_means, "k-means": k_means}
 
-# How far neighborhoods reach (m): those of 4 m² 1.1 m, those of sparse clouds more.
+# How far neighborhoods reach (m): of 4 m² 1.1 m, in sparse clouds more.
 _REACH = 5.0
 
 

@@ -67,10 +67,10 @@ def _page(clusters: Clusters, values: dict, groups: dict) -> str:
         "are fewer."
     )
     if clusters.split.is_one_group:
-        lead += " Their entropies form one group; the mean of the missing one is that of simulated planes or volumes."
+        lead += " Their entropies form one group; the missing one has the mean of simulated planes or volumes."
     elif clusters.penetration is not None:
         lead += (
-            " Their entropies were compared with those of planes and volumes at the density and noise of the cloud, "
+            " Their entropies were compared with planes and volumes at the density and noise of the cloud, "
             "which the two means of the clusters move by little; the reasons below say what decided."
         )
     elif values["clusters"]:

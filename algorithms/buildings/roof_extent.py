@@ -132,7 +132,7 @@ class RoofExtent:
         cell = self.surface.size
         width, length = smallest_rectangle(inside, cell)
         has_length = VEHICLES.least_length - cell <= length <= VEHICLES.most_length + cell
-        # A tenth of its points may be higher, such as those of wires and branches above.
+        # A tenth of its points may be higher, such as wires and branches above.
         is_low = float(np.percentile(height, 90)) <= VEHICLES.height
         return bool(width <= VEHICLES.width + cell and has_length and is_low)
 

@@ -49,7 +49,7 @@ class LabeledCells:
         """Return cells (j, 4 + f) to learn from: number, half, mark of the building, label and features of each.
 
         Numbers, 0 to 1, depend on the cell alone; samples of parts of a survey are cells of the least numbers. Marks
-        distinguish buildings, also those of other parts; 0 is no building. ``cluster_id`` (n,) are the buildings of the
+        distinguish buildings, also of other parts; 0 is no building. ``cluster_id`` (n,) are the buildings of the
         points, from 1; 0 if unassigned.
         """
         is_building = cluster_id > 0

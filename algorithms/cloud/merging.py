@@ -25,7 +25,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     It has the finest scale, the smallest point format that holds the standard fields of all (colors and times that a
     cloud lacks are 0), and the extra dimensions of all. Where a cloud lacks one, its points have NaN, or 0 in a
     dimension of whole numbers. Fields of the header and records (VLRs) are the first cloud's, with those records that
-    only others have. A cloud without coordinate reference system is taken to be in that of the others.
+    only others have. A cloud without coordinate reference system is taken to be in the system of the others.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ import contextlib
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Optional
 
@@ -40,6 +41,9 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     if not words or words[0] in ("-h", "--help"):
         _say(overview())
         return 0
+    if words[0] == "--version":
+        _say(version("lidar-buildings"))
+        return 0
     monitor = _Shown()
     try:
         algorithm = find_algorithm(words[0])
@@ -56,10 +60,10 @@ def main(words: Optional[Sequence[str]] = None) -> int:
 def overview() -> str:
     """Return the list of algorithms with a sentence on each, composites first."""
     short = ", ".join(f"{dashed(name)} as {word}" for word, name in SHORT_NAMES.items())
-    lines = ["usage: lidar-buildings ALGORITHM CLOUD [options]; lidar-buildings ALGORITHM --help tells its options", ""]
+    lines = ["usage: lidar-buildings ALGORITHM CLOUD [options]; with --help in place of CLOUD its options", ""]
     summaries = {name: one.summary for some in (PIPELINES, STAGES) for name, one in some.items()}
     lines += [f"  {dashed(name):30} {summary}" for name, summary in summaries.items()]
-    return "\n".join([*lines, "", f"Shorter: {short}."])
+    return "\n".join([*lines, "", f"Shorter: {short}. lidar-buildings --version tells the version."])
 
 
 def run(algorithm: Pipeline, given: argparse.Namespace, monitor: Monitor) -> None:
@@ -80,7 +84,7 @@ def run(algorithm: Pipeline, given: argparse.Namespace, monitor: Monitor) -> Non
     for _, path in targets:
         check_compression(path, [file_at(one) for one in clouds])
     read = [read_cloud(path, monitor, box=_box(values)) for path in clouds]
-    reference = read_cloud(values["reference"], monitor) if values.get("reference") else None
+    reference = read_cloud(values["reference"], monitor, box=_box(values)) if values.get("reference") else None
     files = {one: values[one.name] for one in algorithm.input_layers.values() if values[one.name] is not None}
     layers, place = _layers(files, read[0] if read else None, monitor)
     tunables = {name: values[name] for name in algorithm.parameters if values[name] is not None}

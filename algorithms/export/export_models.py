@@ -141,7 +141,7 @@ def export_models(
 
     A tile of a quadtree has up to 100 buildings, in one file for each level of detail. Its geometric error is the
     height by which the worst corner of a roof is off at that level (root mean square of the buildings). Positions on
-    the globe are those of QGIS in plan; heights are elevations and ``geoid_height``.
+    the globe are QGIS's in plan; heights are elevations and ``geoid_height``.
 
     References
     ----------

@@ -55,7 +55,7 @@ def triangulated(xy: np.ndarray) -> Optional[Any]:
 def trace_outlines(xy: np.ndarray, max_edge: float, triangulation: Any) -> Optional[Tracing]:
     """Return the pieces of triangles that share edges and have none longer than ``max_edge`` (m), holes filled.
 
-    The triangulation is that of the points ``xy`` (n, 2), m; None where no triangle is left.
+    The triangulation is made of the points ``xy`` (n, 2), m; None where no triangle is left.
 
     References
     ----------
@@ -78,7 +78,7 @@ def trace_outlines(xy: np.ndarray, max_edge: float, triangulation: Any) -> Optio
 
 
 def pieces_of(value: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
-    """Return the number (t,) from 0 of the piece that each triangle is in: those of one value that share edges."""
+    """Return the number (t,) from 0 of the piece that each triangle is in: triangles of one value that share edges."""
     rows, sides = np.nonzero((neighbors >= 0) & (value[neighbors] == value[:, None]))
     return components(rows, neighbors[rows, sides], len(value))[1]
 

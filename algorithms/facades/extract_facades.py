@@ -124,9 +124,9 @@ def extract_facades(
 ):
     """Find the facades of buildings and draw each as a vertical polygon with its common borders.
 
-    Steep planes are found and fitted by least squares. Each gets a boundary in its own plane: that of a triangulation
-    without its long edges, drawn in straight edges and pushed out to hold its points. Where two facades meet, their
-    border is the intersection line of the planes. A curved, recessed or protruding front is several planes.
+    Steep planes are found and fitted by least squares. Each gets a boundary in its own plane: the rim of a
+    triangulation without its long edges, drawn in straight edges and pushed out to hold its points. Where two facades
+    meet, their border is the intersection line of the planes. A curved, recessed or protruding front is several planes.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def extract_facades(
 
 
 def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:
-    """Return the mask of points (n,) that share a cell in plan with points far above or below, as those of walls do."""
+    """Return the mask of points (n,) that share a cell in plan with points far above or below, as walls have them."""
     cells, cell = distinct(grid_over(xyz, _PLAN_CELL).number(xyz))
     low, high = np.full(len(cells), np.inf), np.full(len(cells), -np.inf)
     np.minimum.at(low, cell, xyz[:, 2])
@@ -288,7 +288,7 @@ def split_at_gaps(xyz: np.ndarray, segment_id: np.ndarray, gap: float) -> np.nda
 
 
 def _leave_low(xyz: np.ndarray, pieces: np.ndarray, min_height: float) -> None:
-    """Take pieces that are too low for a facade out, in place: nearly half of those of a street need no boundary."""
+    """Take pieces that are too low for a facade out, in place: nearly half of a street's need no boundary."""
     for points in members(pieces).values():
         if np.ptp(xyz[points, 2]) < _SEEN_HEIGHT * min_height:
             pieces[points] = 0

@@ -23,7 +23,7 @@ _FIRST_ANGLE = 10.0
 # Rounds that follow, in each of which that angle is one degree larger (paper, the same step).
 _ROUNDS = 30
 
-# Longest edge of a triangle for key points (spacings): that of the paper (section 3.3, step 2).
+# Longest edge of a triangle for key points (spacings), from the paper (section 3.3, step 2).
 _PUBLISHED_EDGE = 1.5
 
 # Longest edge of a triangle for straight edges (spacings): chance takes no bites out of evenly scattered points.
@@ -63,7 +63,7 @@ _HIDDEN = (5.0, 2.5)
 # Times the boundary is pushed out: a corner that moves may leave a point of the edge next to it outside.
 _PUSHES = 4
 
-# A corner may move this many times as far as the edges next to it: those of less than 39° would become spikes.
+# A corner may move this many times as far as the edges next to it: a corner of less than 39° would become spikes.
 _MITER = 3.0
 
 # Sine of the angle below which two edges count as parallel: their lines meet too far away for an accurate position.

@@ -212,7 +212,7 @@ def _opening(
 def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Return a box with its sides moved to the edges of the wall, and the share (4,) of each side with wall next to it.
 
-    The shares are those of the left, right, lower and upper side. A side without a straight edge stays where it is.
+    The shares are of the left, right, lower and upper side. A side without a straight edge stays where it is.
     """
     bounded, shares = box.copy(), np.zeros(4)
     for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1)):
@@ -248,7 +248,7 @@ def _shape(box: np.ndarray, positions: np.ndarray, spacing: float) -> tuple[np.n
     if share >= _RECTANGULAR:
         return rectangle, 1.0
     corners = inside[hull.vertices]
-    # Points that a cloud holds twice may both be vertices, as the hull is that of slightly moved points.
+    # Points that a cloud holds twice may both be vertices, as the hull is of slightly moved points.
     corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
     if len(corners) < 3:
         return rectangle, 1.0

@@ -101,7 +101,7 @@ def segment_facade_lines(
     ] = 5,
     monitor=None,
 ):
-    """Divide a vehicle's scan lines into straight segments, and label those of ground, facades and other objects.
+    """Divide a vehicle's scan lines into straight segments, and label ground, facades and other objects.
 
     Each line is split where it bends or leaves a gap. A segment gets its slope, the mean of its ends, its height over
     the lowest one of its line and its distance from the scanner. Level and low ones are ground; steep ones that are
@@ -155,7 +155,7 @@ def segment_facade_lines(
             "pulses, as the scanner recorded it."
         )
     source = np.zeros(len(xyz), np.int64) if point_source_id is None else point_source_id.astype(np.int64)
-    # Points with one time keep the order of their coordinates, whatever that of the file.
+    # Points with one time keep the order of their coordinates, whatever the order of the file.
     order = np.lexsort((*xyz.T, gps_time, source))
     duration = _period(gps_time[order], source[order]) if line_duration is None else line_duration
     monitor.resolved(line_duration=duration)

@@ -18,7 +18,7 @@ class _Rules:
 
     # A wall is of the footprint within this distance (m): eaves jut out up to 1 m, recesses are 1 to 2 m deep.
     reach: float = 1.6
-    # Ends of two walls within this distance (m) are one corner, and so are those of a wall and of a footprint.
+    # Ends of two walls within this distance (m) are one corner, and so are the ends of a wall and of a footprint.
     corner: float = 0.3
     # Walls and edges run the same way within this angle (sine: 20°).
     same_way: float = 0.34

@@ -29,7 +29,7 @@ def classify_dimensionality(linearity, planarity, scattering, *, monitor=None):
     """Classify points as linear, planar or volumetric by the largest of linearity, planarity and scattering.
 
     Wires, poles and edges are linear, ground, roofs and walls planar, crowns and bushes volumetric. Nothing has to be
-    trained; the scale of structure and noise is that of the neighborhood of 'Compute features', which comes before.
+    trained; the scale of structure and noise is set by the neighborhood of 'Compute features', which comes before.
 
     Parameters
     ----------

@@ -218,7 +218,7 @@ def compute_features(
     The covariance is that of the point together with its neighbors, with their number as divisor; its eigenvalues are
     l1, the largest, to l3, and those of its part in plan m1 and m2. L, P and S are linearity, planarity and scattering.
     Coordinates are taken relative to each point, so that large ones lose nothing. Surface variation is what other
-    programs call curvature; verticality is that of Demantké et al.
+    programs call curvature; verticality is as by Demantké et al.
 
     Where the cloud has fewer points than a neighborhood asks for, it is made of all of them. Of several points equally
     far at the end of a neighborhood of 'nearest' or 'optimal', each counts in part, so that their order in the cloud

@@ -98,7 +98,7 @@ def extract_footprints(
 ):
     """Outline each building as a polygon with its area, heights, volume, entropy and confidence.
 
-    Each position in plan has a share of every building: that of the points around it. Outlines follow the lines
+    Each position in plan has a share of every building: its share of the points around. Outlines follow the lines
     where a building has the largest share, in straight walls along the two main directions of the building where that
     explains the line; other walls keep their own direction. Buildings that touch share their border exactly, and so do
     the houses of a row.
@@ -112,14 +112,14 @@ def extract_footprints(
     cluster_id : ndarray of shape (n,), optional
         Building of each point, from 1; points of 0 are left out. Without it, points that lie together are a building.
     height_above_ground : ndarray of shape (n,), optional
-        Heights (m), for the attributes and to distinguish low parts from the houses of a row; for these it is otherwise
-        taken over the lowest point of the buildings that lie together or next to them.
+        Heights (m), for the attributes and to distinguish low parts from the houses of a row. Without it, the latter
+        are measured from the lowest point of the buildings that lie together or next to them.
     cluster_entropy, confidence, weakest_evidence : ndarray of shape (n,), optional
         What :func:`.classify_buildings` returns of these names, for the attributes only.
     reason : ndarray of shape (n,), optional
         Why points are called building, see :class:`~..cloud.reasons.Reason`, for the attributes and to find walls.
     reviewed : LayerFeatures, optional
-        Footprints with decisions: outlines that were kept or changed take the place of those of the points that lie in
+        Footprints with decisions: outlines that were kept or changed replace the outlines of the points that lie in
         them, deleted ones get none.
 
     Returns
@@ -138,7 +138,7 @@ def extract_footprints(
 
     Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the
     other points around them, and against what is missing to the density of the roofs around. Gaps with roofs all
-    around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
+    around are filled. The spacing is measured on the building points of the whole cloud or survey, in steps of a fifth.
 
     The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared
     distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The

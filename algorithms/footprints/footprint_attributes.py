@@ -232,7 +232,7 @@ def _eave_heights(
 ) -> np.ndarray:
     """Return the height (b,) of the roof at the outer positions of its outline (a, 2), continued from the roof there.
 
-    Many points at an outline are those of the wall below, down to where they are no longer taken for a roof's.
+    Many points at an outline are of the wall below, down to where they are no longer taken for a roof's.
     """
     border, defined = along[is_outer], np.isfinite(height)
     plan, height = plan[defined], height[defined]
@@ -262,7 +262,7 @@ def _eave_heights(
 
 
 def surface_heights(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the heights of a roof's surface, which has that of the nearest point at each position.
+    """Return the heights of a roof's surface: at each position the nearest point's.
 
     Parameters
     ----------

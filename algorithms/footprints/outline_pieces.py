@@ -26,7 +26,7 @@ _TOGETHER = 4.0
 # Distance (m) up to which the walls of neighbors count for directions: across a street.
 _NEIGHBORS = 30.0
 
-# Weight of all neighbors together, as a share of that of the building itself: a shed has the directions of the houses
+# Weight of all neighbors together, as a share of the building's own: a shed has the directions of the houses
 # around, and a house that is turned against them has its own.
 _INFLUENCE = 0.5
 
@@ -71,7 +71,7 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
 def pieces_alone(roof: np.ndarray, spacing: float, least_area: float) -> tuple[Shares, list[Piece], np.ndarray]:
     """Return the shares, the pieces and the main directions (k,), °, of one building with the roof points (n, 2), m.
 
-    ``least_area`` (m²) is that of its pieces and holes.
+    ``least_area`` (m²) is the least area of its pieces and holes.
     """
     shares = find_shares(
         roof, np.ones(len(roof)), np.ones(len(roof), np.int64), np.zeros((0, 2)), np.zeros(0), spacing

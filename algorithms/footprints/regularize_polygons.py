@@ -113,7 +113,7 @@ def regularize_polygons(
     Notes
     -----
     Walls are found as in 'Extract footprints', by one dynamic program over all corners and directions of a ring, from
-    samples along it. The main directions of a building are weighed with those of the buildings across a street. The
+    samples along it. The main directions of a building are weighed with the buildings across a street. The
     walls of a block divide the plane into cells, and a minimum cut gives each to a polygon or to the ground, so that
     polygons do not overlap. Then whole walls are moved along their normals, by little in the sum of squares, until
     every polygon has its area again.

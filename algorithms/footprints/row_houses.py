@@ -33,7 +33,7 @@ class RowRules:
         0.2, "m", "physics: of a step between parallel roofs and of a wall over both; four times the noise of a scan"
     )
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
-    large_step: float = rule(1.0, "m", "physics: a step between any two roofs, that of half a storey")
+    large_step: float = rule(1.0, "m", "physics: a step between any two roofs, half a storey high")
     least_share: float = rule(
         0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
     )

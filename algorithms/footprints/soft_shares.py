@@ -227,6 +227,6 @@ def smoothed(field: np.ndarray, width: float) -> np.ndarray:
 
 
 def spread_out(label: np.ndarray) -> np.ndarray:
-    """Return labels (rows, columns) in which each node without one, 0, has that of the nearest node with one."""
+    """Return labels (rows, columns) in which each node without one, 0, has the nearest node's."""
     nearest = ndimage.distance_transform_edt(label == 0, return_distances=False, return_indices=True)
     return label[tuple(nearest)]

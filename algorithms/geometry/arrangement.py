@@ -58,7 +58,7 @@ class Arrangement:
     Notes
     -----
     A cell is identified by the lines to whose left it lies, as a sum of one random number for each. On the way along
-    a line that number changes only where another line is crossed, so that the time is that of sorting the crossings.
+    a line that number changes only where another line is crossed, so that it takes as long as sorting the crossings.
     """
 
     def __init__(self, points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:

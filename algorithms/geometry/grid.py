@@ -29,7 +29,7 @@ _TABLE = 4
 class Grid:
     """Cells of ``size`` (m), ``rows`` of them northward and ``columns`` eastward.
 
-    They are those of a lattice from ``origin``, from column and row ``first`` of it on. A cell's number is
+    They are cells of a lattice from ``origin``, from column and row ``first`` of it on. A cell's number is
     ``row * columns + column``. An empty border of one cell keeps the neighbors of the outermost cells apart, so that
     numbers can be compared by their differences.
     """
@@ -84,7 +84,7 @@ def fixed_grid_over(xyz: np.ndarray, size: float) -> Grid:
 def raster_cells(xyz: np.ndarray, size: float, margin: int) -> tuple[np.ndarray, np.ndarray]:
     """Return row and column (n,), int64, of each point's cell in a raster with ``margin`` empty cells around.
 
-    The cells are those of :func:`fixed_grid_over`.
+    The cells are as of :func:`fixed_grid_over`.
     """
     column, row = (number - (number.min() - margin) for number in (lattice(xyz[:, axis], size) for axis in (0, 1)))
     return row, column
@@ -128,7 +128,7 @@ def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Notes
     -----
-    As ``numpy.unique``; where numbers are not far apart, as those of occupied cells, without sorting.
+    As ``numpy.unique``; where numbers are not far apart, as in occupied cells, without sorting.
     """
     least = int(numbers.min()) if len(numbers) else 0
     length = int(numbers.max()) - least + 1 if len(numbers) else 0

@@ -47,7 +47,7 @@ _ALONG = 3.0
 # Least angle between the first direction and a second one (°).
 _APART = 12.0
 
-# Least weight of a second direction, as a share of that of the first.
+# Least weight of a second direction, as a share of the first one's.
 _LEAST_SHARE = 0.25
 
 

@@ -55,7 +55,7 @@ class Prices:
     #: 2 points per m² in 36 of 40 draws, with 0.8 in 11.
     obtuse: float = 0.8
     step: float = 2.0  #: Step or turn by 180°, both of which are drawn with two corners
-    #: Corner that turns by 170° or more. Corners from 110° on have a price between that of a right angle and this.
+    #: Corner that turns by 170° or more. Corners from 110° on have a price between a right angle's and this.
     #: One of 116° costs as much as the two obtuse ones that would cut it off; with 4.0 these are drawn.
     sharp: float = 2.8
     #: Edge along the second main direction. With 1.0, the short side of a house whose front is oblique was drawn

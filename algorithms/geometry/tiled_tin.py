@@ -2,7 +2,7 @@
 
 A triangle belongs to the Delaunay triangulation of all nodes when none of them lies inside its circle, whichever nodes
 it was found among. So only the nodes close to the points of a tile are triangulated, and every triangle under a point
-is tested by that rule: the surface is that of one triangulation, without seams.
+is tested by that rule: the surface is one triangulation's, without seams.
 
 The far corners that surround the nodes of a tile take no part: where one of them spoils the flat triangles along the
 hull of the nodes, these are triangulated again without it.

@@ -15,7 +15,7 @@ _AT_ONCE = 250_000
 # A voxel and its neighbors, sorted; the voxel itself is in the middle.
 _STEPS = np.insert(neighbor_offsets(26), 13, 0, axis=0)
 
-# Binomial weights, 1 2 1 along each axis, whose sum is one: they fall with the distance as those of a Gaussian do.
+# Binomial weights, 1 2 1 along each axis, whose sum is one: they fall with the distance as a Gaussian does.
 _BINOMIAL = np.prod(2.0 - np.abs(_STEPS), axis=1) / 64
 
 FILTERS: dict[str, Callable[[np.ndarray], np.ndarray]] = {

@@ -58,7 +58,7 @@ def skeleton(cells: np.ndarray, monitor: Monitor) -> np.ndarray:
     Directional thinning removes voxels that face the background on one side, from the six sides in turn until nothing
     changes. They must be simple (their removal changes no component, tunnel or cavity: Malandain & Bertrand 1992) and
     no end of a line (exactly one neighbor). Within a side, the voxels of each of the eight parities of column, row and
-    layer are removed together. No two of these are neighbors: the result is that of removing them one by one, and the
+    layer are removed together. No two of these are neighbors: the result is as if they were removed one by one, and the
     topology is kept exactly. Objects have 26, the background 6 neighbors.
 
     Palágyi & Kuba remove voxels by templates in eight sub-iterations; the result there is as thin, but other

@@ -52,7 +52,7 @@ def classify_vegetation(
         str,
         Param(
             "Height above the ground from which vegetation is medium (4), and that from which it is high (5); below "
-            "both it is low (3). The last two are those of the French and the Australian surveys.",
+            "both it is low (3). The last two are of the French and the Australian surveys.",
             label="Heights of medium and high vegetation",
             choices=tuple(HEIGHTS),
         ),

@@ -71,7 +71,7 @@ def classify_water(
     Notes
     -----
     Gaps up to 20 m wide belong to the cloud. Shadows of buildings are gaps, too, but the ground in them is as high as
-    next to them; roofs are no ground. A point is on water if its height differs from that of the nearest lowest point
+    next to them; roofs are no ground. A point is on water if its height differs from the nearest lowest point
     of the water body by at most three standard deviations of the noise. It also lies at most three cells from the body.
 
     References

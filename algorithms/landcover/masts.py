@@ -85,7 +85,7 @@ def _mast(plan: np.ndarray, height: np.ndarray, top: float, reach: float) -> np.
     in_trunk = (height >= _RULES.trunk[0] * top) & (height <= _RULES.trunk[1] * top) & (out <= 2 * radius)
     part = (height[in_trunk] / _RULES.part).astype(np.int64)
     inner_minus_outer = np.bincount(part, np.where(out[in_trunk] <= radius, 1, -1))
-    # A crown next to a mast surrounds some parts of its trunk, that of a tree most of them.
+    # A crown next to a mast surrounds some parts of its trunk, a tree's crown most of them.
     if (inner_minus_outer < 0).sum() > _RULES.filled * (np.bincount(part) > 0).sum():
         return nothing
     return inside & ((out <= radius) | ((height > _RULES.trunk[1] * top) & (out <= _RULES.arms * top)))

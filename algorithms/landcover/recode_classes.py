@@ -42,7 +42,7 @@ def recode_classes(
     codes: Annotated[
         str,
         Param(
-            "Whose class codes are written: those of ASPRS, which all other steps read, or those of the Dutch, the "
+            "Whose class codes are written: the codes of ASPRS, which all other steps read, or of the Dutch, the "
             "French or the American survey.",
             label="Codes to write",
             choices=tuple(CODES),
@@ -58,7 +58,7 @@ def recode_classes(
     ] = "",
     monitor=None,
 ):
-    """Replace class codes by those of an agency, or by one's own.
+    """Replace class codes by an agency's, or by one's own.
 
     The last step of a chain: every other step reads the codes of ASPRS.
 

@@ -58,7 +58,7 @@ def find_solid_objects(
     has_passed : ndarray of shape (n,), bool
         Whether their pulses are known to have had several returns.
     sampling : CloudSampling
-        That of the whole cloud.
+        How the whole cloud was sampled.
     monitor : Monitor
         Receives progress.
     """
@@ -85,7 +85,7 @@ def are_opaque(xyz: np.ndarray, has_passed: np.ndarray, sampling: CloudSampling,
     has_passed : ndarray of shape (n,), bool
         Whether their pulses are known to have had several returns.
     sampling : CloudSampling
-        That of the whole cloud.
+        How the whole cloud was sampled.
     monitor : Monitor
         Receives progress.
     """

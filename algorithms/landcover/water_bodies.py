@@ -24,7 +24,7 @@ class _Rules:
     least_cell: float = 1.0  #: Least side of the cells, m
     cell_spacings: float = 1.5  #: Least side of the cells in point spacings, so that cells of land hold a point
     window: float = 5.0  #: Side (m) of the square in which pulses are counted: the least width of a ditch that is seen
-    most_pulses: float = 0.5  #: Most pulses, as a share of those of land: canals and simulated rivers give 0.1 to 0.4
+    most_pulses: float = 0.5  #: Most pulses, as a share of land's: canals and simulated rivers give 0.1 to 0.4
     most: float = 0.5  #: Least share of a body's ground that has its level, and of the ground around it that is higher
     #: Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water
     land: float = 0.25
@@ -99,7 +99,7 @@ def _without_gaps(is_seen: np.ndarray, reach: float) -> np.ndarray:
 def _bodies(
     candidates: np.ndarray, is_low: np.ndarray, lowest: np.ndarray, min_cells: float
 ) -> tuple[np.ndarray, Optional[np.ndarray]]:
-    """Return the cells of water bodies, and the level at each cell: that of the nearest cell with water; or None."""
+    """Return the cells of water bodies, and the level at each cell: the nearest water's; or None."""
     part, _ = ndimage.label(candidates, EIGHT)
     size, seen = np.bincount(part.ravel()), np.bincount(part[is_low], minlength=part.max() + 1)
     is_water = np.zeros(candidates.shape, bool)

@@ -128,7 +128,7 @@ def compute_building_heights(
     xyz : ndarray of shape (n, 3)
         Coordinates (m).
     classification : ndarray of shape (n,)
-        Classes; points of class 6 are of buildings, those of class 2 are the ground.
+        Classes; points of class 6 are of buildings, points of class 2 are the ground.
     gps_time : ndarray of shape (n,), float64, optional
         Adjusted standard GPS time (s), for the date; times of a week (0 to 604,800 s) have none.
     footprints : LayerFeatures

@@ -36,7 +36,7 @@ HISTOGRAM = HistogramRules()
     title="Classify noise by height histogram",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,denoise,lasnoise",
     writes=("classification",),
-    # About the width of an automatic cell: histograms are those of a cell and the cells around it.
+    # About the width of an automatic cell: histograms count a cell and the cells around it.
     reach=SCENE.ground_within,
     cost=1.5,
 )

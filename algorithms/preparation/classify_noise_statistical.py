@@ -49,7 +49,7 @@ def classify_noise_statistical(
     deviations: Annotated[
         float,
         Param(
-            "How far a point's mean distance may lie over that of the whole cloud. Smaller values remove more, "
+            "How far a point's mean distance may lie over the mean of the whole cloud. Smaller values remove more, "
             "and sparse parts of the scene with it.",
             label="Standard deviations",
             within="[0, 100]",

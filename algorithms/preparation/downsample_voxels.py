@@ -72,7 +72,7 @@ def downsample_voxels(
     """Leave one point in every occupied voxel: the center of gravity of its points.
 
     Evens out the density of scans, where surfaces that are near or scanned twice have many times the points of others,
-    and makes clouds smaller. The class is that of most points of the voxel, VoxelCount their number. Everything else
+    and makes clouds smaller. The class is the most frequent one in the voxel, VoxelCount their number. Everything else
     but the position comes from the point nearest to the center.
 
     Parameters

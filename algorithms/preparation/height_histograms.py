@@ -52,7 +52,7 @@ def own_histogram(cell: np.ndarray, level: np.ndarray) -> Histogram:
 def with_borrowed_ranges(
     grid: Grid, cells: np.ndarray, low: np.ndarray, high: np.ndarray, slack: int = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Give cells without a range that of the nearest with one, ``slack`` levels wider; without any, return no cells.
+    """Give cells without a range the nearest cell's, ``slack`` levels wider; without any, return no cells.
 
     Parameters
     ----------

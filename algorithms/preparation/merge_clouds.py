@@ -11,7 +11,7 @@ import numpy as np
 
 from ..stage import Monitor, Param, stage
 
-# Largest deviation of a matrix times its transpose from the identity: that of a rotation with four decimals. The
+# Largest deviation of a matrix times its transpose from the identity: a rotation with four decimals has it. The
 # nearest rotation is taken.
 _RIGID = 2e-4
 
@@ -75,7 +75,7 @@ def merge_clouds(
     The clouds may differ in scale, offset, point format and extra dimensions. The result has the finest scale, the
     smallest point format that holds the colors, times and waveform references of all, and all extra dimensions. What a
     cloud lacks is NaN, or 0 in whole numbers, colors and times. It has the coordinate reference system that the clouds
-    have; different ones are refused, and a cloud without any is taken to be in that of the others.
+    have; different ones are refused, and a cloud without any is taken to be in the system of the others.
 
     Parameters
     ----------

@@ -156,7 +156,7 @@ def _has_form(points: np.ndarray, compact: float) -> bool:
 
 
 def _share_of_lines(points: np.ndarray) -> float:
-    """Return the share of points whose nearest ones lie along a line, as those of bundled wires do."""
+    """Return the share of points whose nearest ones lie along a line, as in bundled wires."""
     near = points[spatial.cKDTree(points).query(points, min(_BUNDLE_NEIGHBORS, len(points)))[1]]
     near -= near.mean(axis=1, keepdims=True)
     eigenvalues = np.linalg.eigvalsh(np.einsum("nki,nkj->nij", near, near))

@@ -151,7 +151,7 @@ class _Surface:
         """Fit the surface around the ``wanted`` cells (positions in ``cells``).
 
         ``lowest`` and ``middle`` are the points of each cell at these ranks in height. Up to three neighbors may hold
-        companions of a low point; most points of such a cell are on the surface, though, unlike those of a cell
+        companions of a low point; most points of such a cell are on the surface, though, unlike the points of a cell
         beyond an edge or farther along a ditch.
         """
 

@@ -80,7 +80,7 @@ _OBJECTS = Layer(
             "True buildings",
             "Polygon",
             "Polygons of the buildings in place of a reference cloud: a base map, a cadastre or an earlier result. Of "
-            "the points within, all are building, also those of crowns over a roof.",
+            "the points within, all are building, crowns over a roof included.",
             optional=True,
         ),
     ),
@@ -104,7 +104,7 @@ def assess_buildings(
     min_area: MinBuildingArea = 10.0,
     monitor=None,
 ):
-    """Compare the buildings of a classification with those of a reference: completeness, correctness, F-score, quality.
+    """Compare the buildings of a classification with a reference: completeness, correctness, F-score, quality.
 
     It counts per point, per cell and per object. Cells are counted by the topmost point, which leaves walls out: some
     references call them building, some don't. An object is found when at least half of it is. A layer shows which

@@ -68,7 +68,7 @@ def assess_classes(
     ] = "0, 1; 3-5; 7, 18; 13-16",
     monitor=None,
 ):
-    """Compare all classes with those of a reference: confusion matrix, accuracy, kappa, and figures of each class.
+    """Compare all classes with a reference: confusion matrix, accuracy, kappa, and figures of each class.
 
     The page shows the matrix as a heat map, completeness, correctness, F-score and intersection over union of each
     class, and a map of the errors.

@@ -56,7 +56,7 @@ _BUILDINGS = Layer(
         Field("area", float, "area", "m²"),
         Field("covered", float, "share of it that the other layer has too, 0 to 1"),
         Field("iou", float, "intersection over union with the best counterpart, 0 to 1"),
-        Field("hausdorff", float, "greatest distance between its outline and that of the best counterpart", "m"),
+        Field("hausdorff", float, "greatest distance between its outline and its best counterpart's", "m"),
         Field("polis", float, "mean distance of the corners of both outlines from the other one (PoLiS)", "m"),
         Field("corners", int, "its corners"),
         Field("counterpart_corners", int, "corners of the best counterpart"),
@@ -299,7 +299,7 @@ def _table(
     pairs: tuple[np.ndarray, np.ndarray],
     monitor: Monitor,
 ) -> dict:
-    """Return the attributes of all buildings: those of the reference, then the footprints that are invented."""
+    """Return the attributes of all buildings: of the reference, then of footprints that are invented."""
     n, invented = len(true.area), np.flatnonzero(match.is_invented)
     nothing, zero = np.full(len(invented), np.nan), np.zeros(len(invented), np.int64)
     has_footprint = match.best >= 0

@@ -32,7 +32,7 @@ def assess_ground(
     ignored_classes: IgnoredClasses = "7, 9, 17, 18, 26, 64-67",
     monitor=None,
 ):
-    """Compare the ground of a classification with that of a reference: type I, type II and total error, kappa.
+    """Compare the ground of a classification with a reference: type I, type II and total error, kappa.
 
     Type I errors are ground that was lost, type II errors are objects that were taken for ground.
 

@@ -155,7 +155,7 @@ def assess_models(
     Distances are differences in height; those above ``RULES.farthest`` m count as ``RULES.farthest`` m. A point lies on
     a face within the tolerance across its plane. Points more than a meter below both the model and others of class 6
     next to them are of walls and are not counted. A face without points is unseen, neither matched nor invented. The
-    volume is that of prisms between the faces and the lowest point of class 6 or 2 in the building's box.
+    volume is the sum of prisms between the faces and the lowest point of class 6 or 2 in the building's box.
 
     References
     ----------
@@ -341,7 +341,7 @@ def _volume(faces: list[_Face], points: _RoofPoints) -> float:
             cross = position[:-1, 0] * position[1:, 1] - position[1:, 0] * position[:-1, 1]
             # The exterior comes first; all others are holes.
             cross = cross if (cross.sum() > 0) == (number == 0) else -cross
-            # Triangles from the first corner; a plane's mean over each is that of its corners.
+            # Triangles from the first corner; a plane's mean over each is the mean of its corners.
             height = (face.height(ring[:-1, :2]) + face.height(ring[1:, :2]) + face.height(ring[:1, :2])) / 3 - base
             total += float((0.5 * cross * height).sum())
     return total

@@ -50,7 +50,7 @@ def assess_segments(
     ] = 1,
     monitor=None,
 ):
-    """Compare segments with those of a reference: which are correct, cut up, run together, missed or invented.
+    """Compare segments with a reference: which are correct, cut up, run together, missed or invented.
 
     A segment is correct if it and one of the reference share most points of both. One of the reference is
     over-segmented if several segments, most of each within it, make up most of it. Several of the reference are

@@ -110,7 +110,7 @@ def compare_corners(
     ] = None,
     monitor=None,
 ):
-    """Compare the corners of footprints with those of an older map: distances, shift, buildings found, missed and new.
+    """Compare the corners of footprints with an older map: distances, shift, buildings found, missed and new.
 
     Buildings are the same where they overlap. Each corner of the old map is then matched with at most one of the
     footprints, the nearest pairs first, and arrows show from where to where it has moved.
@@ -236,7 +236,7 @@ def _same_corners(
 
 
 def _values(old: Corners, link: _Link, moved: np.ndarray) -> dict[str, float]:
-    """Return the measures of the comparison; those of distances are NaN without corners that match."""
+    """Return the measures of the comparison; distances are NaN without corners that match."""
     distance = np.hypot(*moved.T)
     undefined = not len(distance)
     return {
@@ -288,7 +288,7 @@ def _buildings(
     link: _Link,
     pairs: tuple[np.ndarray, np.ndarray],
 ) -> LayerFeatures:
-    """Return the layer of buildings: those of the old map, then the new ones."""
+    """Return the layer of buildings: of the old map, then the new ones."""
     distance = np.hypot(*(others.xy[pairs[1]] - corners.xy[pairs[0]]).T)
     building, n = corners.building[pairs[0]], len(old.names)
     matched = np.bincount(building, minlength=n)

@@ -13,7 +13,7 @@ _STEP = 0.1
 
 
 def hausdorff(first: list[np.ndarray], second: list[np.ndarray]) -> float:
-    """Return the greatest distance (m) from the outline of one polygon to that of the other, both ways."""
+    """Return the greatest distance (m) between the outlines of two polygons, both ways."""
     return max(_farthest(first, second), _farthest(second, first))
 
 

@@ -142,7 +142,7 @@ def update_map(
     xyz : ndarray of shape (n, 3)
         Coordinates (m).
     classification : ndarray of shape (n,)
-        Classes; points of class 6 are of buildings, those of class 2 are the ground.
+        Classes; points of class 6 are of buildings, points of class 2 are the ground.
     cluster_id : ndarray of shape (n,), optional
         Building of each point, from 1, to extract footprints.
     reference_xyz : ndarray of shape (m, 3), optional
@@ -158,7 +158,7 @@ def update_map(
     -------
     updated_map : LayerFeatures
         The buildings of the map that are not gone, in their order, then the new ones, with the attributes of the map
-        after those of the update. Names that are used become ``map_…``.
+        after the attributes of the update. Names that are used become ``map_…``.
     buildings_gone : LayerFeatures
         Those that are gone, with their attributes.
     report : Report

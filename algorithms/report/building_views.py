@@ -119,7 +119,7 @@ def _view(
     lines: list[tuple[np.ndarray, str]],
     colors: np.ndarray,
 ) -> str:
-    """Return the SVG of points (n, 2), those of the greatest ``depth`` (n,) drawn last, and of colored lines over them.
+    """Return the SVG of points (n, 2), the greatest ``depth`` (n,) drawn last, and of colored lines over them.
 
     All are in meters within the box from ``low`` to ``high`` (2,).
     """

@@ -138,7 +138,7 @@ def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
 def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, str]) -> str:
     """Return the HTML of a map, north up, of the outcome of the topmost point of each pixel.
 
-    ``xyz`` (n, 3) is in m, ``outcome`` (n,) REST, HIT, MISS or FALSE; ``names`` are those of these four in the legend.
+    ``xyz`` (n, 3) is in m, ``outcome`` (n,) REST, HIT, MISS or FALSE; ``names`` are what the legend calls these four.
     """
     low, high = plan_box(xyz)
     extent = high - low

@@ -78,7 +78,7 @@ def classify_bridges(
     Notes
     -----
     This is the second step of 'Classify ground segments', for the ground of any filter and without segments. All points
-    can be of a deck, except those of classes that are no decks.
+    can be of a deck, unless their class is no deck.
 
     References
     ----------
@@ -115,7 +115,7 @@ def classify_bridges(
     classes = classification.astype(np.uint8)
     classes[used[classification[used] == PointClass.BRIDGE_DECK]] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
-    # Ground points on a deck are those of cars and parapets; ground that rises next to the deck stays ground.
+    # Ground points on a deck are of cars and parapets; ground that rises next to the deck stays ground.
     classes[used[ground[on_decks(points[ground], points[is_deck], LASER.foot)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     return classes

@@ -17,7 +17,7 @@ from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
 from .bridge_decks import DECK, Decks, cell_size
 
-# A segment is an object if it is raised along at least this share of its border, that of the cloud included.
+# A segment is an object if it is raised along at least this share of its border, the cloud's edge included.
 _RAISED_BORDER = 0.5
 
 # Steepest terrain (degrees) within a cell: about the angle of repose of soil.

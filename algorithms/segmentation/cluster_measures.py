@@ -165,7 +165,7 @@ def occupied_cells(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[
     """
     grid = fixed_grid_over(xyz, _cell_size(density))
     member = group >= 0
-    # Numbers of occupied cells are small, those of cells between far points times the groups may be too large.
+    # Numbers of occupied cells are small, numbers of cells between far points times the groups may be too large.
     cells, which = distinct(grid.number(xyz)[member])
     owner, position = np.divmod(np.unique(group[member].astype(np.int64) * len(cells) + which), max(len(cells), 1))
     return grid, owner, cells[position]

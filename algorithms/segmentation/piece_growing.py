@@ -25,7 +25,7 @@ class Growth:
 
     tolerance: float  #: Distance of both ends of a piece from the plane, m
     seed_deviation: float  #: Root mean square distance of the points of a seed from its plane, m
-    is_planar: bool  #: Whether the plane is that of the whole region, or of the pieces next to the new one
+    is_planar: bool  #: Whether the plane is fitted to the whole region, or to the pieces next to the new one
 
 
 class Regions:
@@ -59,7 +59,7 @@ class Regions:
         self.ends = pieces.ends
 
     def grow(self, min_overlap: float, monitor: Monitor) -> None:
-        """Grow a region from each seed whose pieces are still free, those of most points first."""
+        """Grow a region from each seed whose pieces are still free, the seed of most points first."""
         size = self.pieces.points.count
         triples = self.adjacency.triples(size, min_overlap)
         is_flat = self._flat(triples)

@@ -19,7 +19,7 @@ from ..threads import ROWS_AT_ONCE, in_chunks
 
 @dataclass(frozen=True)
 class PatchRules:
-    """When neighbors share a smooth surface; deviations are those of points from planes."""
+    """When neighbors share a smooth surface; deviations are distances of points from planes."""
 
     same_surface: float = rule(
         3.5, "deviations", "statistics: points and planes of a surface, each with their own error"
@@ -52,7 +52,7 @@ def segment_patches(
 ) -> np.ndarray:
     """Group those of some points that lie on smooth surfaces.
 
-    Each point takes the smoothest plane among those of its neighbors that hold it, so that points at edges and ridges
+    Each point takes the smoothest plane among its neighbors' planes that hold it, so that points at edges and ridges
     belong to the nearest surface and not to a plane across the edge. Points whose planes agree then make one patch.
 
     Parameters
@@ -187,7 +187,7 @@ def _links(
         apart = np.nonzero(is_link & (plane[neighbors] != plane[rows, None]))
         a, b = rows[apart[0]], neighbors[apart]
         of_a, of_b = planes.planes[plane[a]], planes.planes[plane[b]]
-        # Normals point upward, those of walls to either side by chance.
+        # Normals point upward, on walls to either side by chance.
         same = np.abs(np.einsum("ij,ij->i", of_a[:, :3], of_b[:, :3])) >= np.cos(np.radians(PATCHES.same_direction))
         same &= np.abs(np.einsum("ij,ij->i", points[b], of_a)) <= reach
         same &= np.abs(np.einsum("ij,ij->i", points[a], of_b)) <= reach

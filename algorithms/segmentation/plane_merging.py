@@ -29,7 +29,7 @@ _LEAST_KEPT = 0.5
 # Points that a thread works on between two reports.
 _CHUNK = 200_000
 
-# Boxes of the first array of a pair with those of the second.
+# Boxes of the first array of a pair with boxes of the second.
 _Pairs = list[tuple[np.ndarray, np.ndarray]]
 
 

@@ -55,7 +55,7 @@ class Recording:
     def order(self, xyz: np.ndarray) -> np.ndarray:
         """Return the order (n,) in which points (n, 3) were recorded, source by source.
 
-        Points with one time keep the order of their coordinates; without times all keep that of the cloud.
+        Points with one time keep the order of their coordinates; without times all keep the order of the cloud.
         """
         source = np.zeros(len(xyz), np.uint16) if self.point_source_id is None else self.point_source_id
         if not self.has_times:
@@ -100,7 +100,7 @@ def _varies(values: Optional[np.ndarray]) -> bool:
 
 
 def _is_long(step: np.ndarray, factor: float) -> np.ndarray:
-    """Return the mask of steps (n,) that are longer than ``factor`` times the median one, those of 0 left out."""
+    """Return the mask of steps (n,) that are longer than ``factor`` times the median one, zeros left out."""
     size = np.abs(step)
     positive = size[size > 0]
     return size > factor * np.median(positive) if len(positive) else np.zeros(len(step), bool)

@@ -85,7 +85,7 @@ def segment_clusters(
 
     Notes
     -----
-    The clusters are those of scikit-learn's DBSCAN on the same points in the same order: a point within the radius
+    The clusters are as by scikit-learn's DBSCAN on the same points in the same order: a point within the radius
     of cores of several clusters goes to the first of them. Memory follows the points, not their neighbors.
 
     References

@@ -22,10 +22,10 @@ _POINTS_IN_VOXEL = 20.0
 # Least side of a voxel (tolerances): noise around a surface must not fill it.
 _TOLERANCES_IN_VOXEL = 10.0
 
-# Smallest voxel (m), that of the paper.
+# Smallest voxel (m), from the paper.
 _SMALLEST_VOXEL = 0.5
 
-# Largest voxel (m), that of the paper.
+# Largest voxel (m), from the paper.
 _LARGEST_VOXEL = 3.0
 
 

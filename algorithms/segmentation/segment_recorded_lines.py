@@ -110,7 +110,7 @@ def segment_recorded_lines(
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
-    """Split recorded scan lines into straight pieces and merge those of adjacent lines to planes or smooth surfaces.
+    """Split recorded scan lines into straight pieces, and merge pieces of adjacent lines to planes or smooth surfaces.
 
     Lines come from GPS times, scan angles and the scanner's marks; without times, from the order of the points. Each
     is split at its farthest point until its pieces are straight. Three long pieces side by side on adjacent lines that
@@ -137,7 +137,7 @@ def segment_recorded_lines(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Segments from 1, those of the largest seeds first; 0 if unassigned.
+        Segments from 1, by the size of their seeds; 0 if unassigned.
 
     Notes
     -----
@@ -213,7 +213,7 @@ def _median_step(points: np.ndarray) -> float:
 
 
 def _distance_of_lines(points: np.ndarray, density: float) -> float:
-    """Return the mean distance (m) of lines on surfaces of a density (points/m²); at least that of points on them."""
+    """Return the mean distance (m) of lines on surfaces of a density (points/m²); at least the points' own."""
     step = _median_step(points)
     return max(1 / (density * step), 1 / float(np.sqrt(density))) if step > 0 else 1 / float(np.sqrt(density))
 
@@ -221,7 +221,7 @@ def _distance_of_lines(points: np.ndarray, density: float) -> float:
 def _with_others(
     points: np.ndarray, row: np.ndarray, piece: np.ndarray, regions: Regions, distance: float, tolerance: float
 ) -> np.ndarray:
-    """Return the region (n,) of each point: that of its piece, or of points next to it on whose plane it is; or -1.
+    """Return the region (n,) of each point: its piece's, or of points next to it on whose plane it is; or -1.
 
     ``row`` and ``piece`` are the points of pieces.
     """

@@ -184,7 +184,7 @@ def _anywhere(
 def _on_top(
     xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float, sampling: CloudSampling
 ) -> np.ndarray:
-    """Return the mask of points (n,) of matched images that may be of a roof: those of the surface seen from above."""
+    """Return the mask of points (n,) of matched images that may be of a roof: on the surface seen from above."""
     xyz = sampling.from_corner(xyz)
     return TopSurface(xyz, height, is_used, density).on_top(xyz)
 

@@ -28,7 +28,7 @@ _BENDS = 0.05
 # Distance to a plane within which a point belongs to it (standard deviations): one point in 370 lies farther off.
 _WITHIN = 3.0
 
-# Tolerance (radii) up to which the noise of a cloud, at least a centimeter, is used; beyond, that of the scan if finer.
+# Tolerance (radii) up to which the noise of a cloud, at least a centimeter, is used; beyond, the scan's if finer.
 _OF_RADIUS = 0.25
 
 # Root mean square distance of the points of a seed (standard deviations): with nine degrees of freedom 1 % of the
@@ -38,7 +38,7 @@ _SMOOTH = 1.55
 # Reach within which neighborhoods decide on neighborhoods next to them (radii).
 _GROWTH = 4.0
 
-# Automatic radius (m) that the reach allows for: that of 36 points per m².
+# Automatic radius (m) that the reach allows for, at 36 points per m².
 _WIDE_RADIUS = 0.5
 
 _Noise = Annotated[
@@ -104,7 +104,7 @@ def segment_surfaces(
         ),
     ] = "local",
     smooth_normals: Annotated[
-        bool, Param("Points are accepted only if their normals are like that of the surface next to them.")
+        bool, Param("Points are accepted only if their normals are like the normal of the surface next to them.")
     ] = False,
     proximity: Annotated[
         str,
@@ -154,7 +154,7 @@ def segment_surfaces(
     Notes
     -----
     The paper grows one surface after the other. Here all grow together in rounds, and neighboring seeds that fit the
-    planes of one another are one surface. A point that several surfaces could take joins that of its nearest neighbor.
+    planes of one another are one surface. A point that several surfaces could take joins its nearest neighbor's.
     Where it does not fit the plane there, the next neighbor is tried, even if that belongs to the same surface. A point
     that joins gets the least squares plane of the surface around it, as the paper asks for. The paper accepts seeds by
     the sum of squared distances. Here the limit is a root mean square distance of ``_SMOOTH`` standard deviations,

@@ -143,7 +143,7 @@ def _triangle_planes(points: np.ndarray, facets: np.ndarray) -> Planes:
     a, b, c = np.swapaxes(points[facets], 0, 1)
     center = (a + b + c) / 3
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    # Second moments of an even triangle: those of its corners, a twelfth instead of a third of them.
+    # Second moments of an even triangle: its corners', a twelfth instead of a third of them.
     offsets = [corner - center for corner in (a, b, c)]
     covariance = np.column_stack([sum(offset[:, i] * offset[:, j] for offset in offsets) / 12 for i, j in PAIRS])
     return Planes(area, center, covariance)

@@ -166,7 +166,7 @@ def _nearest_that_holds(
 
 
 def _refit(planes: LocalPlanes, rows: np.ndarray, parent: np.ndarray, surface: np.ndarray) -> None:
-    """Give points that joined a surface the plane of its points around them, that of their parent if these are few."""
+    """Give points that joined a surface the plane of its points around them, or their parent's if these are few."""
 
     def work(joined: np.ndarray) -> None:
         some, beside = rows[joined], parent[joined]
@@ -187,7 +187,7 @@ def _refit(planes: LocalPlanes, rows: np.ndarray, parent: np.ndarray, surface: n
 def grow_planes(
     planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, most_deviation: float, monitor: Monitor
 ) -> np.ndarray:
-    """Grow planes from the smoothest seeds: the plane equation is that of all points of a surface.
+    """Grow planes from the smoothest seeds: the plane equation is fitted to all points of a surface.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def grow_planes(
     Notes
     -----
     One seed in each neighborhood, the smoothest, grows together with all others. Planes that meet are joined in rounds
-    of mutually best pairs while the points of both deviate no more from the common plane than those of a seed.
+    of mutually best pairs while the points of both deviate no more from the common plane than the points of a seed.
     """
     best = _smoothest(planes, is_seed)
     surface = np.where(best, np.cumsum(best, dtype=np.int32) - np.int32(1), np.int32(-1))

@@ -83,7 +83,7 @@ class VoxelPlanes:
         is_point = position < size
         index = boxes.start[voxels, None] + np.minimum(position, size - 1)
         xyz = boxes.xyz[index]
-        # Their own order in place of that of the cloud, which must not matter.
+        # Their own order in place of the cloud's, which must not matter.
         order = np.lexsort([np.where(is_point, xyz[..., axis], np.inf) for axis in (2, 1, 0)], axis=-1)
         index, xyz = np.take_along_axis(index, order, axis=1), np.take_along_axis(xyz, order[..., None], axis=1)
         middle = (xyz.min(axis=1) + xyz.max(axis=1)) / 2

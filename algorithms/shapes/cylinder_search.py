@@ -112,7 +112,7 @@ class CylinderSearch:
     shift : ndarray of shape (n,)
         How far (m) each was moved along x from where it lies in ``evidence.positions``.
     evidence : Evidence
-        Noise, tolerance and spacing, and what makes points those of a cylinder.
+        Noise, tolerance and spacing, and what makes points a cylinder's.
     min_seen : float
         Least share of the circumference with points.
     min_points : int
@@ -139,7 +139,7 @@ class CylinderSearch:
         self.on_circle = (cosine <= np.sin(np.radians(_ON_CIRCLE))).astype(np.float32)
 
     def find(self, min_radius: float, max_radius: float, monitor: Monitor) -> list[Found]:
-        """Return the cylinders with radii (m) in a range, those of the smallest radii first."""
+        """Return the cylinders with radii (m) in a range, the smallest first."""
         found: list[Found] = []
         ranges = levels(min_radius, max_radius)
         for step, (low, high) in enumerate(ranges):
@@ -153,7 +153,7 @@ class CylinderSearch:
         return found
 
     def _is_curved(self, level: Level) -> np.ndarray:
-        """Return whether the normals of each window spread more than those of a plane."""
+        """Return whether the normals of each window spread more than on a plane."""
         if not level.windows:
             return np.zeros(0, bool)
         starts = np.cumsum([0, *(len(window) for window in level.windows)])

@@ -38,7 +38,7 @@ def detect_spheres(
     method: Annotated[
         str,
         Param(
-            "With center first, points vote for a center, and those of the best center for a radius. With four "
+            "With center first, points vote for a center, and the voters of the best center for a radius. With four "
             "dimensions, they vote for both together, which takes more memory.",
             choices=METHODS,
         ),

@@ -18,7 +18,7 @@ _WITHIN = 0.95
 # Size (m) of the cells around which the outline of several pieces of a plane is drawn.
 _CELL = 0.1
 
-# Largest number of these cells: those of larger planes are enlarged.
+# Largest number of these cells: in larger planes they are enlarged.
 _MOST_CELLS = 2_000_000
 
 

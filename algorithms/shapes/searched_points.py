@@ -58,7 +58,7 @@ F = TypeVar("F", bound=FoundShape)
 
 @dataclass(frozen=True)
 class SearchedPoints:
-    """Points in an order of their own, which does not depend on that of the cloud."""
+    """Points in an order of their own, which does not depend on the cloud's."""
 
     rows: np.ndarray  #: (k,), int64: which point of the cloud each is
     xyz: np.ndarray  #: (k, 3), float64: coordinates (m) from ``origin``, segments moved apart along x
@@ -158,7 +158,7 @@ def numbered(
     segment_id, shape : ndarray of shape (n,), int32 and uint8
         New numbers follow the largest one that is kept.
     offset : int
-        Number that is added to those of the shapes.
+        Number that is added to the numbers of the shapes.
     """
     ids, shapes = np.zeros(n, np.int32), np.zeros(n, np.uint8)
     if search_in == EACH_SEGMENT and segment_id is not None:

@@ -35,10 +35,10 @@ _MOST_SLOPE_BIN = 0.2
 # A gap of three spacings is no accident of random sampling on a surface.
 _GAP_SPACINGS = 3.0
 
-# Window (m) that an automatic one is taken for in the reach: that of clouds with 40 points per m² and noise of 2 cm.
+# Window (m) that an automatic one is taken for in the reach, in clouds with 40 points per m² and noise of 2 cm.
 _WIDE_WINDOW = 1.0
 
-# Gap (m) that an automatic one is taken for in the reach: that of clouds with 40 points per m².
+# Gap (m) that an automatic one is taken for in the reach, in clouds with 40 points per m².
 _WIDE_GAP = 0.5
 
 # Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
@@ -176,7 +176,7 @@ def segment_planes_hough(
     -----
     Deviations from the paper. Steep planes have no finite slope: on two further faces of a cube X and Y are written as
     functions of the other coordinates. The distance is that along the normal in place of the height at the origin, so
-    that bins are as wide for steep planes. The space is that of a window, not of the whole cloud: its maxima are not
+    that bins are as wide for steep planes. The space is of a window, not of the whole cloud: its maxima are not
     those of planes that exist by chance through all objects, and its memory does not grow with the cloud. A
     maximum counts with the bin next to it, where a plane at the border of two bins would be lost. A plane must hold
     more points than scattered points would have on one in a thousand windows.

@@ -127,7 +127,7 @@ def segment_tree(
     length: shadows part stems and branches in every scan. Points farther from the middle line than ``_WITHIN`` times
     the median of their piece of ``_PIECE`` m are leaves. The radius of a piece is the median distance of its points
     from the line. That must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances
-    scatter by less than ``_ROUND`` of it, as those of a circle do. Nor may it exceed radii nearer to the root by
+    scatter by less than ``_ROUND`` of it, as on a circle. Nor may it exceed radii nearer to the root by
     more than a tenth. Elsewhere it is estimated from the nearest radius measured toward the root, or from the stem's at
     breast height. Forks keep the area of the wood (pipe model), in proportion to the length of all branches beyond. A
     stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if its chord is
@@ -294,7 +294,7 @@ def _are_round(distance: np.ndarray, piece: np.ndarray, reach: np.ndarray) -> np
 
 
 def _medians(values: np.ndarray, group: np.ndarray, n_groups: int) -> np.ndarray:
-    """Return the median of the values of each group; of empty groups that of all."""
+    """Return the median of the values of each group, for empty groups of all."""
     whole = float(np.median(values)) if len(values) else 0.0
     order = np.lexsort((values, group))
     first = np.searchsorted(group[order], np.arange(n_groups))

@@ -102,7 +102,7 @@ class SphereSearch:
         self.parts = PlaneDirections(0.5)
 
     def find(self, min_radius: float, max_radius: float, monitor: Monitor) -> list[FoundSphere]:
-        """Return the spheres with radii (m) in a range, those of the smallest radii first."""
+        """Return the spheres with radii (m) in a range, the smallest first."""
         found: list[FoundSphere] = []
         ranges = levels(min_radius, max_radius)
         for step, (low, high) in enumerate(ranges):
@@ -180,7 +180,7 @@ class SphereSearch:
         if np.median(facing) < np.cos(np.radians(_MOST_MEDIAN_ANGLE)):
             return False
         x, y, z = away.T
-        # An ellipsoid, a cylinder or a torus has waves of second order, faces those of higher ones.
+        # An ellipsoid, a cylinder or a torus has waves of second order, faces have higher ones.
         waves = np.column_stack([x * y, x * z, y * z, x * x - y * y, 3 * z * z - 1, *(away**3).T, x * y * z])
         return explained(residual - residual.mean(), waves) <= _MOST_BENT * self.noise
 

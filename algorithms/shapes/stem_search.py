@@ -42,14 +42,14 @@ _FAR = 2.5
 # Least cosine of the lean of a stem: 37°.
 _LEAN = 0.8
 
-# Side (m) of the cells in which the ground lies as low as their lowest point, or that of the cells around.
+# Side (m) of the cells in which the ground lies as low as their lowest point, or as the points of the cells around.
 _GROUND_CELL = 1.0
 
 
 def ground_level(xyz: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """Return the height (m) of the lowest of points (n, 3) in the cell of each position (m, 2) and the cells around it.
 
-    Each position is that of one of the points.
+    Each position is one of the points.
     """
     grid = grid_over(xyz, _GROUND_CELL)
     cells, which = distinct(grid.number(xyz))

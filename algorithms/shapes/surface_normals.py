@@ -99,7 +99,7 @@ def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> np.ndarray
     """
     refuse_line(xyz)
     normal = np.zeros((len(xyz), 3))
-    # In an order of their own, so that rounding does not depend on that of the cloud.
+    # In an order of their own, so that rounding does not depend on the cloud's.
     order = np.lexsort(xyz.T)
 
     def keep(positions: np.ndarray, shapes: Shapes) -> None:

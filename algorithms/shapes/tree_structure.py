@@ -28,7 +28,7 @@ _LEAST_STRAIGHT = 0.6
 # Voxels whose neighbors across gaps are listed at once: with nothing set up to 2100 each, of 40 bytes, so 84 MB.
 _CHUNK = 1_000
 
-# Rounds in which a line is smoothed: its steps are those of voxels.
+# Rounds in which a line is smoothed: its steps are from voxel to voxel.
 _SMOOTHINGS = 4
 
 # Height (m) at which a column of wood with a diameter of 1 m buckles under its own weight, growing with the diameter to

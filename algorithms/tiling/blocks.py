@@ -281,7 +281,7 @@ def _number(
     positions: np.ndarray,
     block: Block,
 ) -> None:
-    """Keep in a result which numbers its points have, and those of records on both sides of its edges."""
+    """Keep in a result which numbers its points have, and the numbers of records on both sides of its edges."""
     near = _inside(positions, block.box + np.array([[-_BESIDE], [_BESIDE]]))
     near &= ~_inside(positions, block.box + np.array([[_BESIDE], [-_BESIDE]]))
     core = _inside(positions, block.box)

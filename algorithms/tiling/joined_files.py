@@ -43,7 +43,7 @@ def join_files(
 
 @dataclass(frozen=True)
 class _Items(Collection):
-    """The items of a text file under the names of the survey, those of one block in memory at a time.
+    """The items of a text file under the names of the survey, one block in memory at a time.
 
     ``becomes`` are the numbers in the survey by block and name there; items without one are left out.
     """

@@ -23,7 +23,7 @@ _FORWARD = ((1, 0), (-1, 1), (0, 1), (1, 1))
 # Blocks whose edges stay in memory: a block, its four neighbors, and some that it shares with the block before.
 _EDGES_KEPT = 8
 
-# Fields with the number of a feature in its layer, and with that of the cluster that it outlines.
+# Fields with the number of a feature in its layer, and with the number of the cluster that it outlines.
 _ID, _CLUSTER = "id", "cluster_id"
 
 # The numbers of a block that has none.
@@ -52,7 +52,7 @@ def join_numbers(
     results : list of BlockResult
         Results of the blocks; their edges are read by ``edges`` only.
     edges : callable
-        As ``edges`` of :class:`.BlockResult`. Memory: those of a few blocks at a time.
+        As ``edges`` of :class:`.BlockResult`. Memory: a few blocks at a time.
     features : dict of str to list of ndarray, optional
         For each dimension by which points refer to features the numbers of these in each block; they become 0, since
         features are recognized as the same by their geometry.
@@ -73,7 +73,7 @@ def join_numbers(
         _, group = components(one_end, other_end, int(first[-1]))
         parts = [start + one.used[name] - 1 for one, start in zip(results, first) if name in one.used]
         used = np.concatenate([_NO_NUMBERS, *parts])
-        # Numbers in the order of the blocks, as those of one cloud are in that of its points.
+        # Numbers in the order of the blocks, as in one cloud they follow its points.
         distinct, at = np.unique(group[used[~is_feature[used]]], return_index=True)
         final = np.zeros(len(group) + 1, np.int32)
         final[distinct[np.argsort(at)]] = np.arange(1, len(distinct) + 1, dtype=np.int32)
@@ -156,7 +156,7 @@ def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 @dataclass
 class References:
-    """How points refer to features by a dimension: the numbers of features are those of their points."""
+    """How points refer to features by a dimension: features have the numbers of their points."""
 
     counts: list[dict[int, int]]  #: For each block the number of its points with each number there
     #: What numbers of features are now, by the position of the block and the number in it

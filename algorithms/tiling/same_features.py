@@ -99,7 +99,7 @@ def _sizes(
 
 
 def _ranks(size: np.ndarray, is_own: np.ndarray, is_piece: Optional[np.ndarray] = None) -> np.ndarray:
-    """Return the rank (n,) of each feature, 0 for the best: no pieces, those of the own block, then the largest."""
+    """Return the rank (n,) of each feature, 0 for the best: no pieces, of the own block, then the largest."""
     is_piece = np.zeros(len(size), bool) if is_piece is None else is_piece
     rank = np.empty(len(size), np.int64)
     rank[np.lexsort([np.arange(len(size)), -size, ~is_own, is_piece])] = np.arange(len(size))
@@ -185,7 +185,7 @@ def _shared_in_space(
 
 
 def _tolerance(features: LayerFeatures, layer: Layer) -> np.ndarray:
-    """Return how far (n,) another plane may lie off that of a feature and be the same, m."""
+    """Return how far (n,) another plane may lie off the plane of a feature and be the same, m."""
     return _DEVIATIONS * np.asarray(features.columns[layer.deviation], float) + _LEAST
 
 

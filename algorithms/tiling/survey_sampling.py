@@ -15,7 +15,7 @@ from ..stage import Monitor, ProgressOnly
 from .survey import Survey
 from .tiled_steps import in_blocks, measuring, part_of, preparing, tunables_of
 
-# Most points that the sampling is measured on: all points of small surveys, else those of windows.
+# Most points that the sampling is measured on: all points of small surveys, else the points of windows.
 _SAMPLED_WHOLE = 3_000_000
 
 # Windows along each side of a survey.

@@ -20,7 +20,7 @@ _DESCRIPTION = f"""
 For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
 size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
 them. A file of more than {TilesOptions.largest_file / 1e6:g} million points becomes tiles of the size of a block. The
-layers are those of the whole survey, without seams and duplicates.
+layers are as of the whole survey, without seams and duplicates.
 
 The work is done in blocks of a lattice that starts at the origin of the coordinates, each with the points around it as
 far as the steps reach. So the result does not depend on how the points are spread over files. Density, spacing and
@@ -126,7 +126,7 @@ CUT_INTO_TILES = SurveyTool(
     tags="las,laz,copc,pdal,tile,tiles,split,grid,folder,survey,large,retile,lastile",
     summary="Cut point clouds of any size into square tiles.",
     description=(
-        "The tiles are those of a lattice that starts at the origin of the coordinates; each is named by its lower "
+        "The tiles are the cells of a lattice that starts at the origin of the coordinates; each is named by its lower "
         "left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a "
         "lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that "
         "memory does not grow with them; on the disk the points lie once uncompressed next to the tiles while they are "

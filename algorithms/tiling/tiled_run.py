@@ -117,7 +117,7 @@ class WorkedOn:
 class TilesOutcome:
     """The results of a survey: the tiles written, layers in meters from ``survey.origin``, reports, what went wrong.
 
-    ``side`` is that of the blocks, m.
+    ``side`` is the side of the blocks, m.
 
     ``tries`` are those of all blocks, see :class:`.BlockResult`. ``seconds`` has the sum over the blocks for each step,
     and ``values`` the different values of automatic tunables and others that blocks found.

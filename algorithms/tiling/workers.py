@@ -1,4 +1,4 @@
-"""Workers: processes of this machine, or those of a running Dask cluster."""
+"""Workers: processes of this machine, or of a running Dask cluster."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def bent_roofs(
     """
     surface = TopSurface(xyz, height, ~np.isin(classification, NOISE), sampling.effective_density)
     is_near = _beside_roofs(surface, cluster_id > 0)[surface.cell]
-    # With the westernmost and the southernmost point, cells begin where those of the whole cloud do.
+    # With the westernmost and the southernmost point, cells begin where they do in the whole cloud.
     is_near[np.argmin(xyz[:, :2], axis=0)] = True
     near = np.flatnonzero(is_near)
     segment_id = np.zeros(len(xyz), np.int32)

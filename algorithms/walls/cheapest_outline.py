@@ -35,7 +35,7 @@ _DEEP = 2.0
 # distance of the position farthest from the edge.
 _DEEPER = 0.6
 
-# A cost above that of any wall: of leaving out the position farthest from the edge, and of the surrounding rectangle.
+# A cost above any wall's: of leaving out the position farthest from the edge, and of the surrounding rectangle.
 _CERTAIN = 1e5
 
 # Cost of a meter of wall without points where a side of the roof makes a wall likely.

@@ -86,7 +86,7 @@ def classify_roofs(
     roofs step by 0.4 m. Matching rounds both: parapets of half a meter between level roofs are not seen at 59 points
     per m², and of steps of 0.4 m every other one is.
 
-    The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
+    The clusters are made by DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
     A cluster that one larger cluster surrounds on more than three fifths of its border, seen from above, belongs to it:
     stair houses and penthouses on flat roofs, skylights in them. The paper takes the points above the height; here
     a plane is taken whole, down to eaves that are lower, if half of it is above. That height is 2 m and not the 2.5

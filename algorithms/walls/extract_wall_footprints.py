@@ -161,7 +161,7 @@ def extract_wall_footprints(
 
     Notes
     -----
-    Thresholds follow the data of each building. The distance of points to their line is that of the noise. A wall is
+    Thresholds follow the data of each building. The distance of points to their line follows from the noise. A wall is
     cut into pieces that should hold three points each, and is covered where they hold any. An edge of the outline is
     judged by its points between the corners, which are left out. The paper takes every pair of corners for a candidate
     edge. Here the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more
@@ -434,7 +434,7 @@ def _footprint(
 
 
 def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
-    """Return the deviation of all points from that of each edge's points; NaN without any."""
+    """Return the deviation of all points from the points of each edge; NaN without any."""
     seen = points > 0
     return float(np.sqrt(np.average(deviation[seen] ** 2, weights=points[seen]))) if seen.any() else float("nan")
 

@@ -27,7 +27,7 @@ _FINE = 0.6
 # Side (m) of the cells in which a roof is compared with walls.
 _CELL = 0.25
 
-# Most cells of one building: those of extended ones are larger.
+# Most cells of one building: extended ones have larger cells.
 _MOST_CELLS = 5e5
 
 # Side (m) of the largest cells.

@@ -189,7 +189,7 @@ def _ways(xy: np.ndarray, monitor: Monitor) -> np.ndarray:
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
         x, y, _, xy_, _, _ = shapes.covariances.T
-        # Half the angle of (x - y, 2 xy) is that of the larger eigenvector.
+        # Half the angle of (x - y, 2 xy) is the direction of the larger eigenvector.
         angle, apart = np.arctan2(2 * xy_, x - y) / 2, np.hypot(x - y, 2 * xy_)
         is_line = (shapes.counts >= MIN_NEIGHBORS) & (x + y + apart >= _LONGER**2 * (x + y - apart))
         ways[rows] = np.column_stack([np.cos(angle), np.sin(angle)]) * is_line[:, None]
