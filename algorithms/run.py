@@ -18,7 +18,7 @@ from .cloud.merging import in_one_crs, merge_records
 from .geometry.grid import plan_box
 from .memory import return_freed
 from .pipeline import CLOUD, REFERENCE, REPORT, Pipeline, Step
-from .sampling.cloud_sampling import CloudSampling, corner_before, without_noise
+from .sampling.cloud_sampling import CloudSampling, without_noise
 from .stage import (
     DIMENSION,
     REFERENCE_PREFIX,
@@ -137,7 +137,7 @@ def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampl
 def _corner(cloud: Cloud) -> np.ndarray:
     """Return the least easting and northing (2,) of the points of a cloud that are not withheld, m."""
     withheld, xyz = cloud.withheld, cloud.get("xyz")
-    return corner_before(plan_box(xyz if withheld.all() else xyz[~withheld])[0])
+    return plan_box(xyz if withheld.all() else xyz[~withheld])[0]
 
 
 def has_several_returns(cloud: Cloud) -> bool:

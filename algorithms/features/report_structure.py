@@ -77,8 +77,8 @@ def report_structure(
     --------
     >>> x, y = np.mgrid[0:10:0.5, 0:10:0.5].reshape(2, -1)
     >>> report = report_structure(np.column_stack([x, y, 0 * x]), np.full(len(x), 2))
-    >>> report.values["nearest_planar"]
-    100.0
+    >>> report.values["nearest_volumetric"]
+    0.0
     """
     chosen = np.zeros(len(xyz), bool)
     chosen[:: -(-len(xyz) // _COMPARED)] = True

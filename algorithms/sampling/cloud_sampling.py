@@ -48,13 +48,6 @@ MEASURED: Any = None
 Learn = Callable[[np.ndarray], tuple[float, ...]]
 
 
-def corner_before(low: np.ndarray) -> np.ndarray:
-    """Return the corner (2,) at which cells begin, given the least easting and northing ``low`` (2,) of a cloud, m."""
-    # Files store coordinates in whole steps, hardly ever less than a tenth of a millimeter. With a corner off all of
-    # these, none lies on the border of two cells, where rounding would decide between them.
-    return low - 3e-5
-
-
 class CloudSampling:
     """How a cloud samples its surfaces: how densely, how evenly, with how much noise.
 
@@ -105,12 +98,12 @@ class CloudSampling:
         if classification is None:
             return cls(lambda: xyz)
         counted = without_noise(classification)
-        return cls(lambda: xyz.compress(counted, axis=0), corner=corner_before(plan_box(xyz)[0]))
+        return cls(lambda: xyz.compress(counted, axis=0), corner=plan_box(xyz)[0])
 
     @cached_property
     def corner(self) -> np.ndarray:
         """Least easting and northing (2,) of the cloud, or of the survey that it is a part of, m."""
-        return corner_before(plan_box(self._points())[0])
+        return plan_box(self._points())[0]
 
     def from_corner(self, xyz: np.ndarray) -> np.ndarray:
         """Return points (n, 3), m, with easting and northing from the corner, where the cells of all stages begin."""

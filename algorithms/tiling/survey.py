@@ -20,7 +20,6 @@ from ..cloud.point_records import fill_merged
 from ..cloud.points import check_points, chunks_near, is_within, lowest_rows, read_chunks
 from ..cloud.vpc import Named, merged_header
 from ..cloud.web_file import file_at
-from ..sampling.cloud_sampling import corner_before
 from ..stage import Monitor
 
 # The folder among the tiles with the COPC files that QGIS shows.
@@ -116,14 +115,11 @@ class Survey:
 
     @property
     def corner(self) -> np.ndarray:
-        """Where cells begin (2,), just before the least coordinates of the files, m from ``origin``.
-
-        The same where only an extent is read.
-        """
+        """Least easting and northing (2,) of the files, m from ``origin``, also where only an extent is read."""
         low = np.min([source.header.low[:2] for source in self.sources], axis=0)
         scale, offset, unit = self.header.scale[:2], self.header.offset[:2], self.crs.horizontal
         # As a cloud has its coordinates, to the last bit: no point lies before the first cell.
-        return corner_before(np.rint((low - offset) / scale) * (scale * unit) + (offset * unit - self.origin[:2]))
+        return np.rint((low - offset) / scale) * (scale * unit) + (offset * unit - self.origin[:2])
 
     @cached_property
     def boxes(self) -> np.ndarray:

@@ -10,7 +10,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.run import run_pipeline, run_stage
-from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling, corner_before
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.sampling.density import point_density
 from lidar_buildings.algorithms.stage import (
     Field,
@@ -518,12 +518,11 @@ def test_cells_begin_at_the_corner_of_all_points_but_withheld_ones(lattice):
     points = lattice.get("xyz")
     withhold(lattice, *np.flatnonzero(points[:, 0] < 1))
     lattice.set("classification", np.where(points[:, 0] < 5, 7, 1).astype(np.uint8))
-    corner = corner_before(points[:, :2].min(axis=0) + [1, 0])
+    corner = points[:, :2].min(axis=0) + [1, 0]
     monitor = Monitor()
     run_stage(classify_sampled.stage, lattice, monitor=monitor)
     np.testing.assert_array_equal(monitor.values["given"].corner, corner)
-    of_all = CloudSampling.of(points, lattice.get("classification")).corner
-    np.testing.assert_array_equal(of_all, corner_before(points[:, :2].min(axis=0)))
+    np.testing.assert_array_equal(CloudSampling.of(points, lattice.get("classification")).corner, corner - [1, 0])
     steps = sampled(lattice, "classify_sampled", "filter_east", "classify_sampled")[0]
     for sampling in steps:
         np.testing.assert_array_equal(sampling.corner, corner)

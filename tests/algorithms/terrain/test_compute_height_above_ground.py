@@ -104,10 +104,11 @@ def test_points_above_change_nothing(rng):
 
 def test_heights_do_not_depend_on_where_the_cloud_lies(rng):
     """The cells whose means are nodes began at multiples of their size, wherever the cloud begins."""
-    xyz = np.round(rng.uniform(0, 50, (6000, 3)) * [1, 1, 0.02], 3)
+    # Binary fractions, so that no sum is rounded.
+    xyz = rng.integers(0, 50 * 1024, (6000, 3)) / 1024 * [1, 1, 1 / 64]
     classification = np.repeat([2, 1], 3000)
     height = compute_height_above_ground(xyz, classification)
-    moved = compute_height_above_ground(np.round(xyz + [1234.37, 87.83, 0], 3), classification)
+    moved = compute_height_above_ground(xyz + [1234.375, 87.84375, 0], classification)
     np.testing.assert_allclose(moved, height, atol=1e-6)
 
 
