@@ -137,7 +137,7 @@ def test_a_lone_flat_roof_is_found(rng):
     found, *_, report = classify_buildings(xyz, ones(xyz), cluster_id, monitor=monitor)
     assert (found == 6).all()
     assert "taken from simulated planes" in monitor.warnings[-1]
-    assert "that of simulated planes or volumes" in report.html
+    assert "the missing one has the mean of simulated planes or volumes" in report.html
     assert f"buildings: {report.values['building_entropy']:.3g}" in report.html
 
 
