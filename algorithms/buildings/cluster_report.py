@@ -38,7 +38,7 @@ class Clusters:
 
     @classmethod
     def none(cls) -> Clusters:
-        """Return what there is to report without clusters."""
+        """Return the report of a cloud without clusters."""
         return cls(np.zeros(0), np.zeros(0, np.uint8), Split(np.nan, np.nan))
 
 

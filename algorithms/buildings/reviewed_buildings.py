@@ -100,7 +100,7 @@ class ReviewedBuildings:
         )
 
     def _owners(self, xyz: np.ndarray, building: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return the outline (n,), int64, that each point is of; -1 where there is none.
+        """Return the index (n,), int64, of the outline that each point belongs to; -1 without one.
 
         It is the outline around the point, or else around most of the points of its ``building`` (n,), from 1; 0 if
         unassigned.

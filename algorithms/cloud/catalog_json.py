@@ -15,7 +15,7 @@ _BYTES_PER_VALUE = 90
 
 
 def read_json(path: Path) -> Any:
-    """Return what a file in JSON holds, None where it is damaged.
+    """Return the content of a JSON file, None where it is damaged.
 
     Raises
     ------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +13,11 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.command import command_line
 from lidar_buildings.algorithms.command.arguments import dashed, find_algorithm, parser_of
 from lidar_buildings.algorithms.command.command_line import main, overview
+from lidar_buildings.algorithms.command.feature_files import read_layer
+from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.stage import InputLayer, Monitor
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.tests.algorithms.cloud.crs_texts import ETRS_32
 from lidar_buildings.tests.web_server import serving
@@ -67,6 +71,23 @@ def test_points_within_polygons_of_a_file(tile, tmp_path, kind):
         (xyz[:, :2] > low).all(axis=1) & (xyz[:, :2] < high).all(axis=1) for low, high in (((2, 3), (7, 8)), (10, 14))
     ]
     assert np.logical_or(*is_in).all()
+
+
+def test_layers_are_read_as_stages_want_them(tmp_path):
+    """Exteriors counterclockwise, holes clockwise, each part by itself, upright polygons as they are."""
+    clockwise, hole = square(0, 0, 9)[0], square(2, 2, 3)[0][::-1]
+    shapes = [{"type": "Polygon", "coordinates": [clockwise, hole]}, {"type": "Point", "coordinates": [1, 2, 3]}]
+    shapes.append({"type": "MultiLineString", "coordinates": [[[0, 0], [1, 1]], [[2, 2], [3, 3]]]})
+    path, monitor = features(tmp_path / "all.geojson", *shapes), Monitor()
+    wanted = InputLayer("areas", "Areas", "Polygon", "Some.")
+    read, code = read_layer(path, wanted, monitor)
+    assert [signed_area(ring) for ring in read.geometries[0]] == [81.0, -9.0]
+    assert (code, read.columns["id"].tolist(), len(monitor.warnings)) == ("EPSG:25832", [0], 1)
+    upright = read_layer(path, replace(wanted, upright=True), monitor)[0]
+    assert [signed_area(ring) for ring in upright.geometries[0]] == [-81.0, 9.0]
+    lines = read_layer(path, replace(wanted, geometry="LineString"), monitor)[0]
+    assert [line.tolist() for line in lines.geometries] == [[[0, 0], [1, 1]], [[2, 2], [3, 3]]]
+    assert read_layer(path, replace(wanted, geometry="Point"), monitor)[0].geometries[0].tolist() == [1, 2, 3]
 
 
 def test_points_within_an_extent(tile, tmp_path):
@@ -173,7 +194,8 @@ def test_a_value_out_of_bounds_is_refused_by_name(tile, capsys):
 
 
 def test_a_run_that_is_stopped_leaves_the_older_file(tile, tmp_path, monkeypatch, capsys):
-    def stop(*_, **__):
+    def stop(_, path, *__):
+        path.write_bytes(b"half")
         raise KeyboardInterrupt
 
     out = tmp_path / "out.laz"
