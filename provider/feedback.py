@@ -102,7 +102,7 @@ class FeedbackMonitor(Monitor):
 def value_sentence(stage: Optional[Stage], name: str, value: Any) -> str:
     """Return a value that a stage found or took, as the log says it, with label and unit."""
     tunable = stage.tunables.get(name) if stage else None
-    param = tunable.param if tunable else Param("")
+    param = tunable.param if tunable else Param(None, "")
     # Who needs all digits finds them among the results.
     if isinstance(value, bool):
         shown = "yes" if value else "no"

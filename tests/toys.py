@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from lidar_buildings.algorithms.stage import (
     Layer,
     LayerFeatures,
     Measure,
-    Param,
     Raster,
     RasterSurface,
     Report,
     stage,
+    tunable,
 )
 
 
@@ -27,17 +27,19 @@ def toy_lift(
     xyz,
     classification,
     *,
-    step: Annotated[float, Param("Added to all heights.", within="(0, 10] m")] = 1.5,
-    base: Annotated[
-        Optional[float], Param("Taken off all heights.", within="[0, inf) m", automatic="the lowest point.")
-    ] = None,
-    times: Annotated[int, Param("How often the step is added.", within="[1, 5]", advanced=True)] = 2,
-    sign: Annotated[str, Param("Up or down.", choices=("up", "down"))] = "up",
-    only: Annotated[tuple, Param("Classes that are lifted.", choices=("ground", "building"))] = (
-        "ground",
-        "building",
+    step: float = tunable(1.5, "Added to all heights.", within="(0, 10] m"),
+    base: Optional[float] = tunable(None, "Taken off all heights.", within="[0, inf) m", automatic="the lowest point."),
+    times: int = tunable(2, "How often the step is added.", within="[1, 5]", advanced=True),
+    sign: str = tunable("up", "Up or down.", choices=("up", "down")),
+    only: tuple = tunable(
+        (
+            "ground",
+            "building",
+        ),
+        "Classes that are lifted.",
+        choices=("ground", "building"),
     ),
-    flat: Annotated[bool, Param("All heights alike.")] = False,
+    flat: bool = tunable(False, "All heights alike."),
     monitor=None,
 ):
     """Lift every point.
@@ -81,7 +83,7 @@ def toy_outline(
     xyz,
     height_above_ground=None,
     *,
-    margin: Annotated[float, Param("Around the points.", within="[0, 9] m")] = 0.0,
+    margin: float = tunable(0.0, "Around the points.", within="[0, 9] m"),
     monitor=None,
 ):
     """Draw a box with a hole around all points."""
@@ -104,7 +106,7 @@ def toy_compare(xyz, reference_xyz, *, monitor=None):
 @stage(
     "Toys", creates=("xyz", "classification"), layers=(Layer("truth", "Truth", "Point", (Field("id", int, "Id."),)),)
 )
-def toy_make(*, n_points: Annotated[int, Param("How many.", label="Points", within="[1, 1000]")] = 10, monitor=None):
+def toy_make(*, n_points: int = tunable(10, "How many.", label="Points", within="[1, 1000]"), monitor=None):
     """Make a row of points."""
     xyz = np.column_stack([np.arange(n_points), np.zeros(n_points), np.full(n_points, 3.0)])
     return xyz, np.full(n_points, 2, np.uint8), LayerFeatures([np.array([1.0, 2.0, 3.0])], {"id": [1]})
@@ -114,7 +116,7 @@ def toy_make(*, n_points: Annotated[int, Param("How many.", label="Points", with
 def toy_trouble(
     xyz,
     *,
-    kind: Annotated[str, Param("What goes wrong.", choices=("value", "bug", "memory", "cancel"))] = "value",
+    kind: str = tunable("value", "What goes wrong.", choices=("value", "bug", "memory", "cancel")),
     monitor=None,
 ):
     """Fail in a chosen way."""
@@ -132,9 +134,9 @@ def toy_keep(
     xyz,
     values=None,
     *,
-    dimension: Annotated[str, Param("What is looked at; heights, if empty.")] = "",
-    low: Annotated[float, Param("Points with less go.", within="[-1e9, inf)")] = 12.0,
-    sink: Annotated[float, Param("How far the others go down.", within="[0, inf) m")] = 0.0,
+    dimension: str = tunable("", "What is looked at; heights, if empty."),
+    low: float = tunable(12.0, "Points with less go.", within="[-1e9, inf)"),
+    sink: float = tunable(0.0, "How far the others go down.", within="[0, inf) m"),
     monitor=None,
 ):
     """Keep what is high, and number it."""
@@ -146,7 +148,7 @@ def toy_keep(
 def toy_merge(
     xyz,
     *,
-    apart: Annotated[float, Param("Each cloud higher than the last.", within="[0, inf)")] = 0.0,
+    apart: float = tunable(0.0, "Each cloud higher than the last.", within="[0, inf)"),
     monitor=None,
 ):
     """Put clouds together and number them."""
@@ -193,7 +195,7 @@ def toy_arrows(old, new, extra=None, *, monitor=None):
 def toy_heights(
     xyz,
     *,
-    cell_size: Annotated[float, Param("Side of a cell.", within="[0.1, inf) m")] = 2.0,
+    cell_size: float = tunable(2.0, "Side of a cell.", within="[0.1, inf) m"),
     monitor=None,
 ):
     """Draw the highest and the lowest point of each cell."""

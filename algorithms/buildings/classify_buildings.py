@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Optional, Union
+from typing import Optional, Union
 
 import numpy as np
 
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
-from ..params import MinBuildingArea, PointDensity, PointSource, nearest_points
+from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE, nearest_points
 from ..rules import rule
 from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.sufficiency import doubted, why_doubtful
 from ..sampling.surface_noise import plane_roughness
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .cluster_decisions import Decisions, decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_evidence import ClusterEvidence, with_penetration, with_surroundings
@@ -38,24 +38,21 @@ ENTROPY = EntropyRules()
 # 0.01, half of what K-means moves the threshold by.
 _MEASURED = 256
 
-_MaxPenetration = Annotated[
-    float,
-    Param(
-        "Share of the beam that may pass through a building: cells with points below, and returns that are not "
-        "the last.",
-        within="(0, 1]",
-    ),
-]
 
-_MinShareAround = Annotated[
-    float,
-    Param(
-        "Share of the points within a few meters around a building that must belong to buildings, its own "
-        "included. Around smooth spots of crowns it is less.",
-        label="Minimum share of buildings around",
-        within="[0, 1]",
-    ),
-]
+_MAX_PENETRATION = tunable(
+    0.4,
+    "Share of the beam that may pass through a building: cells with points below, and returns that are not the last.",
+    within="(0, 1]",
+)
+
+
+_MIN_SHARE_AROUND = tunable(
+    0.5,
+    "Share of the points within a few meters around a building that must belong to buildings, its own "
+    "included. Around smooth spots of crowns it is less.",
+    label="Minimum share of buildings around",
+    within="[0, 1]",
+)
 
 
 @stage(
@@ -81,14 +78,14 @@ def classify_buildings(
     green=None,
     blue=None,
     *,
-    min_area: MinBuildingArea = 4.0,
-    n_neighbors: Annotated[
-        Optional[int], nearest_points("the smallest neighborhood in which neither noise nor scan lines blur a plane.")
-    ] = None,
-    max_penetration: _MaxPenetration = 0.4,
-    min_share_around: _MinShareAround = 0.5,
-    density: PointDensity = None,
-    source: PointSource = "automatic",
+    min_area: float = MIN_BUILDING_AREA,
+    n_neighbors: Optional[int] = nearest_points(
+        "the smallest neighborhood in which neither noise nor scan lines blur a plane."
+    ),
+    max_penetration: float = _MAX_PENETRATION,
+    min_share_around: float = _MIN_SHARE_AROUND,
+    density: Optional[float] = POINT_DENSITY,
+    source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

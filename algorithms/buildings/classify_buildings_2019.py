@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 from ..neighborhoods.covariance import Nearest
-from ..params import PAPER_THRESHOLDS, MinBuildingArea, PointDensity, Thresholds, nearest_points
+from ..params import MIN_BUILDING_AREA, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS, nearest_points
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
@@ -41,20 +41,18 @@ def classify_buildings_2019(
     cluster_id,
     reason=None,
     *,
-    thresholds: Thresholds = "automatic",
-    min_area: MinBuildingArea = 4.0,
-    n_neighbors: Annotated[
-        Optional[int], nearest_points(f"the points of the minimum building area (Ar_min d), at least {_MIN_NEIGHBORS}.")
-    ] = None,
-    two_classes: Annotated[
-        str,
-        Param(
-            "How the mean entropies are separated: 'k-means' is scikit-learn's, from ten random starts; 'exact' tries "
-            "every gap between them.",
-            choices=("k-means", "exact"),
-        ),
-    ] = "k-means",
-    density: PointDensity = None,
+    thresholds: str = THRESHOLDS,
+    min_area: float = MIN_BUILDING_AREA,
+    n_neighbors: Optional[int] = nearest_points(
+        f"the points of the minimum building area (Ar_min d), at least {_MIN_NEIGHBORS}."
+    ),
+    two_classes: str = tunable(
+        "k-means",
+        "How the mean entropies are separated: 'k-means' is scikit-learn's, from ten random starts; 'exact' tries "
+        "every gap between them.",
+        choices=("k-means", "exact"),
+    ),
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -11,12 +11,12 @@ from ..cloud.asprs import NOISE, PointClass
 from ..cloud.reasons import Reason
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..geometry.groups import least_of
-from ..params import MinBuildingArea, PointDensity, PointSource
+from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE
 from ..rules import rule
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.kinds import IMAGES, LASER, SCENE
 from ..segmentation.top_surface import TopSurface
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .building_columns import ColumnPoints, Columns, column_size
 from .inner_courts import AROUND, deck_cells
 from .roof_coverage import Coverage, cells_with, covered_cells, mostly_roof, numbered, renumbered, roof_top
@@ -54,44 +54,34 @@ def complete_buildings(
     return_number=None,
     number_of_returns=None,
     *,
-    gap: Annotated[
-        Optional[float],
-        Param(
-            "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
-            label="Gap to close",
-            within=f"[0, {2 * SCENE.ground_within}] m",
-            automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to "
-            f"{2 * SCENE.ground_within:g} m.",
-        ),
-    ] = None,
-    roof_clearance: Annotated[
-        float,
-        Param(
-            "Points up to this far above the roof belong to it.", label="Clearance above the roof", within="[0, 20] m"
-        ),
-    ] = 1.0,
-    structure_height: Annotated[
-        float,
-        Param(
-            "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
-            "dormers, masts). Trees cover more.",
-            label="Structures on the roof",
-            within="[0, 100] m",
-        ),
-    ] = 4.0,
-    min_area: MinBuildingArea = 4.0,
-    min_roof_share: Annotated[
-        float,
-        Param(
-            "Share of the points at about the height of a building's roof, within the clearance above and below, that "
-            "must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched "
-            "images it is not examined.",
-            label="Minimum share of roof surfaces",
-            within="[0, 1]",
-        ),
-    ] = 0.6,
-    density: PointDensity = None,
-    source: PointSource = "automatic",
+    gap: Optional[float] = tunable(
+        None,
+        "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
+        label="Gap to close",
+        within=f"[0, {2 * SCENE.ground_within}] m",
+        automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to {2 * SCENE.ground_within:g} m.",
+    ),
+    roof_clearance: float = tunable(
+        1.0, "Points up to this far above the roof belong to it.", label="Clearance above the roof", within="[0, 20] m"
+    ),
+    structure_height: float = tunable(
+        4.0,
+        "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
+        "dormers, masts). Trees cover more.",
+        label="Structures on the roof",
+        within="[0, 100] m",
+    ),
+    min_area: float = MIN_BUILDING_AREA,
+    min_roof_share: float = tunable(
+        0.6,
+        "Share of the points at about the height of a building's roof, within the clearance above and below, that "
+        "must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched "
+        "images it is not examined.",
+        label="Minimum share of roof surfaces",
+        within="[0, 1]",
+    ),
+    density: Optional[float] = POINT_DENSITY,
+    source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

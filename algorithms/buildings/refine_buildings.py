@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -12,12 +12,12 @@ from ..cloud.asprs import PointClass
 from ..cloud.reasons import Reason
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage
-from ..params import PointDensity, PointSource
+from ..params import POINT_DENSITY, POINT_SOURCE
 from ..rules import rule
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.sufficiency import doubted, why_doubtful
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .building_columns import COLUMNS, column_size
 from .cell_features import CellFeatures, CellPoints
 from .edge_classes import decided_together
@@ -75,16 +75,14 @@ def refine_buildings(
     intensity=None,
     reviewed=None,
     *,
-    learn: Annotated[
-        bool,
-        Param(
-            "Learn what buildings of this cloud look like, and correct points near their edges that look otherwise. "
-            "Without it nothing is changed.",
-            label="Learn from the scene",
-        ),
-    ] = True,
-    density: PointDensity = None,
-    source: PointSource = "automatic",
+    learn: bool = tunable(
+        True,
+        "Learn what buildings of this cloud look like, and correct points near their edges that look otherwise. "
+        "Without it nothing is changed.",
+        label="Learn from the scene",
+    ),
+    density: Optional[float] = POINT_DENSITY,
+    source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -5,13 +5,12 @@ from __future__ import annotations
 import base64
 from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 
 from ..models3d.set_openings import WINDOW
 from ..models3d.solids import GROUND, ROOF, TERRAIN, WALL
-from ..stage import InputLayer, MapFrame, Param, Piece, TextFile, stage
+from ..stage import InputLayer, MapFrame, Piece, TextFile, stage, tunable
 from .cityjson_faces import ENDINGS, read_cityjson
 from .exported_models import ExportedModel, exported_models
 from .gltf import glb
@@ -80,23 +79,19 @@ def export_models(
     terrain=None,
     cityjson=None,
     *,
-    geoid_height: Annotated[
-        float,
-        Param(
-            "For 3D Tiles, height of the geoid over the ellipsoid WGS 84, which is added to elevations: about 43 m in "
-            "the Netherlands, 36 to 50 m in Germany, -32 m in New York. Without it models lie under or over the "
-            "terrain of a globe by as much.",
-            within="[-120, 120] m",
-        ),
-    ] = 0.0,
-    texel_size: Annotated[
-        float,
-        Param(
-            "Side of the texels of images on roofs, walls and terrain, where a point cloud with colors is given; about "
-            "the distance between its points.",
-            within="[0.01, 10] m",
-        ),
-    ] = 0.25,
+    geoid_height: float = tunable(
+        0.0,
+        "For 3D Tiles, height of the geoid over the ellipsoid WGS 84, which is added to elevations: about 43 m in "
+        "the Netherlands, 36 to 50 m in Germany, -32 m in New York. Without it models lie under or over the "
+        "terrain of a globe by as much.",
+        within="[-120, 120] m",
+    ),
+    texel_size: float = tunable(
+        0.25,
+        "Side of the texels of images on roofs, walls and terrain, where a point cloud with colors is given; about "
+        "the distance between its points.",
+        within="[0.01, 10] m",
+    ),
     monitor=None,
 ):
     """Write models of buildings for browsers and other programs, from the layers of a run or from CityJSON.

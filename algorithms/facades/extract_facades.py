@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import members
-from ..params import Boundary, CompleteFacades, CornerDistance, FacadeGap, FacadeTilt, Seed
+from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT, SEED
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.least_squares_planes import Planes, off_planes, planes_of
 from ..segmentation.segment_planes_ransac import segment_planes_ransac
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, ProgressOnly, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, ProgressOnly, stage, tunable
 from .common_borders import with_common_borders
 from .curved_fronts import as_strips
 from .facade_outline import Drawing
@@ -81,44 +81,35 @@ def extract_facades(
     gps_time=None,
     point_source_id=None,
     *,
-    search_in: Annotated[
-        str,
-        Param(
-            "All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from "
-            "the scanner, behind cars, trees and people. Facade lines need the GPS time of the points.",
-            choices=(ALL_POINTS, FACADE_LINES),
-        ),
-    ] = ALL_POINTS,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
-            "strips and separates shallower recesses.",
-            within="(0, 1] m",
-            automatic=f"{_ON_PLANE:g} times the root of the sum of the squares of the surface noise and of "
-            f"{_RELIEF:g} m, the relief of walls.",
-        ),
-    ] = None,
-    max_tilt: FacadeTilt = 10.0,
-    min_area: Annotated[
-        float,
-        Param(
-            "Area of the smallest facade, where it has points.", label="Minimum facade area", within="[0.1, 10_000] m²"
-        ),
-    ] = 2.0,
-    min_height: Annotated[
-        float,
-        Param(
-            "Height of the lowest facade; cars and hedges are lower than walls.",
-            label="Minimum facade height",
-            within="[0, 100] m",
-        ),
-    ] = 2.5,
-    max_gap: FacadeGap = 1.0,
-    corner_distance: CornerDistance = 0.4,
-    boundary: Boundary = "straight edges",
-    complete: CompleteFacades = True,
-    seed: Seed = 1,
+    search_in: str = tunable(
+        ALL_POINTS,
+        "All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from "
+        "the scanner, behind cars, trees and people. Facade lines need the GPS time of the points.",
+        choices=(ALL_POINTS, FACADE_LINES),
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
+        "strips and separates shallower recesses.",
+        within="(0, 1] m",
+        automatic=f"{_ON_PLANE:g} times the root of the sum of the squares of the surface noise and of "
+        f"{_RELIEF:g} m, the relief of walls.",
+    ),
+    max_tilt: float = FACADE_TILT,
+    min_area: float = tunable(
+        2.0, "Area of the smallest facade, where it has points.", label="Minimum facade area", within="[0.1, 10_000] m²"
+    ),
+    min_height: float = tunable(
+        2.5,
+        "Height of the lowest facade; cars and hedges are lower than walls.",
+        label="Minimum facade height",
+        within="[0, 100] m",
+    ),
+    max_gap: float = FACADE_GAP,
+    corner_distance: float = CORNER_DISTANCE,
+    boundary: str = BOUNDARY,
+    complete: bool = COMPLETE_FACADES,
+    seed: int = SEED,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

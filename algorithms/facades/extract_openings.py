@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated
 
 import numpy as np
 
 from ..geometry.line_segments import is_valid
-from ..params import Boundary, CompleteFacades, CornerDistance, FacadeGap, FacadeTilt
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .approaches import BEFORE
 from .common_borders import with_common_borders
 from .extract_facades import FACADES
@@ -60,19 +59,17 @@ def extract_openings(
     xyz,
     segment_id,
     *,
-    max_depth: Annotated[
-        float,
-        Param(
-            "How far behind the wall points may belong to its openings; deeper recesses are parts of the building.",
-            within="[0.05, 10] m",
-        ),
-    ] = 0.8,
-    min_size: Annotated[float, Param("Least width and height of a window or door.", within="[0.05, 10] m")] = 0.4,
-    max_tilt: FacadeTilt = 10.0,
-    max_gap: FacadeGap = 1.0,
-    corner_distance: CornerDistance = 0.4,
-    boundary: Boundary = "straight edges",
-    complete: CompleteFacades = True,
+    max_depth: float = tunable(
+        0.8,
+        "How far behind the wall points may belong to its openings; deeper recesses are parts of the building.",
+        within="[0.05, 10] m",
+    ),
+    min_size: float = tunable(0.4, "Least width and height of a window or door.", within="[0.05, 10] m"),
+    max_tilt: float = FACADE_TILT,
+    max_gap: float = FACADE_GAP,
+    corner_distance: float = CORNER_DISTANCE,
+    boundary: str = BOUNDARY,
+    complete: bool = COMPLETE_FACADES,
     monitor=None,
 ):
     """Find windows and doors, cut them out of the facades, and measure their size, position and row.

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..report.page import Row, build_page
-from ..stage import InputLayer, LayerFeatures, Measure, Param, Report, stage
+from ..stage import InputLayer, LayerFeatures, Measure, Report, stage, tunable
 from .extract_facades import extract_facades
 from .extract_openings import PIERCED, extract_openings
 from .plan_segments import facade_segments, outline_segments
@@ -59,10 +57,10 @@ def register_street(
     reference_classification,
     footprints,
     *,
-    max_shift: Annotated[
-        float, Param("How far the street scan may be off the airborne cloud, along either axis.", within="[0, 20] m")
-    ] = 3.0,
-    min_size: Annotated[float, Param("Least width and height of a window or door.", within="[0.05, 10] m")] = 0.4,
+    max_shift: float = tunable(
+        3.0, "How far the street scan may be off the airborne cloud, along either axis.", within="[0, 20] m"
+    ),
+    min_size: float = tunable(0.4, "Least width and height of a window or door.", within="[0.05, 10] m"),
     monitor=None,
 ):
     """Find facades, windows and doors in a street scan and move them onto the airborne cloud.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..geometry.groups import least_of, run_starts
 from ..geometry.polylines import simplify
 from ..neighborhoods.covariance import full_matrices
 from ..segmentation.least_squares_planes import planes_of
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 
 # Two neighbors of a line this far apart are of two segments (median steps of the line): steps grow with the range.
 _GAP_STEPS = 8.0
@@ -66,39 +66,28 @@ def segment_facade_lines(
     gps_time,
     point_source_id=None,
     *,
-    line_duration: Annotated[
-        Optional[float],
-        Param(
-            "Time of one turn of the scanner's mirror.",
-            within="(0, 60] s",
-            automatic="the median time between two views of the sky, which give no points.",
-        ),
-    ] = None,
-    tolerance: Annotated[
-        float,
-        Param(
-            "Distance within which points lie on a line segment: a few standard deviations of the noise and of the "
-            "relief of walls.",
-            within="(0, 1] m",
-        ),
-    ] = 0.05,
-    max_ground_height: Annotated[
-        float,
-        Param(
-            "Level segments at most this high over the lowest one of their line are ground (d0).", within="[0, 10] m"
-        ),
-    ] = 0.5,
-    facade_distance: Annotated[
-        float,
-        Param(
-            "Steep segments at most this much nearer to the scanner than the farthest one on their side of the line "
-            "are of the facade (h0).",
-            within="[0, 50] m",
-        ),
-    ] = 1.5,
-    min_points: Annotated[
-        int, Param("Points of the shortest segment; shorter ones are stray points.", within="[3, 1000]")
-    ] = 5,
+    line_duration: Optional[float] = tunable(
+        None,
+        "Time of one turn of the scanner's mirror.",
+        within="(0, 60] s",
+        automatic="the median time between two views of the sky, which give no points.",
+    ),
+    tolerance: float = tunable(
+        0.05,
+        "Distance within which points lie on a line segment: a few standard deviations of the noise and of the "
+        "relief of walls.",
+        within="(0, 1] m",
+    ),
+    max_ground_height: float = tunable(
+        0.5, "Level segments at most this high over the lowest one of their line are ground (d0).", within="[0, 10] m"
+    ),
+    facade_distance: float = tunable(
+        1.5,
+        "Steep segments at most this much nearer to the scanner than the farthest one on their side of the line "
+        "are of the facade (h0).",
+        within="[0, 50] m",
+    ),
+    min_points: int = tunable(5, "Points of the shortest segment; shorter ones are stray points.", within="[3, 1000]"),
     monitor=None,
 ):
     """Divide a vehicle's scan lines into straight segments, and label ground, facades and other objects.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Annotated, Callable, Optional
+from typing import Callable, Optional
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from ..neighborhoods.covariance import (
 )
 from ..neighborhoods.optimal_size import Optimal
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 
 
 class _Described:
@@ -96,38 +96,14 @@ _REACH = 5.0
 # Smallest and largest neighborhood that 'optimal' tries where it is not set, as published.
 MIN_NEIGHBORS, MAX_NEIGHBORS = 10, 100
 
-_Features = Annotated[
-    tuple[str, ...], Param("What to compute; each becomes a dimension of the cloud.", choices=tuple(_FEATURES))
-]
 
-_Radius = Annotated[
-    Optional[float],
-    Param(
-        "Radius of the sphere around a point; used by the neighborhood 'radius'.",
-        within="(0, inf) m",
-        automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
-    ),
-]
-
-NNeighbors = Annotated[
-    int,
-    Param(
-        "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
-        "More of them smooth noise away and blur small objects.",
-        label="Nearest points",
-        within="[3, 1000]",
-    ),
-]
-
-_NeighborsStep = Annotated[
-    int,
-    Param(
-        "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
-        label="Step of nearest points",
-        within="[1, 100]",
-        advanced=True,
-    ),
-]
+N_NEIGHBORS = tunable(
+    50,
+    "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
+    "More of them smooth noise away and blur small objects.",
+    label="Nearest points",
+    within="[3, 1000]",
+)
 
 
 @stage(
@@ -141,34 +117,43 @@ _NeighborsStep = Annotated[
 def compute_features(
     xyz,
     *,
-    neighborhood: Annotated[
-        str,
-        Param(
-            "Which points describe a point: a number of nearest ones, all within a radius, or as many nearest ones as "
-            "show the clearest shape (least eigenentropy), chosen for each point.",
-            choices=("nearest", "radius", "optimal"),
-        ),
-    ] = "nearest",
-    n_neighbors: NNeighbors = 50,
-    radius: _Radius = None,
-    min_neighbors: Annotated[
-        int,
-        Param(
-            "Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.",
-            label="Minimum nearest points",
-            within="[3, 1000]",
-        ),
-    ] = MIN_NEIGHBORS,
-    max_neighbors: Annotated[
-        int,
-        Param(
-            "Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.",
-            label="Maximum nearest points",
-            within="[3, 1000]",
-        ),
-    ] = MAX_NEIGHBORS,
-    neighbors_step: _NeighborsStep = 1,
-    features: _Features = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
+    neighborhood: str = tunable(
+        "nearest",
+        "Which points describe a point: a number of nearest ones, all within a radius, or as many nearest ones as "
+        "show the clearest shape (least eigenentropy), chosen for each point.",
+        choices=("nearest", "radius", "optimal"),
+    ),
+    n_neighbors: int = N_NEIGHBORS,
+    radius: Optional[float] = tunable(
+        None,
+        "Radius of the sphere around a point; used by the neighborhood 'radius'.",
+        within="(0, inf) m",
+        automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
+    ),
+    min_neighbors: int = tunable(
+        MIN_NEIGHBORS,
+        "Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.",
+        label="Minimum nearest points",
+        within="[3, 1000]",
+    ),
+    max_neighbors: int = tunable(
+        MAX_NEIGHBORS,
+        "Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.",
+        label="Maximum nearest points",
+        within="[3, 1000]",
+    ),
+    neighbors_step: int = tunable(
+        1,
+        "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
+        label="Step of nearest points",
+        within="[1, 100]",
+        advanced=True,
+    ),
+    features: tuple[str, ...] = tunable(
+        ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
+        "What to compute; each becomes a dimension of the cloud.",
+        choices=tuple(_FEATURES),
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

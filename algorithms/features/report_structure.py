@@ -11,7 +11,7 @@ from ..report.charts import draw_bars
 from ..report.page import build_page, draw_map, draw_table, percent
 from ..stage import Measure, Monitor, Report, stage
 from .classify_dimensionality import classify_dimensionality
-from .compute_features import MAX_NEIGHBORS, MIN_NEIGHBORS, NNeighbors
+from .compute_features import MAX_NEIGHBORS, MIN_NEIGHBORS, N_NEIGHBORS
 
 # Points that both neighborhoods are tried on: shares of them are right to a few tenths of a percent.
 _COMPARED = 20_000
@@ -40,7 +40,7 @@ def report_structure(
     dimensionality,
     voxel_count=None,
     *,
-    n_neighbors: NNeighbors = 50,
+    n_neighbors: int = N_NEIGHBORS,
     monitor=None,
 ):
     """Report what thinning left, and the shares of linear, planar and volumetric points in two neighborhoods.

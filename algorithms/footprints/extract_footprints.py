@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -12,10 +12,10 @@ from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED, Reason
 from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
-from ..params import MinBuildingArea
+from ..params import MIN_BUILDING_AREA
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
-from ..stage import Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Layer, LayerFeatures, Monitor, stage, tunable
 from ..threads import made_ahead
 from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
@@ -64,35 +64,29 @@ def extract_footprints(
     weakest_evidence=None,
     reviewed=None,
     *,
-    min_area: MinBuildingArea = 4.0,
-    min_hole_area: Annotated[
-        float, Param("Smaller holes are filled, larger ones are courtyards.", within="[0, 10_000] m²")
-    ] = 5.0,
-    regularize: Annotated[
-        bool,
-        Param(
-            "Make walls straight and, where they nearly are, parallel or square to each other.",
-            label="Regularize outlines",
-        ),
-    ] = True,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
-            within="[0.01, 100] m",
-            automatic=_AUTOMATIC_TOLERANCE,
-            advanced=True,
-        ),
-    ] = None,
-    merge_touching: Annotated[
-        bool,
-        Param(
-            "Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house "
-            "of a row of three or more, where valleys between the roofs, steps or walls above them show the party "
-            "walls.",
-            label="Merge touching buildings",
-        ),
-    ] = False,
+    min_area: float = MIN_BUILDING_AREA,
+    min_hole_area: float = tunable(
+        5.0, "Smaller holes are filled, larger ones are courtyards.", within="[0, 10_000] m²"
+    ),
+    regularize: bool = tunable(
+        True,
+        "Make walls straight and, where they nearly are, parallel or square to each other.",
+        label="Regularize outlines",
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
+        within="[0.01, 100] m",
+        automatic=_AUTOMATIC_TOLERANCE,
+        advanced=True,
+    ),
+    merge_touching: bool = tunable(
+        False,
+        "Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house "
+        "of a row of three or more, where valleys between the roofs, steps or walls above them show the party "
+        "walls.",
+        label="Merge touching buildings",
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..geometry.points_in_polygons import are_within
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.ring_directions import deviations
 from ..geometry.rings import perimeter, polygon_area, sampled_rings, sides_of_rings
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable
 from .drawn_blocks import Drawing, draw_block
 from .outline_pieces import Piece, blocks_of, sampled, shared_directions
 from .soft_shares import LEAST_SPACING, Lattice, Shares
@@ -78,15 +78,13 @@ _FIELDS = (
 def regularize_polygons(
     polygons,
     *,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
-            within="[0.1, 20] m",
-            automatic="1.75 times the length of the edges, or less where walls deviate less from straight lines, at "
-            f"least {_TOLERANCE_SCALES * LEAST_SPACING:.2g} m.",
-        ),
-    ] = None,
+    tolerance: Optional[float] = tunable(
+        None,
+        "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
+        within="[0.1, 20] m",
+        automatic="1.75 times the length of the edges, or less where walls deviate less from straight lines, at "
+        f"least {_TOLERANCE_SCALES * LEAST_SPACING:.2g} m.",
+    ),
     monitor=None,
 ):
     """Draw polygons anew along few main directions, with right angles, common borders and the same areas.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import occupied_cells
 from ..segmentation.least_squares_planes import planes_of
 from ..shapes.plane_polygons import outline_of_cells
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable
 
 _FIELDS = (
     Field("id", int, "number of the segment, as SegmentID of its points", numbers="segment_id"),
@@ -30,9 +30,9 @@ _FIELDS = (
 _LIMITED = ("area", "height", "slope", "roughness")
 
 
-def _limit(text: str, within: str) -> Param:
+def _limit(text: str, within: str) -> Any:
     """Return the declaration of a limit of a measure."""
-    return Param(f"Pick segments {text}.", within=within, empty="no limit.")
+    return tunable(None, f"Pick segments {text}.", within=within, empty="no limit.")
 
 
 @stage(
@@ -57,30 +57,24 @@ def classify_segments(
     height_above_ground=None,
     selection=None,
     *,
-    code: Annotated[int, Param("Class that the points of picked segments get.", label="Class", within="[0, 255]")] = 2,
-    numbers: Annotated[
-        str,
-        Param(
-            "Pick these segments: numbers and ranges, separated by commas (3, 7, 12-15); empty: any number.",
-            label="Numbers of segments",
-        ),
-    ] = "",
-    min_area: Annotated[Optional[float], _limit("of at least this area, seen from above", "[0, inf) m²")] = None,
-    max_area: Annotated[Optional[float], _limit("of at most this area, seen from above", "[0, inf) m²")] = None,
-    min_height: Annotated[
-        Optional[float], _limit("with at least this mean height above the ground", "[-10_000, 10_000] m")
-    ] = None,
-    max_height: Annotated[
-        Optional[float], _limit("with at most this mean height above the ground", "[-10_000, 10_000] m")
-    ] = None,
-    min_slope: Annotated[Optional[float], _limit("whose plane is at least this steep", "[0, 90]°")] = None,
-    max_slope: Annotated[Optional[float], _limit("whose plane is at most this steep", "[0, 90]°")] = None,
-    min_roughness: Annotated[
-        Optional[float], _limit("whose points lie at least this far off their plane, root mean square", "[0, inf) m")
-    ] = None,
-    max_roughness: Annotated[
-        Optional[float], _limit("whose points lie at most this far off their plane, root mean square", "[0, inf) m")
-    ] = None,
+    code: int = tunable(2, "Class that the points of picked segments get.", label="Class", within="[0, 255]"),
+    numbers: str = tunable(
+        "",
+        "Pick these segments: numbers and ranges, separated by commas (3, 7, 12-15); empty: any number.",
+        label="Numbers of segments",
+    ),
+    min_area: Optional[float] = _limit("of at least this area, seen from above", "[0, inf) m²"),
+    max_area: Optional[float] = _limit("of at most this area, seen from above", "[0, inf) m²"),
+    min_height: Optional[float] = _limit("with at least this mean height above the ground", "[-10_000, 10_000] m"),
+    max_height: Optional[float] = _limit("with at most this mean height above the ground", "[-10_000, 10_000] m"),
+    min_slope: Optional[float] = _limit("whose plane is at least this steep", "[0, 90]°"),
+    max_slope: Optional[float] = _limit("whose plane is at most this steep", "[0, 90]°"),
+    min_roughness: Optional[float] = _limit(
+        "whose points lie at least this far off their plane, root mean square", "[0, inf) m"
+    ),
+    max_roughness: Optional[float] = _limit(
+        "whose points lie at most this far off their plane, root mean square", "[0, inf) m"
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, NamedTuple, Optional
+from typing import NamedTuple, Optional
 
 import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
 from ..cloud.reasons import Reason
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .solid_objects import REACH, are_opaque, find_solid_objects
 
 # Points of these classes may be vegetation; all others stay.
@@ -45,45 +45,37 @@ def classify_vegetation(
     number_of_returns=None,
     reason=None,
     *,
-    look_for: Annotated[
-        bool, Param("If not, no class changes. For models that contain this step.", label="Look for vegetation")
-    ] = True,
-    heights: Annotated[
-        str,
-        Param(
-            "Height above the ground from which vegetation is medium (4), and that from which it is high (5); below "
-            "both it is low (3). The last two are of the French and the Australian surveys.",
-            label="Heights of medium and high vegetation",
-            choices=tuple(HEIGHTS),
-        ),
-    ] = "2 m and 5 m",
-    min_height: Annotated[
-        float,
-        Param(
-            "Points at least this high above the ground are vegetation; all others are unclassified.",
-            within="[0, 10] m",
-        ),
-    ] = 0.1,
-    medium_height: Annotated[
-        Optional[float],
-        Param(
-            "Height above the ground from which vegetation is medium (4).",
-            label="Medium vegetation from",
-            within="[0, 100] m",
-            automatic="the lower one of the heights chosen above.",
-            advanced=True,
-        ),
-    ] = None,
-    high_height: Annotated[
-        Optional[float],
-        Param(
-            "Height above the ground from which vegetation is high (5).",
-            label="High vegetation from",
-            within="[0, 100] m",
-            automatic="the higher one of the heights chosen above.",
-            advanced=True,
-        ),
-    ] = None,
+    look_for: bool = tunable(
+        True, "If not, no class changes. For models that contain this step.", label="Look for vegetation"
+    ),
+    heights: str = tunable(
+        "2 m and 5 m",
+        "Height above the ground from which vegetation is medium (4), and that from which it is high (5); below "
+        "both it is low (3). The last two are of the French and the Australian surveys.",
+        label="Heights of medium and high vegetation",
+        choices=tuple(HEIGHTS),
+    ),
+    min_height: float = tunable(
+        0.1,
+        "Points at least this high above the ground are vegetation; all others are unclassified.",
+        within="[0, 10] m",
+    ),
+    medium_height: Optional[float] = tunable(
+        None,
+        "Height above the ground from which vegetation is medium (4).",
+        label="Medium vegetation from",
+        within="[0, 100] m",
+        automatic="the lower one of the heights chosen above.",
+        advanced=True,
+    ),
+    high_height: Optional[float] = tunable(
+        None,
+        "Height above the ground from which vegetation is high (5).",
+        label="High vegetation from",
+        within="[0, 100] m",
+        automatic="the higher one of the heights chosen above.",
+        advanced=True,
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..params import SurfaceNoise
+from ..params import SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .water_bodies import REACH, water_levels
 
 # Points of these classes may be water, by their height.
@@ -31,14 +31,13 @@ def classify_water(
     classification,
     return_number=None,
     *,
-    look_for: Annotated[
-        bool, Param("If not, no class changes. For models that contain this step.", label="Look for water")
-    ] = True,
-    min_area: Annotated[
-        float,
-        Param("Area of the smallest water body to be found.", label="Minimum water area", within="[10, 1_000_000] m²"),
-    ] = 50.0,
-    noise: SurfaceNoise = None,
+    look_for: bool = tunable(
+        True, "If not, no class changes. For models that contain this step.", label="Look for water"
+    ),
+    min_area: float = tunable(
+        50.0, "Area of the smallest water body to be found.", label="Minimum water area", within="[10, 1_000_000] m²"
+    ),
+    noise: Optional[float] = SURFACE_NOISE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

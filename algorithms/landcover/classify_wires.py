@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..params import Seed, SurfaceNoise
+from ..params import SEED, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .masts import on_masts
 from .wire_candidates import over_free_space, strands, thinned
 from .wire_spans import RULES, Span, Surroundings, parallels_of, spans_of
@@ -45,12 +45,12 @@ def classify_wires(
     classification,
     height_above_ground,
     *,
-    look_for: Annotated[
-        bool, Param("If not, no class changes. For models that contain this step.", label="Look for wires")
-    ] = True,
-    min_height: Annotated[float, Param("Height above the ground of the lowest wires.", within="[1, 100] m")] = 4.0,
-    noise: SurfaceNoise = None,
-    seed: Seed = 0,
+    look_for: bool = tunable(
+        True, "If not, no class changes. For models that contain this step.", label="Look for wires"
+    ),
+    min_height: float = tunable(4.0, "Height above the ground of the lowest wires.", within="[1, 100] m"),
+    noise: Optional[float] = SURFACE_NOISE,
+    seed: int = SEED.with_default(0),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..stage import Param, stage
+from ..stage import stage, tunable
 
 # The choice by default.
 _NONE = "none"
@@ -34,15 +32,13 @@ def keep_classes(
     classification,
     earlier_class=None,
     *,
-    keep: Annotated[
-        str,
-        Param(
-            "Which classes of a cloud that comes classified stay as they are: none, ground (2), ground and buildings "
-            "(6), or all but 0 and 1. Where ground or buildings are kept, no others are looked for.",
-            label="Keep existing classes",
-            choices=tuple(_KEPT),
-        ),
-    ] = _NONE,
+    keep: str = tunable(
+        _NONE,
+        "Which classes of a cloud that comes classified stay as they are: none, ground (2), ground and buildings "
+        "(6), or all but 0 and 1. Where ground or buildings are kept, no others are looked for.",
+        label="Keep existing classes",
+        choices=tuple(_KEPT),
+    ),
     monitor=None,
 ):
     """Remember classes of a cloud that comes classified, for 'Restore classes' to put them back.

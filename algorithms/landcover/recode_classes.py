@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes
-from ..stage import Param, stage
+from ..stage import stage, tunable
 
 _ASPRS = "ASPRS"
 _WIRES = (PointClass.WIRE_CONDUCTOR, PointClass.TRANSMISSION_TOWER)
@@ -39,23 +37,19 @@ def recode_classes(
     xyz,
     classification,
     *,
-    codes: Annotated[
-        str,
-        Param(
-            "Whose class codes are written: the codes of ASPRS, which all other steps read, or of the Dutch, the "
-            "French or the American survey.",
-            label="Codes to write",
-            choices=tuple(CODES),
-        ),
-    ] = _ASPRS,
-    mapping: Annotated[
-        str,
-        Param(
-            "Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges "
-            "before the equals sign, entries separated by semicolons; empty for none.",
-            label="Own codes",
-        ),
-    ] = "",
+    codes: str = tunable(
+        _ASPRS,
+        "Whose class codes are written: the codes of ASPRS, which all other steps read, or of the Dutch, the "
+        "French or the American survey.",
+        label="Codes to write",
+        choices=tuple(CODES),
+    ),
+    mapping: str = tunable(
+        "",
+        "Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges "
+        "before the equals sign, entries separated by semicolons; empty for none.",
+        label="Own codes",
+    ),
     monitor=None,
 ):
     """Replace class codes by an agency's, or by one's own.

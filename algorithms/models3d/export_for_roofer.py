@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.rings import signed_area
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Param, feature_names, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, feature_names, stage, tunable
 from .cityjson import unique_names
 from .model_inputs import NO_AREA, require_buildings, require_ground, rows_near, tell_without_area
 from .roof_partition import inside_rings
@@ -38,13 +36,11 @@ def export_for_roofer(
     classification,
     footprints,
     *,
-    margin: Annotated[
-        float,
-        Param(
-            "Points up to this distance from the box of a footprint are kept, so that its ground is among them.",
-            within="[0, 1000] m",
-        ),
-    ] = 10.0,
+    margin: float = tunable(
+        10.0,
+        "Points up to this distance from the box of a footprint are kept, so that its ground is among them.",
+        within="[0, 1000] m",
+    ),
     monitor=None,
 ):
     """Write the points of buildings and ground around footprints, and the footprints, as the program roofer reads them.

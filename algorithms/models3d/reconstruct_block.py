@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from ..facades.street_walls import fitted_to_walls
 from ..geometry.line_segments import nearest_edge_distances
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, Param, TextFile, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
 from . import cityjson
 from .building_facts import (
     BUILDING_FIELDS,
@@ -88,9 +87,7 @@ def reconstruct_block(
     facades,
     openings,
     *,
-    min_plane_area: Annotated[
-        float, Param("Area of the smallest roof plane, seen from above.", within="[0.1, 1000] m²")
-    ] = 1.5,
+    min_plane_area: float = tunable(1.5, "Area of the smallest roof plane, seen from above.", within="[0.1, 1000] m²"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

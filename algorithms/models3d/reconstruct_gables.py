@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..geometry.groups import members
 from ..geometry.polygons import area_vector
 from ..packages import spatial
 from ..segmentation.least_squares_planes import Planes, planes_of
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, TextFile, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
 from . import cityjson
 from .building_facts import NamedModel
 from .building_models import BuildingModel
@@ -71,18 +71,15 @@ def reconstruct_gables(
     classification,
     segment_id,
     *,
-    min_area: Annotated[
-        float,
-        Param("Area of the smallest roof plane of a gable.", label="Minimum plane area", within="[0.5, 10_000] m²"),
-    ] = 4.0,
-    max_gap: Annotated[
-        float,
-        Param(
-            "Points of both roof planes come this near to each other.",
-            label="Largest gap at the ridge",
-            within="(0, 10] m",
-        ),
-    ] = 1.5,
+    min_area: float = tunable(
+        4.0, "Area of the smallest roof plane of a gable.", label="Minimum plane area", within="[0.5, 10_000] m²"
+    ),
+    max_gap: float = tunable(
+        1.5,
+        "Points of both roof planes come this near to each other.",
+        label="Largest gap at the ridge",
+        within="(0, 10] m",
+    ),
     monitor=None,
 ):
     """Reconstruct gable houses: ten vertices from two roof planes, the height of the eaves and that of the ground.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..cloud.asprs import PointClass
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
-from ..stage import InputLayer, Layer, LayerFeatures, Monitor, Param, TextFile, feature_names, stage
+from ..stage import InputLayer, Layer, LayerFeatures, Monitor, TextFile, feature_names, stage, tunable
 from . import cityjson, wavefront
 from .building_facts import (
     BUILDING_FIELDS,
@@ -44,26 +44,6 @@ from .solids import ROOF, WALL
 
 # Number of footprints without a model that a warning names.
 _NAMED = 5
-
-_Tolerance = Annotated[
-    Optional[float],
-    Param(
-        "Distance at which a point lies on a plane. A larger one gives fewer planes.",
-        within="[0.01, 5] m",
-        automatic=TOLERANCE_TEXT,
-        advanced=True,
-    ),
-]
-
-_TopPercentile = Annotated[
-    float,
-    Param(
-        "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
-        label="Percentile of level tops",
-        within="[0, 100] %",
-        advanced=True,
-    ),
-]
 
 
 @stage(
@@ -100,42 +80,47 @@ def reconstruct_roofs(
     classification,
     footprints,
     *,
-    level_of_detail: Annotated[
-        str,
-        Param(
-            "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.0: the large planes of "
-            "the roof, without dormers, chimneys and parts of under 10 m²; 2.2: all planes. Files have the simpler "
-            "levels too, 2.0 only where it is chosen.",
-            choices=LEVELS,
-        ),
-    ] = "2.2",
-    min_plane_area: Annotated[
-        float,
-        Param("Area of the smallest roof plane, seen from above; dormers have 2 m² and more.", within="[0.1, 1000] m²"),
-    ] = 1.5,
-    min_step: Annotated[
-        float, Param("At level 1.3, parts of a roof that step by less are one part.", within="[0, 100] m")
-    ] = 3.0,
-    top_percentile: _TopPercentile = 70.0,
-    terrain_tolerance: Annotated[
-        float,
-        Param(
-            "Largest height of ground points above or below a terrain of triangles, on which the walls end; 0.2 m is "
-            "usual. 0: no terrain, and a level ground under each building.",
-            within="[0, 10] m",
-        ),
-    ] = 0.0,
-    max_slope: Annotated[float, Param("Slope of the steepest roof plane.", within="[1, 85]°", advanced=True)] = 75.0,
-    tolerance: _Tolerance = None,
-    id_field: Annotated[
-        str,
-        Param(
-            "Attribute of the footprints that names buildings in all results. With it, the layer of buildings and "
-            "CityJSON keep all attributes of the footprints. If empty, buildings are named by the attribute 'id' or "
-            "'fid', or numbered, and in CityJSON also by their position, so that files can be merged.",
-            label="Identifier",
-        ),
-    ] = "",
+    level_of_detail: str = tunable(
+        "2.2",
+        "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.0: the large planes of "
+        "the roof, without dormers, chimneys and parts of under 10 m²; 2.2: all planes. Files have the simpler "
+        "levels too, 2.0 only where it is chosen.",
+        choices=LEVELS,
+    ),
+    min_plane_area: float = tunable(
+        1.5, "Area of the smallest roof plane, seen from above; dormers have 2 m² and more.", within="[0.1, 1000] m²"
+    ),
+    min_step: float = tunable(
+        3.0, "At level 1.3, parts of a roof that step by less are one part.", within="[0, 100] m"
+    ),
+    top_percentile: float = tunable(
+        70.0,
+        "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
+        label="Percentile of level tops",
+        within="[0, 100] %",
+        advanced=True,
+    ),
+    terrain_tolerance: float = tunable(
+        0.0,
+        "Largest height of ground points above or below a terrain of triangles, on which the walls end; 0.2 m is "
+        "usual. 0: no terrain, and a level ground under each building.",
+        within="[0, 10] m",
+    ),
+    max_slope: float = tunable(75.0, "Slope of the steepest roof plane.", within="[1, 85]°", advanced=True),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance at which a point lies on a plane. A larger one gives fewer planes.",
+        within="[0.01, 5] m",
+        automatic=TOLERANCE_TEXT,
+        advanced=True,
+    ),
+    id_field: str = tunable(
+        "",
+        "Attribute of the footprints that names buildings in all results. With it, the layer of buildings and "
+        "CityJSON keep all attributes of the footprints. If empty, buildings are named by the attribute 'id' or "
+        "'fid', or numbered, and in CityJSON also by their position, so that files can be merged.",
+        label="Identifier",
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..packages import spatial
-from ..params import MinFrequency
+from ..params import MIN_FREQUENCY
 from ..rules import rule
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .height_histograms import AUTOMATIC_BIN, Histogram, automatic_bin_height, pooled_histogram, with_borrowed_ranges
 from .points_under_ground import UNDER_GROUND, under_ground
 
@@ -44,41 +44,33 @@ def classify_noise_histogram(
     xyz,
     classification,
     *,
-    min_frequency: MinFrequency = 5,
-    cell_size: Annotated[
-        Optional[float],
-        Param(
-            "Side of the cells whose heights are counted, each together with the eight cells around it.",
-            within="[0.1, 10_000] m",
-            automatic=f"cells of {HISTOGRAM.points_per_cell:g} points on average.",
-            advanced=True,
-        ),
-    ] = None,
-    bin_height: Annotated[
-        Optional[float],
-        Param(
-            "Height of the bins; noise is parted from the scene by at least two empty ones.",
-            within="[0.01, 1000] m",
-            automatic=AUTOMATIC_BIN,
-            advanced=True,
-        ),
-    ] = None,
-    max_clearance: Annotated[
-        float,
-        Param(
-            "Height over the scene, or depth under it, beyond which everything is noise, however many points it has: "
-            "clouds, aircraft, flocks. Cables over a deep valley may need more.",
-            within="[1, 100_000] m",
-            advanced=True,
-        ),
-    ] = 200.0,
-    isolated: Annotated[
-        bool,
-        Param(
-            "Also find single points and a few together under the ground (multipath), within the heights of the scene.",
-            label="Isolated points under the ground",
-        ),
-    ] = True,
+    min_frequency: int = MIN_FREQUENCY,
+    cell_size: Optional[float] = tunable(
+        None,
+        "Side of the cells whose heights are counted, each together with the eight cells around it.",
+        within="[0.1, 10_000] m",
+        automatic=f"cells of {HISTOGRAM.points_per_cell:g} points on average.",
+        advanced=True,
+    ),
+    bin_height: Optional[float] = tunable(
+        None,
+        "Height of the bins; noise is parted from the scene by at least two empty ones.",
+        within="[0.01, 1000] m",
+        automatic=AUTOMATIC_BIN,
+        advanced=True,
+    ),
+    max_clearance: float = tunable(
+        200.0,
+        "Height over the scene, or depth under it, beyond which everything is noise, however many points it has: "
+        "clouds, aircraft, flocks. Cables over a deep valley may need more.",
+        within="[1, 100_000] m",
+        advanced=True,
+    ),
+    isolated: bool = tunable(
+        True,
+        "Also find single points and a few together under the ground (multipath), within the heights of the scene.",
+        label="Isolated points under the ground",
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

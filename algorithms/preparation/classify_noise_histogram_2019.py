@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
-from ..params import MinFrequency
+from ..params import MIN_FREQUENCY
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .height_histograms import (
     AUTOMATIC_BIN,
     Histogram,
@@ -40,19 +40,17 @@ def classify_noise_histogram_2019(
     xyz,
     classification,
     *,
-    min_frequency: MinFrequency = 5,
-    cell_size: Annotated[
-        Optional[float],
-        Param(
-            "Side of the cells whose heights are counted.",
-            within="[0.1, 10_000] m",
-            automatic=f"cells of {_POINTS_PER_CELL:,} points on average.",
-            advanced=True,
-        ),
-    ] = None,
-    bin_height: Annotated[
-        Optional[float], Param("Height of the bins.", within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True)
-    ] = None,
+    min_frequency: int = MIN_FREQUENCY,
+    cell_size: Optional[float] = tunable(
+        None,
+        "Side of the cells whose heights are counted.",
+        within="[0.1, 10_000] m",
+        automatic=f"cells of {_POINTS_PER_CELL:,} points on average.",
+        advanced=True,
+    ),
+    bin_height: Optional[float] = tunable(
+        None, "Height of the bins.", within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

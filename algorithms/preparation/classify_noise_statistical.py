@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, plan_box
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from ..threads import n_threads
 from .points_in_the_air import in_the_air, link_length
 from .points_under_ground import under_ground
@@ -38,31 +36,25 @@ def classify_noise_statistical(
     xyz,
     classification,
     *,
-    n_neighbors: Annotated[
-        int,
-        Param(
-            "Nearest points whose mean distance is taken, the point itself not counted.",
-            label="Neighbors",
-            within="[1, 200]",
-        ),
-    ] = 8,
-    deviations: Annotated[
-        float,
-        Param(
-            "How far a point's mean distance may lie over the mean of the whole cloud. Smaller values remove more, "
-            "and sparse parts of the scene with it.",
-            label="Standard deviations",
-            within="[0, 100]",
-        ),
-    ] = 6.0,
-    isolated: Annotated[
-        bool,
-        Param(
-            "Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), "
-            "within the heights of the scene.",
-            label="Isolated points",
-        ),
-    ] = True,
+    n_neighbors: int = tunable(
+        8,
+        "Nearest points whose mean distance is taken, the point itself not counted.",
+        label="Neighbors",
+        within="[1, 200]",
+    ),
+    deviations: float = tunable(
+        6.0,
+        "How far a point's mean distance may lie over the mean of the whole cloud. Smaller values remove more, "
+        "and sparse parts of the scene with it.",
+        label="Standard deviations",
+        within="[0, 100]",
+    ),
+    isolated: bool = tunable(
+        True,
+        "Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), "
+        "within the heights of the scene.",
+        label="Isolated points",
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
-from ..stage import InputLayer, LayerFeatures, Param, stage
+from ..stage import InputLayer, LayerFeatures, stage, tunable
 
 
 @stage(
@@ -30,7 +30,7 @@ def clip_cloud(
     xyz,
     polygons: Optional[LayerFeatures] = None,
     *,
-    outside: Annotated[bool, Param("Keep the points outside all polygons instead.", label="Keep outside")] = False,
+    outside: bool = tunable(False, "Keep the points outside all polygons instead.", label="Keep outside"),
     monitor=None,
 ):
     """Keep the points that lie in polygons, within an extent, or both; all their dimensions stay.

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.groups import items, run_starts
 from ..geometry.sparse_voxels import MOST_KEYS, TOUCH, refuse_fine, voxel_index
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from ..threads import in_chunks
 
 # Points of a chunk: values gathered for them stay in the processor's cache.
@@ -59,14 +59,12 @@ def downsample_voxels(
     gps_time=None,
     return_number=None,
     *,
-    voxel_size: Annotated[
-        float,
-        Param(
-            "Side of the cubes that are left with one point each. Take more than the noise of the scanner and less "
-            "than the smallest object of interest.",
-            within="[0.001, 1000] m",
-        ),
-    ] = 0.1,
+    voxel_size: float = tunable(
+        0.1,
+        "Side of the cubes that are left with one point each. Take more than the noise of the scanner and less "
+        "than the smallest object of interest.",
+        within="[0.001, 1000] m",
+    ),
     monitor=None,
 ):
     """Leave one point in every occupied voxel: the center of gravity of its points.

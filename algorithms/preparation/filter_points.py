@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import parse_classes
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 
 # Numbers of 32 bits, and times in seconds from 1970, are smaller.
 _LARGEST = 10_000_000_000
@@ -27,52 +27,39 @@ def filter_points(
     height_above_ground=None,
     values=None,
     *,
-    classes: Annotated[
-        str,
-        Param(
-            "Keep points of these classes: numbers and ranges, separated by commas (2, 6-9); empty keeps every class."
-        ),
-    ] = "",
-    min_height: Annotated[
-        Optional[float],
-        Param(
-            "Keep points at least this high above the ground: 0.3 m removes ground and grass.",
-            within="[-10_000, 10_000] m",
-            empty=_NO_LIMIT,
-        ),
-    ] = None,
-    max_height: Annotated[
-        Optional[float],
-        Param(
-            "Greatest height above the ground of the points kept: 2.5 m leaves everything lower than roofs.",
-            within="[-10_000, 10_000] m",
-            empty=_NO_LIMIT,
-        ),
-    ] = None,
-    dimension: Annotated[
-        str, Param("Any dimension of the cloud, by name (Intensity, NormalZ, Z), whose range is to be limited.")
-    ] = "",
-    low: Annotated[
-        Optional[float],
-        Param(
-            "Keep points that have at least this in the dimension.",
-            label="Minimum value",
-            within=f"[{-_LARGEST}, {_LARGEST}]",
-            empty=_NO_LIMIT,
-        ),
-    ] = None,
-    high: Annotated[
-        Optional[float],
-        Param(
-            "Keep points that have at most this in the dimension.",
-            label="Maximum value",
-            within=f"[{-_LARGEST}, {_LARGEST}]",
-            empty=_NO_LIMIT,
-        ),
-    ] = None,
-    invert: Annotated[
-        bool, Param("Keep the points that any of the limits leaves out, and leave out the others.")
-    ] = False,
+    classes: str = tunable(
+        "", "Keep points of these classes: numbers and ranges, separated by commas (2, 6-9); empty keeps every class."
+    ),
+    min_height: Optional[float] = tunable(
+        None,
+        "Keep points at least this high above the ground: 0.3 m removes ground and grass.",
+        within="[-10_000, 10_000] m",
+        empty=_NO_LIMIT,
+    ),
+    max_height: Optional[float] = tunable(
+        None,
+        "Greatest height above the ground of the points kept: 2.5 m leaves everything lower than roofs.",
+        within="[-10_000, 10_000] m",
+        empty=_NO_LIMIT,
+    ),
+    dimension: str = tunable(
+        "", "Any dimension of the cloud, by name (Intensity, NormalZ, Z), whose range is to be limited."
+    ),
+    low: Optional[float] = tunable(
+        None,
+        "Keep points that have at least this in the dimension.",
+        label="Minimum value",
+        within=f"[{-_LARGEST}, {_LARGEST}]",
+        empty=_NO_LIMIT,
+    ),
+    high: Optional[float] = tunable(
+        None,
+        "Keep points that have at most this in the dimension.",
+        label="Maximum value",
+        within=f"[{-_LARGEST}, {_LARGEST}]",
+        empty=_NO_LIMIT,
+    ),
+    invert: bool = tunable(False, "Keep the points that any of the limits leaves out, and leave out the others."),
     monitor=None,
 ):
     """Keep the points that are of some classes, between two heights above the ground, and in a range of any dimension.

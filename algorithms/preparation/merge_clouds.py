@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 
 # Largest deviation of a matrix times its transpose from the identity: a rotation with four decimals has it. The
 # nearest rotation is taken.
@@ -58,16 +58,14 @@ def merge_clouds(
     xyz,
     point_source_id,
     *,
-    transforms: Annotated[
-        str,
-        Param(
-            "Where the clouds after the first go, in their order and separated by semicolons; empty for a cloud that "
-            "stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order, "
-            "counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, "
-            "row by row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the "
-            "second cloud, leaves the third and moves the fourth as the file says."
-        ),
-    ] = "",
+    transforms: str = tunable(
+        "",
+        "Where the clouds after the first go, in their order and separated by semicolons; empty for a cloud that "
+        "stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order, "
+        "counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, "
+        "row by row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the "
+        "second cloud, leaves the third and moves the fourth as the file says.",
+    ),
     monitor=None,
 ):
     """Make one cloud of several, each but the first turned and moved if need be; PointSourceId identifies them.

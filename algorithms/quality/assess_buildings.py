@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -13,9 +13,9 @@ from ..geometry.grid import Grid, connected_cells, find_cells, grid_over
 from ..geometry.groups import topmost
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
-from ..params import IgnoredClasses, MinBuildingArea
+from ..params import IGNORED_CLASSES, MIN_BUILDING_AREA
 from ..report.page import Row, build_page, draw_map, outcome_of, percent
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Param, Report, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Report, stage, tunable
 from .point_matching import counted_points, match_points
 
 _RATES = (
@@ -92,16 +92,14 @@ def assess_buildings(
     reference_classification=None,
     reference_map=None,
     *,
-    ignored_classes: IgnoredClasses = "7, 17, 18, 26, 64-67",
-    cell_size: Annotated[
-        Optional[float],
-        Param(
-            "Side of the cells that are compared from above.",
-            within="[0.05, 100] m",
-            automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
-        ),
-    ] = None,
-    min_area: MinBuildingArea = 10.0,
+    ignored_classes: str = IGNORED_CLASSES,
+    cell_size: Optional[float] = tunable(
+        None,
+        "Side of the cells that are compared from above.",
+        within="[0.05, 100] m",
+        automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
+    ),
+    min_area: float = MIN_BUILDING_AREA.with_default(10.0),
     monitor=None,
 ):
     """Compare the buildings of a classification with a reference: completeness, correctness, F-score, quality.

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes
-from ..params import IgnoredClasses
+from ..params import IGNORED_CLASSES
 from ..report.charts import draw_matrix
 from ..report.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, draw_table, percent
-from ..stage import Measure, Param, Report, stage
+from ..stage import Measure, Report, stage, tunable
 from .confusion import class_rates, cohens_kappa, confusion, overall_accuracy
 from .point_matching import compared_points
 
@@ -58,14 +56,12 @@ def assess_classes(
     reference_xyz,
     reference_classification,
     *,
-    ignored_classes: IgnoredClasses = "64-67",
-    merged_classes: Annotated[
-        str,
-        Param(
-            "Classes that count as one: numbers and ranges separated by commas, and one such group from the next by a "
-            "semicolon; empty merges none."
-        ),
-    ] = "0, 1; 3-5; 7, 18; 13-16",
+    ignored_classes: str = IGNORED_CLASSES.with_default("64-67"),
+    merged_classes: str = tunable(
+        "0, 1; 3-5; 7, 18; 13-16",
+        "Classes that count as one: numbers and ranges separated by commas, and one such group from the next by a "
+        "semicolon; empty merges none.",
+    ),
     monitor=None,
 ):
     """Compare all classes with a reference: confusion matrix, accuracy, kappa, and figures of each class.

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Callable, Optional
+from typing import Callable, Optional
 
 import numpy as np
 
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page, draw_table, percent
 from ..report.polygon_map import draw_polygons
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
 from .building_maps import (
     BuildingMap,
     Overlap,
@@ -123,30 +123,25 @@ def assess_footprints(
     reference_map,
     area=None,
     *,
-    compared: Annotated[
-        str,
-        Param(
-            "Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it "
-            "may cover a part of the survey. Everywhere: all footprints, of which those without a building are "
-            "invented.",
-            label="Footprints compared",
-            choices=(AROUND, EVERYWHERE),
-        ),
-    ] = AROUND,
-    min_overlap: Annotated[
-        float,
-        Param("Share of a building that the other layer must cover for the building to be in it.", within="(0, 1]"),
-    ] = 0.5,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Corners farther apart are not the same corner.",
-            within="(0, 100] m",
-            automatic="three times the median distance of a corner from the nearest one of the other layer, pairs by "
-            "chance left out, 1 to 3 m.",
-            advanced=True,
-        ),
-    ] = None,
+    compared: str = tunable(
+        AROUND,
+        "Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it "
+        "may cover a part of the survey. Everywhere: all footprints, of which those without a building are "
+        "invented.",
+        label="Footprints compared",
+        choices=(AROUND, EVERYWHERE),
+    ),
+    min_overlap: float = tunable(
+        0.5, "Share of a building that the other layer must cover for the building to be in it.", within="(0, 1]"
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Corners farther apart are not the same corner.",
+        within="(0, 100] m",
+        automatic="three times the median distance of a corner from the nearest one of the other layer, pairs by "
+        "chance left out, 1 to 3 m.",
+        advanced=True,
+    ),
     monitor=None,
 ):
     """Compare footprints with polygons of a reference, building by building, and mark what agrees and what doesn't.

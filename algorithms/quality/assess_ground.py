@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass, parse_classes
-from ..params import IgnoredClasses
+from ..params import IGNORED_CLASSES
 from ..report.page import Row, build_page, draw_map, outcome_of, percent
 from ..stage import Measure, Report, stage
 from .point_matching import compared_points
@@ -29,7 +29,7 @@ def assess_ground(
     reference_xyz,
     reference_classification,
     *,
-    ignored_classes: IgnoredClasses = "7, 9, 17, 18, 26, 64-67",
+    ignored_classes: str = IGNORED_CLASSES.with_default("7, 9, 17, 18, 26, 64-67"),
     monitor=None,
 ):
     """Compare the ground of a classification with a reference: type I, type II and total error, kappa.

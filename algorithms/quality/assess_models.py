@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..models3d.roof_points import RULES, are_low, are_on_roof, distances, root_
 from ..report.charts import BLUE, Mark, Series, draw_histogram
 from ..report.page import Row, build_page, percent
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
 
 # A face with a smaller share of its points on it is invented; a plane with a smaller share on the model is missing.
 _ON_FACE = 0.5
@@ -106,19 +106,16 @@ def assess_models(
     classification,
     roofs,
     *,
-    min_plane_area: Annotated[
-        float,
-        Param("Smaller planes of the points, seen from above, are not reported as missing.", within="[0.1, 1000] m²"),
-    ] = 2.0,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Distance at which a point lies on a face or plane.",
-            within="[0.01, 5] m",
-            automatic=TOLERANCE_TEXT,
-            advanced=True,
-        ),
-    ] = None,
+    min_plane_area: float = tunable(
+        2.0, "Smaller planes of the points, seen from above, are not reported as missing.", within="[0.1, 1000] m²"
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance at which a point lies on a face or plane.",
+        within="[0.01, 5] m",
+        automatic=TOLERANCE_TEXT,
+        advanced=True,
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

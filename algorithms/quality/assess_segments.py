@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 
 from ..report.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, percent
-from ..stage import Measure, Param, Report, stage
+from ..stage import Measure, Report, stage, tunable
 from .point_matching import match_points
 
 
@@ -37,17 +36,15 @@ def assess_segments(
     reference_xyz,
     reference_segment_id,
     *,
-    min_overlap: Annotated[
-        float,
-        Param(
-            "Share of the points of a segment that must lie in the other one, more than 0.5, so that each segment has "
-            "one counterpart at most. 0.8 is usual.",
-            within="(0.5, 1]",
-        ),
-    ] = 0.8,
-    min_points: Annotated[
-        int, Param("Smaller segments, of the input and of the reference, are ignored.", within=f"[1, {10**9}]")
-    ] = 1,
+    min_overlap: float = tunable(
+        0.8,
+        "Share of the points of a segment that must lie in the other one, more than 0.5, so that each segment has "
+        "one counterpart at most. 0.8 is usual.",
+        within="(0.5, 1]",
+    ),
+    min_points: int = tunable(
+        1, "Smaller segments, of the input and of the reference, are ignored.", within=f"[1, {10**9}]"
+    ),
     monitor=None,
 ):
     """Compare segments with a reference: which are correct, cut up, run together, missed or invented.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..report.charts import BLUE, Mark, Series, draw_histogram, draw_scatter
 from ..report.page import Row, build_page
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
 from .building_maps import BuildingMap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
 from .corner_matching import FARTHEST, NO_LENGTH, Corners, automatic_tolerance, corners_of, nearest_corners
 
@@ -93,21 +93,18 @@ def compare_corners(
     footprints,
     old_map=None,
     *,
-    min_overlap: Annotated[
-        float,
-        Param(
-            "Share of a building's area that the other map must cover for the building to be the same.", within="(0, 1]"
-        ),
-    ] = 0.5,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Corners farther apart, after the shift between the maps is removed, are not the same corner.",
-            within="(0, 100] m",
-            automatic="three times the median distance of a corner from the nearest one of the other map, pairs by "
-            "chance left out, 1 to 3 m.",
-        ),
-    ] = None,
+    min_overlap: float = tunable(
+        0.5,
+        "Share of a building's area that the other map must cover for the building to be the same.",
+        within="(0, 1]",
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Corners farther apart, after the shift between the maps is removed, are not the same corner.",
+        within="(0, 100] m",
+        automatic="three times the median distance of a corner from the nearest one of the other map, pairs by "
+        "chance left out, 1 to 3 m.",
+    ),
     monitor=None,
 ):
     """Compare the corners of footprints with an older map: distances, shift, buildings found, missed and new.

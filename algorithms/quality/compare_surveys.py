@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..geometry.groups import components
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
 from .building_maps import BuildingMap, Overlap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
 from .polygon_comparison import distances_from, positions_along
 
@@ -106,31 +106,25 @@ def compare_surveys(
     footprints,
     earlier,
     *,
-    min_overlap: Annotated[
-        float,
-        Param(
-            "Share of the smaller building that both surveys must have for two buildings to be the same.",
-            within="(0, 1]",
-        ),
-    ] = 0.5,
-    outline_tolerance: Annotated[
-        Optional[float],
-        Param(
-            "An outline has changed if it is farther than this from the earlier one somewhere.",
-            within="[0, 100] m",
-            automatic=f"{RULES.deviations:g} times the median distance between the outlines of both surveys, "
-            f"{RULES.least_outline:g} to {RULES.most_outline:g} m.",
-        ),
-    ] = None,
-    height_tolerance: Annotated[
-        Optional[float],
-        Param(
-            "A height has changed if it differs by more.",
-            within="[0, 100] m",
-            automatic=f"{RULES.deviations:g} times the median difference between the heights of both surveys, "
-            f"{RULES.least_height:g} to {RULES.most_height:g} m.",
-        ),
-    ] = None,
+    min_overlap: float = tunable(
+        0.5,
+        "Share of the smaller building that both surveys must have for two buildings to be the same.",
+        within="(0, 1]",
+    ),
+    outline_tolerance: Optional[float] = tunable(
+        None,
+        "An outline has changed if it is farther than this from the earlier one somewhere.",
+        within="[0, 100] m",
+        automatic=f"{RULES.deviations:g} times the median distance between the outlines of both surveys, "
+        f"{RULES.least_outline:g} to {RULES.most_outline:g} m.",
+    ),
+    height_tolerance: Optional[float] = tunable(
+        None,
+        "A height has changed if it differs by more.",
+        within="[0, 100] m",
+        automatic=f"{RULES.deviations:g} times the median difference between the heights of both surveys, "
+        f"{RULES.least_height:g} to {RULES.most_height:g} m.",
+    ),
     monitor=None,
 ):
     """Find the buildings that are new, gone, or changed in height or outline since an earlier survey.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Callable, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -18,12 +18,23 @@ from ..geometry.polygon_overlap import as_polygons, meeting_boxes
 from ..geometry.rings import polygon_area, sides_of_rings
 from ..models3d.model_inputs import require_ground, rows_near
 from ..packages import ndimage, spatial
-from ..params import MinBuildingArea
+from ..params import MIN_BUILDING_AREA
 from ..report.charts import BLUE, GRAY, RED, YELLOW
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, feature_names, stage
+from ..stage import (
+    Field,
+    InputLayer,
+    Layer,
+    LayerFeatures,
+    Measure,
+    Monitor,
+    Report,
+    feature_names,
+    stage,
+    tunable,
+)
 from .building_maps import BuildingMap, clean_map, measure_overlap, refuse_elsewhere
 from .map_drawing import draw_labels
 from .map_fit import MapFit, fit_map, in_frame
@@ -116,19 +127,17 @@ def update_map(
     old_map=None,
     footprints=None,
     *,
-    min_area: MinBuildingArea = 4.0,
-    least_width: Annotated[
-        Optional[float],
-        Param(
-            "Narrower strips that were added or removed are errors of the map or of the points.",
-            within="[0.5, 20] m",
-            automatic=f"{RULES.deviations:g} times the median distance between the walls of the map and the new ones, "
-            f"{RULES.least_width:g} to {RULES.most_width:g} m.",
-        ),
-    ] = None,
-    id_field: Annotated[
-        str, Param("Attribute that identifies a building; new ones get new values of it. Empty: 'id' or 'fid'.")
-    ] = "",
+    min_area: float = MIN_BUILDING_AREA,
+    least_width: Optional[float] = tunable(
+        None,
+        "Narrower strips that were added or removed are errors of the map or of the points.",
+        within="[0.5, 20] m",
+        automatic=f"{RULES.deviations:g} times the median distance between the walls of the map and the new ones, "
+        f"{RULES.least_width:g} to {RULES.most_width:g} m.",
+    ),
+    id_field: str = tunable(
+        "", "Attribute that identifies a building; new ones get new values of it. Empty: 'id' or 'fid'."
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

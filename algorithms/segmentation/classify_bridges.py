@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
-from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
+from ..params import BRIDGE_AREA, BRIDGE_HEIGHT, BRIDGE_WIDTH, POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import LASER
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from ..terrain.on_decks import on_decks
 from .bridge_decks import Decks
 from .deck_sites import deck_sites
@@ -33,19 +33,17 @@ def classify_bridges(
     xyz,
     classification,
     *,
-    min_height: BridgeHeight = 1.0,
-    max_width: BridgeWidth = 40.0,
-    min_bridge_area: BridgeArea = 20.0,
-    search: Annotated[
-        str,
-        Param(
-            "Where bridges are looked for: everywhere, or only around level surfaces over a gap in the ground with "
-            "ground at their height at both ends, in a fraction of the time.",
-            choices=(_EVERYWHERE, _OVER_GAPS),
-        ),
-    ] = _EVERYWHERE,
-    noise: SurfaceNoise = None,
-    density: PointDensity = None,
+    min_height: float = BRIDGE_HEIGHT,
+    max_width: float = BRIDGE_WIDTH,
+    min_bridge_area: float = BRIDGE_AREA,
+    search: str = tunable(
+        _EVERYWHERE,
+        "Where bridges are looked for: everywhere, or only around level surfaces over a gap in the ground with "
+        "ground at their height at both ends, in a fraction of the time.",
+        choices=(_EVERYWHERE, _OVER_GAPS),
+    ),
+    noise: Optional[float] = SURFACE_NOISE,
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import least_of
-from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
+from ..params import BRIDGE_AREA, BRIDGE_HEIGHT, BRIDGE_WIDTH, POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import LASER
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from ..terrain.on_decks import on_decks
 from .bridge_decks import DECK, Decks, cell_size
 
@@ -37,23 +37,20 @@ def classify_ground_segments(
     classification,
     segment_id,
     *,
-    min_height: BridgeHeight = 1.0,
-    max_width: BridgeWidth = 40.0,
-    min_bridge_area: BridgeArea = 20.0,
-    min_area: Annotated[
-        float,
-        Param("Area of the smallest segment of the bare earth.", label="Minimum ground area", within="[1, 100_000] m²"),
-    ] = 10.0,
-    max_object_area: Annotated[
-        float,
-        Param(
-            "Area of the largest object: larger segments are bare earth, also where they are raised along their "
-            "border, as islands and quarters between canals are.",
-            within="[1, 10_000_000] m²",
-        ),
-    ] = 50_000.0,
-    noise: SurfaceNoise = None,
-    density: PointDensity = None,
+    min_height: float = BRIDGE_HEIGHT,
+    max_width: float = BRIDGE_WIDTH,
+    min_bridge_area: float = BRIDGE_AREA,
+    min_area: float = tunable(
+        10.0, "Area of the smallest segment of the bare earth.", label="Minimum ground area", within="[1, 100_000] m²"
+    ),
+    max_object_area: float = tunable(
+        50_000.0,
+        "Area of the largest object: larger segments are bare earth, also where they are raised along their "
+        "border, as islands and quarters between canals are.",
+        within="[1, 10_000_000] m²",
+    ),
+    noise: Optional[float] = SURFACE_NOISE,
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.boxes import Boxes, Offset, around, by_first_point, connected
-from ..params import MinClusterHeight, PointDensity
+from ..params import MIN_CLUSTER_HEIGHT, POINT_DENSITY
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .candidate_points import candidates
 
 # A gap of three spacings is hardly due to random sampling of a surface: one point in 10^12 has such a hole around it.
@@ -31,28 +31,24 @@ def segment_clusters(
     height_above_ground=None,
     segment_id=None,
     *,
-    radius: Annotated[
-        Optional[float],
-        Param(
-            "Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.",
-            within="(0, 100] m",
-            automatic=f"{_RADIUS_SPACINGS:g} times the point spacing.",
-        ),
-    ] = None,
-    min_points: Annotated[
-        Optional[int],
-        Param(
-            "Points within the radius, the point itself among them, that make a point the core of a cluster; "
-            "larger leaves out thin objects.",
-            within="[1, 1_000_000]",
-            automatic="a quarter of the points of a level surface within the radius, as at the corner of a roof.",
-        ),
-    ] = None,
-    min_height: MinClusterHeight = 0.0,
-    segments_only: Annotated[
-        bool, Param("Gather only points that have a SegmentID, such as those on planes; it must be known.")
-    ] = False,
-    density: PointDensity = None,
+    radius: Optional[float] = tunable(
+        None,
+        "Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.",
+        within="(0, 100] m",
+        automatic=f"{_RADIUS_SPACINGS:g} times the point spacing.",
+    ),
+    min_points: Optional[int] = tunable(
+        None,
+        "Points within the radius, the point itself among them, that make a point the core of a cluster; "
+        "larger leaves out thin objects.",
+        within="[1, 1_000_000]",
+        automatic="a quarter of the points of a level surface within the radius, as at the corner of a roof.",
+    ),
+    min_height: float = MIN_CLUSTER_HEIGHT,
+    segments_only: bool = tunable(
+        False, "Gather only points that have a SegmentID, such as those on planes; it must be known."
+    ),
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.boxes import Boxes, by_first_point
-from ..params import MinClusterHeight, Seed
+from ..params import MIN_CLUSTER_HEIGHT, SEED
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, ROUGHNESS
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .candidate_points import candidates
 from .least_squares_planes import Planes
 from .plane_merging import joined_planes
@@ -42,48 +42,37 @@ def segment_planes_ransac(
     classification,
     height_above_ground=None,
     *,
-    voxel_size: Annotated[
-        Optional[float],
-        Param(
-            "Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.",
-            within="[0.1, 20] m",
-            automatic=f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
-            f"tolerances, {_SMALLEST_VOXEL:g} to {_LARGEST_VOXEL:g} m.",
-        ),
-    ] = None,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Distance within which a point lies on a plane.",
-            within="(0, 10] m",
-            automatic=f"{ON_PLANE:.2g} times the roughness: {ROUGHNESS}.",
-        ),
-    ] = None,
-    min_slope: Annotated[
-        float, Param("Slope of the flattest plane that is kept; 70° keeps walls.", within="[0, 90]°")
-    ] = 0.0,
-    max_slope: Annotated[
-        float, Param("Slope of the steepest plane that is kept; 90° keeps walls.", within="[0, 90]°")
-    ] = 60.0,
-    min_area: Annotated[
-        float, Param("Area of the smallest plane, measured on it.", label="Minimum plane area", within="[0, 10_000] m²")
-    ] = 2.0,
-    min_height: MinClusterHeight = 0.0,
-    max_planes: Annotated[
-        int,
-        Param("Planes that are looked for in one voxel.", label="Planes per voxel", within="[1, 20]", advanced=True),
-    ] = 4,
-    trials: Annotated[
-        int, Param("Planes through three points that are tried for each plane.", within="[1, 10_000]", advanced=True)
-    ] = 100,
-    normals: Annotated[
-        bool,
-        Param(
-            "Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written.",
-            label="Write normals",
-        ),
-    ] = False,
-    seed: Seed = 1,
+    voxel_size: Optional[float] = tunable(
+        None,
+        "Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.",
+        within="[0.1, 20] m",
+        automatic=f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
+        f"tolerances, {_SMALLEST_VOXEL:g} to {_LARGEST_VOXEL:g} m.",
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance within which a point lies on a plane.",
+        within="(0, 10] m",
+        automatic=f"{ON_PLANE:.2g} times the roughness: {ROUGHNESS}.",
+    ),
+    min_slope: float = tunable(0.0, "Slope of the flattest plane that is kept; 70° keeps walls.", within="[0, 90]°"),
+    max_slope: float = tunable(60.0, "Slope of the steepest plane that is kept; 90° keeps walls.", within="[0, 90]°"),
+    min_area: float = tunable(
+        2.0, "Area of the smallest plane, measured on it.", label="Minimum plane area", within="[0, 10_000] m²"
+    ),
+    min_height: float = MIN_CLUSTER_HEIGHT,
+    max_planes: int = tunable(
+        4, "Planes that are looked for in one voxel.", label="Planes per voxel", within="[1, 20]", advanced=True
+    ),
+    trials: int = tunable(
+        100, "Planes through three points that are tried for each plane.", within="[1, 10_000]", advanced=True
+    ),
+    normals: bool = tunable(
+        False,
+        "Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written.",
+        label="Write normals",
+    ),
+    seed: int = SEED,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

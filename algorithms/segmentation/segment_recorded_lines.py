@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
 from ..geometry.components import number_large
 from ..packages import spatial
-from ..params import PointDensity, SurfaceNoise
+from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from ..threads import n_threads
 from .adjacent_pieces import adjacent_pieces
 from .piece_growing import Growth, Regions
@@ -41,16 +41,6 @@ _STEP_GAPS = 10.0
 # Nearest points on pieces whose regions a point on no piece may join.
 _NEAREST = 3
 
-_Tolerance = Annotated[
-    Optional[float],
-    Param(
-        "Distance from the straight line through a piece, and of its ends from the plane of a region.",
-        within="(0, 100] m",
-        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
-        "spacings.",
-    ),
-]
-
 
 @stage(
     "Segmentation",
@@ -68,45 +58,42 @@ def segment_recorded_lines(
     return_number=None,
     number_of_returns=None,
     *,
-    surfaces: Annotated[
-        str,
-        Param(
-            "Pieces join a region near the plane of all its points (planar), as published, or near the plane of the "
-            "pieces next to them (smooth), so that terrain, domes and ramps are one.",
-            choices=("planar", "smooth"),
-        ),
-    ] = "planar",
-    tolerance: _Tolerance = None,
-    line_distance: Annotated[
-        Optional[float],
-        Param(
-            "Distance of neighboring points on adjacent scan lines at most.",
-            within="(0, 1000] m",
-            automatic=f"{_LINES:g} times the mean distance of scan lines.",
-        ),
-    ] = None,
-    max_gap: Annotated[
-        Optional[float],
-        Param(
-            "Scan lines end where two points in a row are farther apart.",
-            label="Widest gap",
-            within="(0, 1000] m",
-            automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINE_GAPS:g} distances of scan "
-            "lines.",
-        ),
-    ] = None,
-    min_overlap: Annotated[
-        float, Param("Share of the shorter of two pieces of a seed that lies next to the other.", within="[0, 1]")
-    ] = 0.5,
-    min_piece: Annotated[
-        int,
-        Param(
-            "Straight pieces with fewer points join nothing.", label="Minimum points of a piece", within="[3, 10_000]"
-        ),
-    ] = 5,
-    min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 10_000_000]")] = 30,
-    noise: SurfaceNoise = None,
-    density: PointDensity = None,
+    surfaces: str = tunable(
+        "planar",
+        "Pieces join a region near the plane of all its points (planar), as published, or near the plane of the "
+        "pieces next to them (smooth), so that terrain, domes and ramps are one.",
+        choices=("planar", "smooth"),
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance from the straight line through a piece, and of its ends from the plane of a region.",
+        within="(0, 100] m",
+        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
+        "spacings.",
+    ),
+    line_distance: Optional[float] = tunable(
+        None,
+        "Distance of neighboring points on adjacent scan lines at most.",
+        within="(0, 1000] m",
+        automatic=f"{_LINES:g} times the mean distance of scan lines.",
+    ),
+    max_gap: Optional[float] = tunable(
+        None,
+        "Scan lines end where two points in a row are farther apart.",
+        label="Widest gap",
+        within="(0, 1000] m",
+        automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINE_GAPS:g} distances of scan "
+        "lines.",
+    ),
+    min_overlap: float = tunable(
+        0.5, "Share of the shorter of two pieces of a seed that lies next to the other.", within="[0, 1]"
+    ),
+    min_piece: int = tunable(
+        5, "Straight pieces with fewer points join nothing.", label="Minimum points of a piece", within="[3, 10_000]"
+    ),
+    min_points: int = tunable(30, "Segments with fewer points get no id.", within="[1, 10_000_000]"),
+    noise: Optional[float] = SURFACE_NOISE,
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.components import connect, number_large
-from ..params import PAPER_THRESHOLDS, MinBuildingArea, MinClusterHeight, PointDensity, Thresholds
+from ..params import MIN_BUILDING_AREA, MIN_CLUSTER_HEIGHT, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .candidate_points import candidates
 
 # T_Dh over the surface noise: the paper takes 0.2 m and 0.3 m for scanners whose ranges are good to 2-3 cm.
@@ -36,30 +36,26 @@ def segment_regions(
     classification,
     height_above_ground=None,
     *,
-    thresholds: Thresholds = "automatic",
-    plan_distance: Annotated[
-        Optional[float],
-        Param(
-            "Points closer than this in plan, and close enough in height, belong together (T_Dxy; the paper has 0.6 m "
-            "at 12.5 and 1.4 m at 4 points/m²).",
-            label="Planimetric distance",
-            within="(0, 100] m",
-            automatic="twice the point spacing.",
-        ),
-    ] = None,
-    height_distance: Annotated[
-        Optional[float],
-        Param(
-            "Points whose heights differ by less than this, and that are close enough in plan, belong together (T_Dh; "
-            "the paper has 0.2 m at 12.5 and 0.3 m at 4 points/m²).",
-            label="Height difference",
-            within="(0, 100] m",
-            automatic="10 times the measured surface noise, 0.2 to 0.3 m.",
-        ),
-    ] = None,
-    min_area: MinBuildingArea = 4.0,
-    min_height: MinClusterHeight = 0.0,
-    density: PointDensity = None,
+    thresholds: str = THRESHOLDS,
+    plan_distance: Optional[float] = tunable(
+        None,
+        "Points closer than this in plan, and close enough in height, belong together (T_Dxy; the paper has 0.6 m "
+        "at 12.5 and 1.4 m at 4 points/m²).",
+        label="Planimetric distance",
+        within="(0, 100] m",
+        automatic="twice the point spacing.",
+    ),
+    height_distance: Optional[float] = tunable(
+        None,
+        "Points whose heights differ by less than this, and that are close enough in plan, belong together (T_Dh; "
+        "the paper has 0.2 m at 12.5 and 0.3 m at 4 points/m²).",
+        label="Height difference",
+        within="(0, 100] m",
+        automatic="10 times the measured surface noise, 0.2 to 0.3 m.",
+    ),
+    min_area: float = MIN_BUILDING_AREA,
+    min_height: float = MIN_CLUSTER_HEIGHT,
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

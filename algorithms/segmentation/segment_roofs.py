@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -12,13 +12,13 @@ from ..cloud.asprs import NOISE
 from ..cloud.reasons import Reason
 from ..geometry.components import connect, number_large
 from ..neighborhoods.covariance import Nearest
-from ..params import PointDensity, PointSource, SurfaceNoise
+from ..params import POINT_DENSITY, POINT_SOURCE, SURFACE_NOISE
 from ..rules import rule
 from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.density import DENSITY
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.surface_noise import LEAST_NEIGHBORS, SURFACES, plane_roughness
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from ..terrain.on_decks import on_bridges
 from .cluster_measures import plan_areas
 from .planar_patches import segment_patches
@@ -61,32 +61,25 @@ def segment_roofs(
     classification,
     height_above_ground,
     *,
-    min_height: Annotated[
-        Optional[float],
-        Param(
-            "Mean height above ground of the lowest roof and of other clusters.",
-            within="[0, 100] m",
-            automatic=f"{LASER.lowest_roof:g} m; {IMAGES.lowest_roof:g} m in clouds of matched images, where edges "
-            "are rounded.",
-        ),
-    ] = None,
-    min_area: Annotated[
-        float,
-        Param(
-            "Area of the smallest roof surface, seen from above.", label="Minimum roof area", within="[0.1, 10_000] m²"
-        ),
-    ] = 2.0,
-    max_slope: Annotated[
-        float,
-        Param(
-            "Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the "
-            "trees that they touch; outlines then get less even.",
-            within="[0, 90]°",
-        ),
-    ] = 75.0,
-    noise: SurfaceNoise = None,
-    density: PointDensity = None,
-    source: PointSource = "automatic",
+    min_height: Optional[float] = tunable(
+        None,
+        "Mean height above ground of the lowest roof and of other clusters.",
+        within="[0, 100] m",
+        automatic=f"{LASER.lowest_roof:g} m; {IMAGES.lowest_roof:g} m in clouds of matched images, where edges "
+        "are rounded.",
+    ),
+    min_area: float = tunable(
+        2.0, "Area of the smallest roof surface, seen from above.", label="Minimum roof area", within="[0.1, 10_000] m²"
+    ),
+    max_slope: float = tunable(
+        75.0,
+        "Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the "
+        "trees that they touch; outlines then get less even.",
+        within="[0, 90]°",
+    ),
+    noise: Optional[float] = SURFACE_NOISE,
+    density: Optional[float] = POINT_DENSITY,
+    source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
-from ..params import PointDensity, SurfaceNoise
+from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .scan_line_pieces import NearPoints, merged_pieces, pieces
 
 # Width of a line in point spacings: wider lines mix objects side by side; in narrower ones, neighbors on a line lie
@@ -39,58 +39,45 @@ def segment_scan_lines(
     xyz,
     classification,
     *,
-    directions: Annotated[int, Param("Directions of artificial scan lines, evenly spread.", within="[2, 16]")] = 4,
-    line_width: Annotated[
-        Optional[float],
-        Param(
-            "Width of an artificial scan line.",
-            within="(0, 1000] m",
-            automatic=f"{_WIDTH_SPACINGS:g} times the point spacing.",
-        ),
-    ] = None,
-    distance: Annotated[
-        Optional[float],
-        Param(
-            "Points of a line that are closer in space may belong together; larger passes over wider obstacles.",
-            within="(0, 1000] m",
-            automatic=f"{_DISTANCE_SPACINGS:g} times the point spacing.",
-        ),
-    ] = None,
-    max_slope: Annotated[
-        float,
-        Param(
-            "Points of a line belong together if the line between them is no steeper; 90 leaves the criterion out.",
-            within="[0, 90]°",
-        ),
-    ] = 30.0,
-    max_step: Annotated[
-        Optional[float],
-        Param(
-            "Points of a line also belong together if their heights differ by no more than this.",
-            label="Height step",
-            within="[0, 100] m",
-            automatic=f"{_NOISE_STEP:g} standard deviations of the surface noise.",
-        ),
-    ] = None,
-    max_obstacle: Annotated[
-        float,
-        Param(
-            "A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without "
-            "points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every "
-            "obstacle.",
-            label="Widest obstacle",
-            within="[0, 1000] m",
-        ),
-    ] = 0.0,
-    min_piece: Annotated[
-        int,
-        Param(
-            "Pieces of a line with fewer points join nothing.", label="Minimum points of a piece", within="[2, 10_000]"
-        ),
-    ] = 5,
-    min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 10_000_000]")] = 20,
-    noise: SurfaceNoise = None,
-    density: PointDensity = None,
+    directions: int = tunable(4, "Directions of artificial scan lines, evenly spread.", within="[2, 16]"),
+    line_width: Optional[float] = tunable(
+        None,
+        "Width of an artificial scan line.",
+        within="(0, 1000] m",
+        automatic=f"{_WIDTH_SPACINGS:g} times the point spacing.",
+    ),
+    distance: Optional[float] = tunable(
+        None,
+        "Points of a line that are closer in space may belong together; larger passes over wider obstacles.",
+        within="(0, 1000] m",
+        automatic=f"{_DISTANCE_SPACINGS:g} times the point spacing.",
+    ),
+    max_slope: float = tunable(
+        30.0,
+        "Points of a line belong together if the line between them is no steeper; 90 leaves the criterion out.",
+        within="[0, 90]°",
+    ),
+    max_step: Optional[float] = tunable(
+        None,
+        "Points of a line also belong together if their heights differ by no more than this.",
+        label="Height step",
+        within="[0, 100] m",
+        automatic=f"{_NOISE_STEP:g} standard deviations of the surface noise.",
+    ),
+    max_obstacle: float = tunable(
+        0.0,
+        "A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without "
+        "points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every "
+        "obstacle.",
+        label="Widest obstacle",
+        within="[0, 1000] m",
+    ),
+    min_piece: int = tunable(
+        5, "Pieces of a line with fewer points join nothing.", label="Minimum points of a piece", within="[2, 10_000]"
+    ),
+    min_points: int = tunable(20, "Segments with fewer points get no id.", within="[1, 10_000_000]"),
+    noise: Optional[float] = SURFACE_NOISE,
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items
-from ..params import PointDensity
+from ..params import POINT_DENSITY
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .local_planes import Criteria, LocalPlanes, local_planes
 from .surface_growing import grow_planes, grow_surfaces
 
@@ -41,38 +41,6 @@ _GROWTH = 4.0
 # Automatic radius (m) that the reach allows for, at 36 points per m².
 _WIDE_RADIUS = 0.5
 
-_Noise = Annotated[
-    Optional[float],
-    Param(
-        "Standard deviation of the points across a smooth surface.",
-        label="Surface noise",
-        within="(0, 10] m",
-        automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
-        "where that is less.",
-        advanced=True,
-    ),
-]
-
-_Tolerance = Annotated[
-    Optional[float],
-    Param(
-        "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
-        "surfaces.",
-        within="(0, 100] m",
-        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
-        "spacings.",
-    ),
-]
-
-_Radius = Annotated[
-    Optional[float],
-    Param(
-        "Reach of the neighborhood in which planes are fitted, and of growth.",
-        within="(0, 1000] m",
-        automatic=f"{_RADIUS_SPACINGS:g} times the point spacing on surfaces.",
-    ),
-]
-
 
 @stage(
     "Segmentation",
@@ -85,50 +53,62 @@ def segment_surfaces(
     xyz,
     classification,
     *,
-    seeds: Annotated[
-        str,
-        Param(
-            "How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points "
-            "around are of one surface; robust least squares leaves outliers out. The local Hough transform finds "
-            "planes among outliers and at edges, in 4 times the time.",
-            choices=("least squares", "robust", "hough"),
-        ),
-    ] = "least squares",
-    planarity: Annotated[
-        str,
-        Param(
-            "Local: points are accepted near the plane of the surface around the nearest of its points, so that "
-            "smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). "
-            "None: at any distance from a plane.",
-            choices=("local", "global", "none"),
-        ),
-    ] = "local",
-    smooth_normals: Annotated[
-        bool, Param("Points are accepted only if their normals are like the normal of the surface next to them.")
-    ] = False,
-    proximity: Annotated[
-        str,
-        Param(
-            "Points are near if they are among the nearest within the radius, or joined by an edge of the "
-            "triangulation in plan that is no longer (for clouds with one surface above each position).",
-            choices=("radius", "edges"),
-        ),
-    ] = "radius",
-    radius: _Radius = None,
-    neighbors: Annotated[
-        int, Param("Nearest points within the radius that are used, the point included.", within="[6, 200]")
-    ] = _NEIGHBORS,
-    tolerance: _Tolerance = None,
-    max_angle: Annotated[
-        float,
-        Param(
-            "Largest angle between the normals of a point and of the surface, with smooth normals only.",
-            within="(0, 90]°",
-        ),
-    ] = 15.0,
-    min_points: Annotated[int, Param("Surfaces with fewer points get no id.", within="[1, 10_000_000]")] = 20,
-    noise: _Noise = None,
-    density: PointDensity = None,
+    seeds: str = tunable(
+        "least squares",
+        "How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points "
+        "around are of one surface; robust least squares leaves outliers out. The local Hough transform finds "
+        "planes among outliers and at edges, in 4 times the time.",
+        choices=("least squares", "robust", "hough"),
+    ),
+    planarity: str = tunable(
+        "local",
+        "Local: points are accepted near the plane of the surface around the nearest of its points, so that "
+        "smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). "
+        "None: at any distance from a plane.",
+        choices=("local", "global", "none"),
+    ),
+    smooth_normals: bool = tunable(
+        False, "Points are accepted only if their normals are like the normal of the surface next to them."
+    ),
+    proximity: str = tunable(
+        "radius",
+        "Points are near if they are among the nearest within the radius, or joined by an edge of the "
+        "triangulation in plan that is no longer (for clouds with one surface above each position).",
+        choices=("radius", "edges"),
+    ),
+    radius: Optional[float] = tunable(
+        None,
+        "Reach of the neighborhood in which planes are fitted, and of growth.",
+        within="(0, 1000] m",
+        automatic=f"{_RADIUS_SPACINGS:g} times the point spacing on surfaces.",
+    ),
+    neighbors: int = tunable(
+        _NEIGHBORS, "Nearest points within the radius that are used, the point included.", within="[6, 200]"
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
+        "surfaces.",
+        within="(0, 100] m",
+        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
+        "spacings.",
+    ),
+    max_angle: float = tunable(
+        15.0,
+        "Largest angle between the normals of a point and of the surface, with smooth normals only.",
+        within="(0, 90]°",
+    ),
+    min_points: int = tunable(20, "Surfaces with fewer points get no id.", within="[1, 10_000_000]"),
+    noise: Optional[float] = tunable(
+        None,
+        "Standard deviation of the points across a smooth surface.",
+        label="Surface noise",
+        within="(0, 10] m",
+        automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
+        "where that is less.",
+        advanced=True,
+    ),
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

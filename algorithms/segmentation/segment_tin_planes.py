@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -10,9 +10,9 @@ from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..neighborhoods.nearest_blocks import PAIRS
-from ..params import PointDensity, SurfaceNoise
+from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .best_pairs import common_deviation, merge_best_pairs
 from .least_squares_planes import Planes
 
@@ -38,28 +38,22 @@ def segment_tin_planes(
     xyz,
     classification,
     *,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Two surfaces merge if neither lies farther than this from their common plane (root mean square).",
-            within="(0, 100] m",
-            automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} "
-            "point spacings.",
-        ),
-    ] = None,
-    max_edge: Annotated[
-        Optional[float],
-        Param(
-            "Triangles with a longer edge belong to no surface: they lie across walls and gaps.",
-            within="(0, 10_000] m",
-            automatic=f"{_EDGE_SPACINGS:g} point spacings.",
-        ),
-    ] = None,
-    min_area: Annotated[
-        float, Param("Area of the smallest surface, along the surface.", within="[0, 1_000_000] m²")
-    ] = 2.0,
-    noise: SurfaceNoise = None,
-    density: PointDensity = None,
+    tolerance: Optional[float] = tunable(
+        None,
+        "Two surfaces merge if neither lies farther than this from their common plane (root mean square).",
+        within="(0, 100] m",
+        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} "
+        "point spacings.",
+    ),
+    max_edge: Optional[float] = tunable(
+        None,
+        "Triangles with a longer edge belong to no surface: they lie across walls and gaps.",
+        within="(0, 10_000] m",
+        automatic=f"{_EDGE_SPACINGS:g} point spacings.",
+    ),
+    min_area: float = tunable(2.0, "Area of the smallest surface, along the surface.", within="[0, 1_000_000] m²"),
+    noise: Optional[float] = SURFACE_NOISE,
+    density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

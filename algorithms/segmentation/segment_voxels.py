@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -21,34 +21,13 @@ from ..geometry.sparse_voxels import (
 from ..geometry.voxel_filters import FILTERS, filter_counts
 from ..geometry.voxel_skeleton import skeleton
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
-from ..stage import Field, Layer, LayerFeatures, Param, stage
+from ..stage import Field, Layer, LayerFeatures, stage, tunable
 
 # Side of an automatic voxel in point spacings on surfaces: it holds four points on average, so that fewer than 2 % of
 # the voxels of an evenly sampled surface are empty (Poisson).
 _VOXEL_SPACINGS = 2.0
 
 _OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "closing": close_voxels}
-
-_VoxelSize = Annotated[
-    Optional[float],
-    Param(
-        "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
-        within="[0.001, 1000] m",
-        automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces.",
-    ),
-]
-
-_CountFilter = Annotated[
-    str,
-    Param(
-        "Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left "
-        "out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and "
-        "the maximum widens, and the median removes single voxels.",
-        label="Filter of counts",
-        choices=("none", *FILTERS),
-        advanced=True,
-    ),
-]
 
 
 @stage(
@@ -73,52 +52,53 @@ def segment_voxels(
     xyz,
     classification,
     *,
-    voxel_size: _VoxelSize = None,
-    neighbors: Annotated[
-        str,
-        Param(
-            "Voxels that belong together: those that share a face (6), a face or an edge (18), or a face, an edge or a "
-            "corner (26).",
-            choices=("6", "18", "26"),
-        ),
-    ] = "26",
-    count_filter: _CountFilter = "none",
-    operation: Annotated[
-        str,
-        Param(
-            "Applied before voxels are connected: erosion shrinks and dilation enlarges objects, opening removes thin "
-            "parts, closing fills narrow gaps.",
-            choices=("none", *_OPERATIONS),
-        ),
-    ] = "none",
-    element: Annotated[
-        str,
-        Param(
-            "Neighbors that the operation reaches with each step: 6, 18 or 26.",
-            label="Structuring element",
-            choices=("6", "18", "26"),
-            advanced=True,
-        ),
-    ] = "26",
-    steps: Annotated[
-        int, Param("How many times the operation erodes or dilates.", within="[1, 100]", advanced=True)
-    ] = 1,
-    min_count: Annotated[
-        int,
-        Param(
-            "Voxels with fewer points, after the filter, count as empty: more suppress scattered points.",
-            label="Minimum points of a voxel",
-            within="[1, 1_000_000]",
-        ),
-    ] = 1,
-    min_points: Annotated[int, Param("Segments with fewer points get no id.", within="[1, 1_000_000]")] = 1,
-    thin: Annotated[
-        bool,
-        Param(
-            "Thin the voxels of the layer to lines in the middle of the objects; the segments of the points stay.",
-            label="Skeleton only",
-        ),
-    ] = False,
+    voxel_size: Optional[float] = tunable(
+        None,
+        "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
+        within="[0.001, 1000] m",
+        automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces.",
+    ),
+    neighbors: str = tunable(
+        "26",
+        "Voxels that belong together: those that share a face (6), a face or an edge (18), or a face, an edge or a "
+        "corner (26).",
+        choices=("6", "18", "26"),
+    ),
+    count_filter: str = tunable(
+        "none",
+        "Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left "
+        "out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and "
+        "the maximum widens, and the median removes single voxels.",
+        label="Filter of counts",
+        choices=("none", *FILTERS),
+        advanced=True,
+    ),
+    operation: str = tunable(
+        "none",
+        "Applied before voxels are connected: erosion shrinks and dilation enlarges objects, opening removes thin "
+        "parts, closing fills narrow gaps.",
+        choices=("none", *_OPERATIONS),
+    ),
+    element: str = tunable(
+        "26",
+        "Neighbors that the operation reaches with each step: 6, 18 or 26.",
+        label="Structuring element",
+        choices=("6", "18", "26"),
+        advanced=True,
+    ),
+    steps: int = tunable(1, "How many times the operation erodes or dilates.", within="[1, 100]", advanced=True),
+    min_count: int = tunable(
+        1,
+        "Voxels with fewer points, after the filter, count as empty: more suppress scattered points.",
+        label="Minimum points of a voxel",
+        within="[1, 1_000_000]",
+    ),
+    min_points: int = tunable(1, "Segments with fewer points get no id.", within="[1, 1_000_000]"),
+    thin: bool = tunable(
+        False,
+        "Thin the voxels of the layer to lines in the middle of the objects; the segments of the points stay.",
+        label="Skeleton only",
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

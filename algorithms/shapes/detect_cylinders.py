@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Optional
 
 import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .cylinder_evidence import Evidence
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
 from .joined_cylinders import joined, without_nested
 from .joined_pieces import whole_axis
-from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
-from .searched_points import WHOLE_CLOUD, MeasuredPoints, SearchIn, SearchTunables, Shape, search_shapes
-from .surface_normals import NormalPoints
+from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
+from .searched_points import SEARCH_IN, MeasuredPoints, SearchTunables, Shape, search_shapes
+from .surface_normals import NORMAL_POINTS
 
 _FIELDS = (
     Field("id", int, "number of the cylinder, as SegmentID of its points", numbers="segment_id"),
@@ -39,29 +39,25 @@ def detect_cylinders(
     segment_id=None,
     shape=None,
     *,
-    min_radius: MinRadius = None,
-    max_radius: MaxRadius = None,
-    tolerance: ShapeTolerance = None,
-    min_seen: Annotated[
-        float,
-        Param(
-            "Least share of the circumference that must have points, 0 to 1. A cylinder of which less is seen has an "
-            "uncertain radius.",
-            label="Minimum share seen",
-            within="[0.05, 1]",
-        ),
-    ] = 0.2,
-    min_points: Annotated[int, Param("Points of the smallest cylinder.", within=f"[{LEAST_POINTS}, 1_000_000]")] = 40,
-    max_gap: Annotated[
-        float,
-        Param(
-            "Longest part of an axis without points, behind a flange or in the shadow of another object, across which "
-            "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always parts them.",
-            within="[0, 100] m",
-        ),
-    ] = 1.0,
-    search_in: SearchIn = WHOLE_CLOUD,
-    n_neighbors: NormalPoints = None,
+    min_radius: Optional[float] = MIN_RADIUS,
+    max_radius: Optional[float] = MAX_RADIUS,
+    tolerance: Optional[float] = SHAPE_TOLERANCE,
+    min_seen: float = tunable(
+        0.2,
+        "Least share of the circumference that must have points, 0 to 1. A cylinder of which less is seen has an "
+        "uncertain radius.",
+        label="Minimum share seen",
+        within="[0.05, 1]",
+    ),
+    min_points: int = tunable(40, "Points of the smallest cylinder.", within=f"[{LEAST_POINTS}, 1_000_000]"),
+    max_gap: float = tunable(
+        1.0,
+        "Longest part of an axis without points, behind a flange or in the shadow of another object, across which "
+        "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always parts them.",
+        within="[0, 100] m",
+    ),
+    search_in: str = SEARCH_IN,
+    n_neighbors: Optional[int] = NORMAL_POINTS,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

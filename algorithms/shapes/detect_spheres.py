@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Optional
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
-from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
-from .searched_points import WHOLE_CLOUD, MeasuredPoints, SearchIn, SearchTunables, Shape, search_shapes
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
+from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
+from .searched_points import SEARCH_IN, MeasuredPoints, SearchTunables, Shape, search_shapes
 from .sphere_search import LEAST_POINTS, FoundSphere, SphereSearch
-from .surface_normals import NormalPoints
+from .surface_normals import NORMAL_POINTS
 
 CENTER_FIRST, _FOUR_DIMENSIONS = METHODS = ("center first", "four dimensions")
 
@@ -35,29 +35,25 @@ def detect_spheres(
     segment_id=None,
     shape=None,
     *,
-    method: Annotated[
-        str,
-        Param(
-            "With center first, points vote for a center, and the voters of the best center for a radius. With four "
-            "dimensions, they vote for both together, which takes more memory.",
-            choices=METHODS,
-        ),
-    ] = CENTER_FIRST,
-    min_radius: MinRadius = None,
-    max_radius: MaxRadius = None,
-    tolerance: ShapeTolerance = None,
-    min_seen: Annotated[
-        float,
-        Param(
-            "Least share of the sphere that must have points, 0 to 1. A sphere of which less is seen has an uncertain "
-            "radius.",
-            label="Minimum share seen",
-            within="[0.05, 1]",
-        ),
-    ] = 0.15,
-    min_points: Annotated[int, Param("Points of the smallest sphere.", within=f"[{LEAST_POINTS}, 1_000_000]")] = 40,
-    search_in: SearchIn = WHOLE_CLOUD,
-    n_neighbors: NormalPoints = None,
+    method: str = tunable(
+        CENTER_FIRST,
+        "With center first, points vote for a center, and the voters of the best center for a radius. With four "
+        "dimensions, they vote for both together, which takes more memory.",
+        choices=METHODS,
+    ),
+    min_radius: Optional[float] = MIN_RADIUS,
+    max_radius: Optional[float] = MAX_RADIUS,
+    tolerance: Optional[float] = SHAPE_TOLERANCE,
+    min_seen: float = tunable(
+        0.15,
+        "Least share of the sphere that must have points, 0 to 1. A sphere of which less is seen has an uncertain "
+        "radius.",
+        label="Minimum share seen",
+        within="[0.05, 1]",
+    ),
+    min_points: int = tunable(40, "Points of the smallest sphere.", within=f"[{LEAST_POINTS}, 1_000_000]"),
+    search_in: str = SEARCH_IN,
+    n_neighbors: Optional[int] = NORMAL_POINTS,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Param, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, stage, tunable
 
 _FIELDS = (
     Field("id", int, "number of the face, from 1"),
@@ -41,14 +41,12 @@ def reconstruct_pipes(
     axes,
     centers=None,
     *,
-    radius: Annotated[
-        float,
-        Param(
-            "Radius of lines and points that have no attribute 'radius', such as wires.",
-            label="Radius without attribute",
-            within="[0.001, 100] m",
-        ),
-    ] = 0.05,
+    radius: float = tunable(
+        0.05,
+        "Radius of lines and points that have no attribute 'radius', such as wires.",
+        label="Radius without attribute",
+        within="[0.001, 100] m",
+    ),
     monitor=None,
 ):
     """Draw cylinders around their axes and spheres around their centers, as polygons in space.

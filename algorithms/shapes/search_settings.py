@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import ROUGHNESS_OF_SPACING
-from ..stage import Param
+from ..stage import tunable
 
 # Least radius (point spacings): half a circumference has four points across it.
 _RADIUS_SPACINGS = 1.2
@@ -28,35 +28,29 @@ _LEAST_RANGE = 2.0
 # Largest radius as a share of the longest side of the cloud: larger shapes do not lie in the cloud as a whole.
 _SHARE_OF_EXTENT = 0.5
 
-MinRadius = Annotated[
-    Optional[float],
-    Param(
-        "Least radius that is looked for.",
-        within="[0.001, 1000] m",
-        automatic=f"the larger of {_RADIUS_SPACINGS:g} times the point spacing and {_RADIUS_DEVIATIONS:g} times the "
-        "roughness of surfaces.",
-    ),
-]
+MIN_RADIUS = tunable(
+    None,
+    "Least radius that is looked for.",
+    within="[0.001, 1000] m",
+    automatic=f"the larger of {_RADIUS_SPACINGS:g} times the point spacing and {_RADIUS_DEVIATIONS:g} times the "
+    "roughness of surfaces.",
+)
 
-MaxRadius = Annotated[
-    Optional[float],
-    Param(
-        "Largest radius that is looked for.",
-        within="[0.001, 1000] m",
-        automatic=f"{_LARGEST_RADIUS:g} m, but no more than half of the longest side of the cloud, and at least twice "
-        "the minimum.",
-    ),
-]
+MAX_RADIUS = tunable(
+    None,
+    "Largest radius that is looked for.",
+    within="[0.001, 1000] m",
+    automatic=f"{_LARGEST_RADIUS:g} m, but no more than half of the longest side of the cloud, and at least twice "
+    "the minimum.",
+)
 
-ShapeTolerance = Annotated[
-    Optional[float],
-    Param(
-        "Distance within which a point lies on the surface.",
-        within="(0, 10] m",
-        automatic="3 times the roughness of surfaces, which is the root of the sum of the squares of the noise of "
-        f"the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
-    ),
-]
+SHAPE_TOLERANCE = tunable(
+    None,
+    "Distance within which a point lies on the surface.",
+    within="(0, 10] m",
+    automatic="3 times the roughness of surfaces, which is the root of the sum of the squares of the noise of "
+    f"the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
+)
 
 
 def reach_of_radius(max_radius: Optional[float]) -> float:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Annotated, Callable, Generic, Optional, Protocol, TypeVar
+from typing import Callable, Generic, Optional, Protocol, TypeVar
 
 import numpy as np
 
 from ..geometry.boxes import by_first_point
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.candidate_points import candidates
-from ..stage import Monitor, Param
+from ..stage import Monitor, tunable
 from .search_settings import check_radii, point_noise
 from .shape_windows import WINDOW
 from .surface_normals import normal_points, normals_of
@@ -34,15 +34,13 @@ class Shape(IntEnum):
 
 WHOLE_CLOUD, WITHOUT_SHAPE, EACH_SEGMENT = SEARCHES = ("whole cloud", "points without a shape", "each segment")
 
-SearchIn = Annotated[
-    str,
-    Param(
-        "Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without "
-        "a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep "
-        "their segment.",
-        choices=SEARCHES,
-    ),
-]
+SEARCH_IN = tunable(
+    WHOLE_CLOUD,
+    "Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without "
+    "a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep "
+    "their segment.",
+    choices=SEARCHES,
+)
 
 
 class FoundShape(Protocol):

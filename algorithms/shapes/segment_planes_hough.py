@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -13,13 +13,13 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, ROUGHNESS_OF_SPACING
 from ..segmentation.plane_merging import joined_planes
 from ..segmentation.segment_clusters import dbscan
-from ..stage import Layer, Monitor, Param, stage
+from ..stage import Layer, Monitor, stage, tunable
 from .hough_planes import HoughPlanes
 from .joined_pieces import whole_plane
 from .plane_polygons import PLANE_FIELDS, plane_polygons
 from .search_settings import point_noise
-from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, numbered, searched_points
-from .surface_normals import NormalPoints, normal_points, normals_of, refuse_line
+from .searched_points import SEARCH_IN, SearchedPoints, Shape, numbered, searched_points
+from .surface_normals import NORMAL_POINTS, normal_points, normals_of, refuse_line
 
 METHODS = ("points", "normals")
 
@@ -44,45 +44,23 @@ _WIDE_GAP = 0.5
 # Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
 _MOST_ANGLE = 10.0
 
-_Tolerance = Annotated[
-    Optional[float],
-    Param(
-        "Distance within which a point lies on a plane.",
-        within="(0, 10] m",
-        automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
-        f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
-    ),
-]
 
-_DistanceBin = Annotated[
-    Optional[float],
-    Param(
-        "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
-        "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
-        within="(0, 10] m",
-        automatic="the tolerance: two bins side by side then hold a plane with its noise.",
-    ),
-]
+_DISTANCE_BIN = tunable(
+    None,
+    "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
+    "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
+    within="(0, 10] m",
+    automatic="the tolerance: two bins side by side then hold a plane with its noise.",
+)
 
-_SlopeBin = Annotated[
-    Optional[float],
-    Param(
-        "Width of a bin in the slopes of a plane. Smaller bins separate directions, need more memory and time, "
-        "and scatter a plane over several.",
-        within="(0, 30]°",
-        automatic="a plane off by half a bin is off by one distance bin at the side of the window; at most 11°.",
-    ),
-]
 
-_MaxGap = Annotated[
-    Optional[float],
-    Param(
-        "Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part "
-        "coplanar surfaces.",
-        within="(0, 1000] m",
-        automatic="3 times the point spacing on surfaces.",
-    ),
-]
+_SLOPE_BIN = tunable(
+    None,
+    "Width of a bin in the slopes of a plane. Smaller bins separate directions, need more memory and time, "
+    "and scatter a plane over several.",
+    within="(0, 30]°",
+    automatic="a plane off by half a bin is off by one distance bin at the side of the window; at most 11°.",
+)
 
 
 @stage(
@@ -99,37 +77,43 @@ def segment_planes_hough(
     segment_id=None,
     shape=None,
     *,
-    method: Annotated[
-        str,
-        Param(
-            "With points, each point votes for all planes through it. With normals, the normal of each point votes "
-            "for a direction, then the point for a distance, which needs surfaces smooth enough for normals.",
-            choices=METHODS,
-        ),
-    ] = "points",
-    search_in: SearchIn = WHOLE_CLOUD,
-    tolerance: _Tolerance = None,
-    distance_bin: _DistanceBin = None,
-    slope_bin: _SlopeBin = None,
-    window_size: Annotated[
-        Optional[float],
-        Param(
-            "Side of the cubes in which planes are looked for; planes that continue in the next cube are joined.",
-            within="(0, 100] m",
-            automatic="wide enough for 40 points of a surface and for 20 tolerances.",
-        ),
-    ] = None,
-    max_gap: _MaxGap = None,
-    min_area: Annotated[
-        Optional[float],
-        Param(
-            "Area of the smallest surface, measured on it.",
-            label="Minimum plane area",
-            within="[0, 10_000] m²",
-            automatic="half the side of a window, squared.",
-        ),
-    ] = None,
-    n_neighbors: NormalPoints = None,
+    method: str = tunable(
+        "points",
+        "With points, each point votes for all planes through it. With normals, the normal of each point votes "
+        "for a direction, then the point for a distance, which needs surfaces smooth enough for normals.",
+        choices=METHODS,
+    ),
+    search_in: str = SEARCH_IN,
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance within which a point lies on a plane.",
+        within="(0, 10] m",
+        automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
+        f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
+    ),
+    distance_bin: Optional[float] = _DISTANCE_BIN,
+    slope_bin: Optional[float] = _SLOPE_BIN,
+    window_size: Optional[float] = tunable(
+        None,
+        "Side of the cubes in which planes are looked for; planes that continue in the next cube are joined.",
+        within="(0, 100] m",
+        automatic="wide enough for 40 points of a surface and for 20 tolerances.",
+    ),
+    max_gap: Optional[float] = tunable(
+        None,
+        "Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part "
+        "coplanar surfaces.",
+        within="(0, 1000] m",
+        automatic="3 times the point spacing on surfaces.",
+    ),
+    min_area: Optional[float] = tunable(
+        None,
+        "Area of the smallest surface, measured on it.",
+        label="Minimum plane area",
+        within="[0, 10_000] m²",
+        automatic="half the side of a window, squared.",
+    ),
+    n_neighbors: Optional[int] = NORMAL_POINTS,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.groups import split_groups
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.candidate_points import candidates
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .cylinder_fits import Cylinder
 from .stem_search import BREAST, find_stems, ground_level
 from .surface_normals import refuse_line
@@ -64,32 +64,28 @@ def segment_tree(
     xyz,
     classification,
     *,
-    voxel_size: Annotated[
-        Optional[float],
-        Param(
-            "Side of a voxel: about the thickness of the thinnest branches. Smaller voxels show thinner branches and "
-            "need denser points.",
-            within="[0.005, 10] m",
-            automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces, at least {_LEAST_VOXEL:g} m.",
-        ),
-    ] = None,
-    min_count: Annotated[
-        int,
-        Param(
-            "Voxels with fewer points are left out: wood has several points to a voxel, leaves have single ones.",
-            label="Minimum points of a voxel",
-            within="[1, 1000]",
-        ),
-    ] = 2,
-    max_gap: Annotated[
-        Optional[float],
-        Param(
-            "Widest gap in a stem or branch that is crossed.", within="[0, 10] m", automatic=f"{_GAP_VOXELS:g} voxels."
-        ),
-    ] = None,
-    min_length: Annotated[
-        float, Param("Length of the shortest branch; points of shorter ones are leaves.", within="[0, 100] m")
-    ] = 0.3,
+    voxel_size: Optional[float] = tunable(
+        None,
+        "Side of a voxel: about the thickness of the thinnest branches. Smaller voxels show thinner branches and "
+        "need denser points.",
+        within="[0.005, 10] m",
+        automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces, at least {_LEAST_VOXEL:g} m.",
+    ),
+    min_count: int = tunable(
+        2,
+        "Voxels with fewer points are left out: wood has several points to a voxel, leaves have single ones.",
+        label="Minimum points of a voxel",
+        within="[1, 1000]",
+    ),
+    max_gap: Optional[float] = tunable(
+        None,
+        "Widest gap in a stem or branch that is crossed.",
+        within="[0, 10] m",
+        automatic=f"{_GAP_VOXELS:g} voxels.",
+    ),
+    min_length: float = tunable(
+        0.3, "Length of the shortest branch; points of shorter ones are leaves.", within="[0, 100] m"
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import zlib
-from typing import Annotated, Optional
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from ..neighborhoods.covariance import Nearest, defined_eigenvalues, reduce_neighborhoods, smallest_eigenvectors
 from ..neighborhoods.nearest_blocks import Shapes
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import Monitor, Param
+from ..stage import Monitor, tunable
 
 # Standard deviation (radians) that normals may have from the noise: 3°, so that directions distinguish surfaces.
 _NORMAL_ERROR = 0.05
@@ -28,17 +27,15 @@ _LINE = 1e-8
 # Of each sampling: what its normals were measured on, and the normals. They go with the sampling.
 _KEPT: WeakKeyDictionary[CloudSampling, tuple[tuple, np.ndarray]] = WeakKeyDictionary()
 
-NormalPoints = Annotated[
-    Optional[int],
-    Param(
-        "Points of the neighborhood that gives a point its normal, itself among them. More are less noisy and round "
-        "off edges and thin pipes.",
-        label="Points for normals",
-        within="[4, 1000]",
-        automatic=f"as many as hold the error of normals from the noise to 3°, {_LEAST_POINTS} to {_MOST_POINTS}.",
-        advanced=True,
-    ),
-]
+NORMAL_POINTS = tunable(
+    None,
+    "Points of the neighborhood that gives a point its normal, itself among them. More are less noisy and round "
+    "off edges and thin pipes.",
+    label="Points for normals",
+    within="[4, 1000]",
+    automatic=f"as many as hold the error of normals from the noise to 3°, {_LEAST_POINTS} to {_MOST_POINTS}.",
+    advanced=True,
+)
 
 
 def normal_points(sampling: CloudSampling) -> int:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 
-from ..stage import Monitor, Param
+from ..stage import Monitor, tunable
 from .beams import Beams, Echoes, World, join
 from .pairs import in_boxes
 from .scanner import brightness
@@ -16,11 +15,9 @@ from .scene import Scene
 from .solids import dot
 from .street_site import SIZE
 
-LineRate = Annotated[float, Param("Scan lines of each scanner.", within="[1, 500] 1/s", advanced=True)]
+LINE_RATE = tunable(40.0, "Scan lines of each scanner.", within="[1, 500] 1/s", advanced=True)
 
-AngularStep = Annotated[
-    float, Param("Angle between neighboring beams of a scanner.", within="[0.02, 5]°", advanced=True)
-]
+ANGULAR_STEP = tunable(0.25, "Angle between neighboring beams of a scanner.", within="[0.02, 5]°", advanced=True)
 
 # Number of each scanner, which is the source id of its points.
 SCANNERS = {"horizontal": 1, "vertical": 2}

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Optional, Union
+from typing import Optional, Union
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..stage import Monitor, Param
+from ..stage import Monitor, tunable
 from .beams import Beams, Echoes, World, is_vegetation, join
 from .pairs import in_boxes, rank
 from .relief import Relief
@@ -31,18 +31,14 @@ RECORDED = (
     "segment_id",
 )
 
-PulseDensity = Annotated[
-    float,
-    Param(
-        "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
-        label="Pulse density",
-        within="[0.5, 100] pulses/m²",
-    ),
-]
+PULSE_DENSITY = tunable(
+    8.0,
+    "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
+    label="Pulse density",
+    within="[0.5, 100] pulses/m²",
+)
 
-RangeNoise = Annotated[
-    float, Param("Standard deviation of the measured distances.", within="[0, 0.2] m", advanced=True)
-]
+RANGE_NOISE = tunable(0.02, "Standard deviation of the measured distances.", within="[0, 0.2] m", advanced=True)
 
 # Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.
 MAX_PULSES = 5e7

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 from ..cloud.asprs import PointClass
-from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Param, stage
+from ..params import SEED
+from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .bridge_site import KINDS, Deck, build_site, land
-from .scanner import RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pulses, scan
+from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_many_pulses, scan
 
 _ALL = "all"
 
@@ -32,21 +30,19 @@ _DECK_FIELDS = (
 )
 def simulate_bridges(
     *,
-    kind: Annotated[
-        str,
-        Param(
-            "A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a "
-            "cutting, a bridge over a valley, a fly-over with ramps. Or no bridge: the mouths of a tunnel, a "
-            "jetty, a ramp that ends over a wall. 'all' lays them side by side.",
-            choices=(_ALL, *KINDS),
-        ),
-    ] = _ALL,
-    angle: Annotated[float, Param("Angle of the decks to the shortest way across.", within="[0, 50]°")] = 0.0,
-    density: PulseDensity = 8.0,
-    cars: Annotated[bool, Param("Cars on the decks.")] = True,
-    trees: Annotated[bool, Param("Trees on the land.")] = True,
-    range_noise: RangeNoise = 0.02,
-    seed: Seed = 1,
+    kind: str = tunable(
+        _ALL,
+        "A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a "
+        "cutting, a bridge over a valley, a fly-over with ramps. Or no bridge: the mouths of a tunnel, a "
+        "jetty, a ramp that ends over a wall. 'all' lays them side by side.",
+        choices=(_ALL, *KINDS),
+    ),
+    angle: float = tunable(0.0, "Angle of the decks to the shortest way across.", within="[0, 50]°"),
+    density: float = PULSE_DENSITY,
+    cars: bool = tunable(True, "Cars on the decks."),
+    trees: bool = tunable(True, "Trees on the land."),
+    range_noise: float = RANGE_NOISE,
+    seed: int = SEED,
     monitor=None,
 ):
     """Scan made-up bridges from the air: decks with parapets, piers and cars, and the true class of every point.

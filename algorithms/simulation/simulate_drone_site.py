@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..params import Seed
-from ..stage import Field, Layer, Param, stage
+from ..params import SEED
+from ..stage import Field, Layer, stage, tunable
 from .drone_site import build_site
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
@@ -45,44 +43,34 @@ _FIELDS = (
 )
 def simulate_drone_site(
     *,
-    size: Annotated[float, Param("Side of the site, a square from (0, 0).", within="[40, 400] m")] = 150.0,
-    density: Annotated[
-        float, Param("Points on open ground, seen from above.", label="Point density", within="[5, 400] points/m²")
-    ] = 40.0,
-    slope: Annotated[float, Param("Mean slope of the ground.", within="[0, 20]°")] = 4.0,
-    terrace_height: Annotated[
-        float, Param("Rise of steps in the slope.", label="Height of terraces", within="[0, 3] m")
-    ] = 1.5,
-    buildings: Annotated[
-        float, Param("Houses on a hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha")
-    ] = 16.0,
-    trees: Annotated[float, Param("Trees in gardens.", within="[0, 200] per ha")] = 30.0,
-    halls: Annotated[
-        int,
-        Param("Flat roofs with parapets, 10 to 100 m long, where there is room.", label="Flat halls", within="[0, 20]"),
-    ] = 2,
-    unevenness: Annotated[
-        float,
-        Param(
-            "Standard deviation of the ground from the slope: gardens, kerbs, ruts.",
-            label="Unevenness of the ground",
-            within="[0, 0.5] m",
-        ),
-    ] = 0.12,
-    rounding: Annotated[
-        float, Param("Distance over which eaves and ridges are rounded.", label="Rounding of edges", within="[0, 2] m")
-    ] = 0.5,
-    waves: Annotated[
-        float, Param("Standard deviation of errors that neighboring points share.", within="[0, 0.3] m")
-    ] = 0.03,
-    walls: Annotated[
-        float,
-        Param(
-            "Density of points on walls, as a share of that on open ground.", label="Share of walls", within="[0, 1]"
-        ),
-    ] = 0.6,
-    noise: Annotated[float, Param("Standard deviation of each point in every direction.", within="[0, 0.2] m")] = 0.01,
-    seed: Seed = 1,
+    size: float = tunable(150.0, "Side of the site, a square from (0, 0).", within="[40, 400] m"),
+    density: float = tunable(
+        40.0, "Points on open ground, seen from above.", label="Point density", within="[5, 400] points/m²"
+    ),
+    slope: float = tunable(4.0, "Mean slope of the ground.", within="[0, 20]°"),
+    terrace_height: float = tunable(1.5, "Rise of steps in the slope.", label="Height of terraces", within="[0, 3] m"),
+    buildings: float = tunable(
+        16.0, "Houses on a hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha"
+    ),
+    trees: float = tunable(30.0, "Trees in gardens.", within="[0, 200] per ha"),
+    halls: int = tunable(
+        2, "Flat roofs with parapets, 10 to 100 m long, where there is room.", label="Flat halls", within="[0, 20]"
+    ),
+    unevenness: float = tunable(
+        0.12,
+        "Standard deviation of the ground from the slope: gardens, kerbs, ruts.",
+        label="Unevenness of the ground",
+        within="[0, 0.5] m",
+    ),
+    rounding: float = tunable(
+        0.5, "Distance over which eaves and ridges are rounded.", label="Rounding of edges", within="[0, 2] m"
+    ),
+    waves: float = tunable(0.03, "Standard deviation of errors that neighboring points share.", within="[0, 0.3] m"),
+    walls: float = tunable(
+        0.6, "Density of points on walls, as a share of that on open ground.", label="Share of walls", within="[0, 1]"
+    ),
+    noise: float = tunable(0.01, "Standard deviation of each point in every direction.", within="[0, 0.2] m"),
+    seed: int = SEED,
     monitor=None,
 ):
     """Photograph a made-up site with a drone, match the images with all their errors, and store the true classes.

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from ..params import Seed
-from ..stage import Param, stage
-from .drone import SCANNERS, AngularStep, LineRate, LineScan, plan_flight, pulses_per_line
-from .scanner import RECORDED, RangeNoise, refuse_many_pulses
+from ..params import SEED
+from ..stage import stage, tunable
+from .drone import ANGULAR_STEP, LINE_RATE, SCANNERS, LineScan, plan_flight, pulses_per_line
+from .scanner import RANGE_NOISE, RECORDED, refuse_many_pulses
 from .street_site import build_site
 
 
@@ -19,31 +17,27 @@ from .street_site import build_site
 )
 def simulate_flight(
     *,
-    height: Annotated[
-        float, Param("How high over the street the drone climbs.", label="Flight height", within="[2, 25] m")
-    ] = 8.0,
-    duration: Annotated[
-        float,
-        Param(
-            "From take-off to landing: a fifth of it each for the climb and the landing, the rest for one turn. "
-            "Longer flights have more points.",
-            within="[5, 600] s",
-        ),
-    ] = 190.0,
-    scanners: Annotated[
-        str,
-        Param(
-            "Whose points are wanted. Run twice with one scanner each, the same flight gives two clouds to be merged.",
-            choices=("both", *SCANNERS),
-        ),
-    ] = "both",
-    trees: Annotated[int, Param("Trees along the street.", within="[0, 22]")] = 4,
-    slope: Annotated[float, Param("Slope of the ground, which is a plane.", within="[0, 10]°")] = 1.5,
-    line_rate: LineRate = 40.0,
-    angular_step: AngularStep = 0.25,
-    max_range: Annotated[float, Param("How far the scanners see.", within="[1, 40] m", advanced=True)] = 30.0,
-    range_noise: RangeNoise = 0.03,
-    seed: Seed = 1,
+    height: float = tunable(
+        8.0, "How high over the street the drone climbs.", label="Flight height", within="[2, 25] m"
+    ),
+    duration: float = tunable(
+        190.0,
+        "From take-off to landing: a fifth of it each for the climb and the landing, the rest for one turn. "
+        "Longer flights have more points.",
+        within="[5, 600] s",
+    ),
+    scanners: str = tunable(
+        "both",
+        "Whose points are wanted. Run twice with one scanner each, the same flight gives two clouds to be merged.",
+        choices=("both", *SCANNERS),
+    ),
+    trees: int = tunable(4, "Trees along the street.", within="[0, 22]"),
+    slope: float = tunable(1.5, "Slope of the ground, which is a plane.", within="[0, 10]°"),
+    line_rate: float = LINE_RATE,
+    angular_step: float = ANGULAR_STEP,
+    max_range: float = tunable(30.0, "How far the scanners see.", within="[1, 40] m", advanced=True),
+    range_noise: float = RANGE_NOISE.with_default(0.03),
+    seed: int = SEED,
     monitor=None,
 ):
     """Scan a made-up street from a drone with two line scanners, with the true class of every point.

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
-from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..params import SEED
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from ..threads import n_threads
 from .plant_layout import Plant, build_plant
 from .plant_parts import Part
@@ -61,27 +60,22 @@ _CENTER_FIELDS = tuple(field for field in _AXIS_FIELDS if field.name not in {"ki
 )
 def simulate_plant(
     *,
-    pipes: Annotated[int, Param("Straight pipes with diameters of 5 to 60 cm, on racks.", within="[1, 2000]")] = 200,
-    tanks: Annotated[
-        int,
-        Param(
-            "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.", within="[0, 20]"
-        ),
-    ] = 3,
-    spheres: Annotated[int, Param("Spherical vessels with diameters of 1 to 3 m.", within="[0, 50]")] = 4,
-    clutter: Annotated[
-        bool, Param("What carries the pipes or lies near them and is no pipe.", label="Beams, gratings and clutter")
-    ] = True,
-    density: Annotated[
-        float,
-        Param(
-            "Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth.",
-            label="Point density",
-            within="[100, 100_000] points/m²",
-        ),
-    ] = 4000.0,
-    noise: Annotated[float, Param("Standard deviation of the distance of a point.", within="[0, 0.1] m")] = 0.002,
-    seed: Seed = 1,
+    pipes: int = tunable(200, "Straight pipes with diameters of 5 to 60 cm, on racks.", within="[1, 2000]"),
+    tanks: int = tunable(
+        3, "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.", within="[0, 20]"
+    ),
+    spheres: int = tunable(4, "Spherical vessels with diameters of 1 to 3 m.", within="[0, 50]"),
+    clutter: bool = tunable(
+        True, "What carries the pipes or lies near them and is no pipe.", label="Beams, gratings and clutter"
+    ),
+    density: float = tunable(
+        4000.0,
+        "Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth.",
+        label="Point density",
+        within="[100, 100_000] points/m²",
+    ),
+    noise: float = tunable(0.002, "Standard deviation of the distance of a point.", within="[0, 0.1] m"),
+    seed: int = SEED,
     monitor=None,
 ):
     """Scan a made-up industrial plant: points with their true surface, the axes of pipes and tanks, centers of spheres.

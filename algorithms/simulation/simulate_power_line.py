@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from ..params import Seed
-from ..stage import Param, stage
+from ..params import SEED
+from ..stage import stage, tunable
 from .line_site import build_line_site
-from .scanner import RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pulses, scan
+from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_many_pulses, scan
 
 
 @stage(
@@ -17,19 +15,16 @@ from .scanner import RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pul
 )
 def simulate_power_line(
     *,
-    size: Annotated[float, Param("Side of the site, a square from (0, 0).", within="[80, 1000] m")] = 200.0,
-    density: PulseDensity = 8.0,
-    span: Annotated[
-        float, Param("Distance between the towers of the transmission line.", within="[50, 500] m")
-    ] = 120.0,
-    angle: Annotated[float, Param("Direction of both lines from east.", within="[0, 90]°")] = 15.0,
-    trees: Annotated[float, Param("Trees outside the forest.", within="[0, 200] per ha")] = 20.0,
-    forest: Annotated[
-        float,
-        Param("Share of the site that is forest, also under the lines.", label="Share of forest", within="[0, 1]"),
-    ] = 0.15,
-    range_noise: RangeNoise = 0.02,
-    seed: Seed = 1,
+    size: float = tunable(200.0, "Side of the site, a square from (0, 0).", within="[80, 1000] m"),
+    density: float = PULSE_DENSITY,
+    span: float = tunable(120.0, "Distance between the towers of the transmission line.", within="[50, 500] m"),
+    angle: float = tunable(15.0, "Direction of both lines from east.", within="[0, 90]°"),
+    trees: float = tunable(20.0, "Trees outside the forest.", within="[0, 200] per ha"),
+    forest: float = tunable(
+        0.15, "Share of the site that is forest, also under the lines.", label="Share of forest", within="[0, 1]"
+    ),
+    range_noise: float = RANGE_NOISE,
+    seed: int = SEED,
     monitor=None,
 ):
     """Scan made-up power lines from the air, with the true class of every point.

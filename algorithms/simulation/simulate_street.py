@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
-from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Param, stage
-from .drone import AngularStep, LineRate, LineScan
-from .scanner import RECORDED, RangeNoise, Survey, refuse_many_pulses, scan
+from ..params import SEED
+from ..stage import Field, Layer, LayerFeatures, stage, tunable
+from .drone import ANGULAR_STEP, LINE_RATE, LineScan
+from .scanner import RANGE_NOISE, RECORDED, Survey, refuse_many_pulses, scan
 from .scene import Scene
 from .solids import Rect
 from .street_fronts import Truth
@@ -48,31 +46,6 @@ _HOUSE_FIELDS = (
 )
 _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
 
-_Unevenness = Annotated[
-    float,
-    Param(
-        "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
-        "plane.",
-        within="[0, 1] m",
-    ),
-]
-
-_Density = Annotated[
-    float,
-    Param(
-        "Laser pulses of the scan from the air.", label="Pulse density", within="[0.5, 100] pulses/m²", advanced=True
-    ),
-]
-
-_Stoops = Annotated[
-    float,
-    Param(
-        "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
-        label="Height of stoops",
-        within="[0, 4] m",
-    ),
-]
-
 
 @stage(
     "Simulation",
@@ -87,32 +60,46 @@ _Stoops = Annotated[
 )
 def simulate_street(
     *,
-    length: Annotated[float, Param("Length of the street.", within="[10, 2000] m")] = 60.0,
-    width: Annotated[float, Param("Distance between the fronts of both sides.", within="[12, 60] m")] = 16.0,
-    slope: Annotated[float, Param("Slope along the street.", within="[0, 10]°")] = 1.0,
-    clutter: Annotated[
-        bool, Param("Put parked cars, trees, poles and people before the fronts, which hide parts of them.")
-    ] = True,
-    stoops: _Stoops = 0.0,
-    unevenness: _Unevenness = 0.0,
-    houses: Annotated[bool, Param("Put houses with gable roofs behind the fronts; no front is curved then.")] = False,
-    view: Annotated[
-        str,
-        Param(
-            "Scan the street from a vehicle or from an airplane. Both see the same street for the same seed.",
-            choices=VIEWS,
-        ),
-    ] = "vehicle",
-    density: _Density = 12.0,
-    glass: Annotated[
-        float, Param("Share of the pulses on window panes that pass them and are lost.", within="[0, 100] %")
-    ] = 70.0,
-    speed: Annotated[float, Param("Speed of the vehicle.", within="[0.5, 30] m/s", advanced=True)] = 5.0,
-    line_rate: LineRate = 100.0,
-    angular_step: AngularStep = 0.25,
-    max_range: Annotated[float, Param("How far the scanners see.", within="[5, 200] m", advanced=True)] = 40.0,
-    range_noise: RangeNoise = 0.01,
-    seed: Seed = 1,
+    length: float = tunable(60.0, "Length of the street.", within="[10, 2000] m"),
+    width: float = tunable(16.0, "Distance between the fronts of both sides.", within="[12, 60] m"),
+    slope: float = tunable(1.0, "Slope along the street.", within="[0, 10]°"),
+    clutter: bool = tunable(
+        True, "Put parked cars, trees, poles and people before the fronts, which hide parts of them."
+    ),
+    stoops: float = tunable(
+        0.0,
+        "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
+        label="Height of stoops",
+        within="[0, 4] m",
+    ),
+    unevenness: float = tunable(
+        0.0,
+        "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
+        "plane.",
+        within="[0, 1] m",
+    ),
+    houses: bool = tunable(False, "Put houses with gable roofs behind the fronts; no front is curved then."),
+    view: str = tunable(
+        "vehicle",
+        "Scan the street from a vehicle or from an airplane. Both see the same street for the same seed.",
+        choices=VIEWS,
+    ),
+    density: float = tunable(
+        12.0,
+        "Laser pulses of the scan from the air.",
+        label="Pulse density",
+        within="[0.5, 100] pulses/m²",
+        advanced=True,
+    ),
+    glass: float = tunable(
+        70.0, "Share of the pulses on window panes that pass them and are lost.", within="[0, 100] %"
+    ),
+    speed: float = tunable(5.0, "Speed of the vehicle.", within="[0.5, 30] m/s", advanced=True),
+    line_rate: float = LINE_RATE.with_default(100.0),
+    angular_step: float = ANGULAR_STEP,
+    max_range: float = tunable(40.0, "How far the scanners see.", within="[5, 200] m", advanced=True),
+    range_noise: float = RANGE_NOISE.with_default(0.01),
+    seed: int = SEED,
     monitor=None,
 ):
     """Scan a made-up street from a vehicle or an airplane, with the true facades, windows, doors and corners.

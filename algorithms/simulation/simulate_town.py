@@ -2,40 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from ..params import Seed
-from ..stage import Param, stage
-from .scanner import PATTERNS, RECORDED, PulseDensity, RangeNoise, Survey, refuse_many_pulses, scan
+from ..params import SEED
+from ..stage import stage, tunable
+from .scanner import PATTERNS, PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_many_pulses, scan
 from .town_layout import MAX_BUILDINGS, TownPlan, build_town
-
-_MaxScanAngle = Annotated[
-    float,
-    Param(
-        "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
-        "behind them.",
-        within="[5, 30]°",
-        advanced=True,
-    ),
-]
-
-_Buildings = Annotated[
-    float,
-    Param(
-        "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
-        "The river's valley and the forest have none.",
-        within=f"[0, {MAX_BUILDINGS}] per ha",
-    ),
-]
-
-_NoisePoints = Annotated[
-    float,
-    Param(
-        "Points far above (birds) and below the ground (multipath), half of each.",
-        within="[0, 1000] per ha",
-        advanced=True,
-    ),
-]
 
 
 @stage(
@@ -43,58 +13,61 @@ _NoisePoints = Annotated[
 )
 def simulate_town(
     *,
-    size: Annotated[float, Param("Side of the town, a square from (0, 0).", within="[50, 2000] m")] = 200.0,
-    density: PulseDensity = 8.0,
-    buildings: _Buildings = 20.0,
-    trees: Annotated[
-        float,
-        Param(
-            "Trees outside the forest, single and in clumps, where there is room for them.", within="[0, 200] per ha"
-        ),
-    ] = 20.0,
-    forest: Annotated[
-        float, Param("Share of the town that is forest.", label="Share of forest", within="[0, 1]")
-    ] = 0.1,
-    slope: Annotated[float, Param("Mean slope of the ground.", within="[0, 40]°")] = 3.0,
-    relief: Annotated[float, Param("Height from hollows to hills, about.", within="[0, 10] m")] = 2.0,
-    terrace_height: Annotated[
-        float, Param("Height of the banks across the slope, one every 45 m.", within="[0, 5] m")
-    ] = 1.5,
-    river: Annotated[bool, Param("A river in a channel, with a bridge for every street.")] = True,
-    clutter: Annotated[
-        bool, Param("Other objects of a town that are no buildings.", label="Cars, hedges, walls and wires")
-    ] = True,
-    pattern: Annotated[
-        str,
-        Param(
-            "Parallel lines of a rotating mirror, the zigzag of an oscillating one, or pulses at random.",
-            label="Scan pattern",
-            choices=PATTERNS,
-            advanced=True,
-        ),
-    ] = "lines",
-    max_scan_angle: _MaxScanAngle = 20.0,
-    overlap: Annotated[
-        float,
-        Param(
-            "Share of a strip that the next one scans too. Without any, roofs and crowns at the seam are cut.",
-            label="Strip overlap",
-            within="[0, 0.8]",
-            advanced=True,
-        ),
-    ] = 0.3,
-    range_noise: RangeNoise = 0.02,
-    noise_points: _NoisePoints = 10.0,
-    returns: Annotated[
-        bool,
-        Param(
-            "Record what a pulse meets on its way; otherwise the first surface only, with unknown return numbers, "
-            "as image matching does.",
-            label="Several returns",
-            advanced=True,
-        ),
-    ] = True,
-    seed: Seed = 1,
+    size: float = tunable(200.0, "Side of the town, a square from (0, 0).", within="[50, 2000] m"),
+    density: float = PULSE_DENSITY,
+    buildings: float = tunable(
+        20.0,
+        "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
+        "The river's valley and the forest have none.",
+        within=f"[0, {MAX_BUILDINGS}] per ha",
+    ),
+    trees: float = tunable(
+        20.0, "Trees outside the forest, single and in clumps, where there is room for them.", within="[0, 200] per ha"
+    ),
+    forest: float = tunable(0.1, "Share of the town that is forest.", label="Share of forest", within="[0, 1]"),
+    slope: float = tunable(3.0, "Mean slope of the ground.", within="[0, 40]°"),
+    relief: float = tunable(2.0, "Height from hollows to hills, about.", within="[0, 10] m"),
+    terrace_height: float = tunable(1.5, "Height of the banks across the slope, one every 45 m.", within="[0, 5] m"),
+    river: bool = tunable(True, "A river in a channel, with a bridge for every street."),
+    clutter: bool = tunable(
+        True, "Other objects of a town that are no buildings.", label="Cars, hedges, walls and wires"
+    ),
+    pattern: str = tunable(
+        "lines",
+        "Parallel lines of a rotating mirror, the zigzag of an oscillating one, or pulses at random.",
+        label="Scan pattern",
+        choices=PATTERNS,
+        advanced=True,
+    ),
+    max_scan_angle: float = tunable(
+        20.0,
+        "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
+        "behind them.",
+        within="[5, 30]°",
+        advanced=True,
+    ),
+    overlap: float = tunable(
+        0.3,
+        "Share of a strip that the next one scans too. Without any, roofs and crowns at the seam are cut.",
+        label="Strip overlap",
+        within="[0, 0.8]",
+        advanced=True,
+    ),
+    range_noise: float = RANGE_NOISE,
+    noise_points: float = tunable(
+        10.0,
+        "Points far above (birds) and below the ground (multipath), half of each.",
+        within="[0, 1000] per ha",
+        advanced=True,
+    ),
+    returns: bool = tunable(
+        True,
+        "Record what a pulse meets on its way; otherwise the first surface only, with unknown return numbers, "
+        "as image matching does.",
+        label="Several returns",
+        advanced=True,
+    ),
+    seed: int = SEED,
     monitor=None,
 ):
     """Scan a made-up town from the air: houses, trees, a river, and the true class of every point.

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..params import Seed
+from ..params import SEED
 from ..shapes.cylinder_fits import across_axis
 from ..shapes.stem_search import BREAST
-from ..stage import Field, Layer, LayerFeatures, Param, stage
+from ..stage import Field, Layer, LayerFeatures, stage, tunable
 
 # Radius of a branch where it leaves its parent (share of the radius of the parent there).
 _THINNER = 0.55
@@ -78,19 +77,15 @@ class _Limb:
 )
 def simulate_tree(
     *,
-    height: Annotated[float, Param("Height of the tree.", within="[3, 60] m")] = 14.0,
-    dbh: Annotated[
-        float, Param("Diameter of the stem at breast height, 1.3 m.", label="Stem diameter", within="[0.05, 2] m")
-    ] = 0.3,
-    n_branches: Annotated[int, Param("Branches of the stem.", label="Branches", within="[0, 100]")] = 14,
-    leaves: Annotated[
-        float, Param("Points of leaves around the ends of branches, per point of wood.", within="[0, 5]")
-    ] = 0.2,
-    density: Annotated[
-        float, Param("Points on wood.", label="Point density", within="[100, 100_000] points/m²")
-    ] = 5000.0,
-    noise: Annotated[float, Param("Standard deviation of a point across the bark.", within="[0, 0.05] m")] = 0.003,
-    seed: Seed = 1,
+    height: float = tunable(14.0, "Height of the tree.", within="[3, 60] m"),
+    dbh: float = tunable(
+        0.3, "Diameter of the stem at breast height, 1.3 m.", label="Stem diameter", within="[0.05, 2] m"
+    ),
+    n_branches: int = tunable(14, "Branches of the stem.", label="Branches", within="[0, 100]"),
+    leaves: float = tunable(0.2, "Points of leaves around the ends of branches, per point of wood.", within="[0, 5]"),
+    density: float = tunable(5000.0, "Points on wood.", label="Point density", within="[100, 100_000] points/m²"),
+    noise: float = tunable(0.003, "Standard deviation of a point across the bark.", within="[0, 0.05] m"),
+    seed: int = SEED,
     monitor=None,
 ):
     """Scan a made-up tree: points with their true branch, and the lines of stem and branches.

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
-from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Param, stage
+from ..params import SEED
+from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .beams import Echoes, is_vegetation
 from .camera import photograph
 from .relief import Relief
@@ -37,25 +35,6 @@ _MAP_FIELDS = (
     Field("state", str, "kept or demolished"),
 )
 
-_Oblique = Annotated[
-    float,
-    Param(
-        "Angle of the four oblique views to the vertical: more shows more of the walls.",
-        label="Oblique angle",
-        within="[0, 30]°",
-        advanced=True,
-    ),
-]
-
-_Density = Annotated[
-    float,
-    Param(
-        "Points on open ground; roofs have about as many, walls a tenth of it where a view reaches them.",
-        label="Point density",
-        within="[5, 1000] points/m²",
-    ),
-]
-
 
 @stage(
     "Simulation",
@@ -68,58 +47,57 @@ _Density = Annotated[
 )
 def simulate_village(
     *,
-    size: Annotated[float, Param("Side of the village, a square from (0, 0).", within="[50, 1000] m")] = 150.0,
-    density: _Density = 100.0,
-    buildings: Annotated[
-        float,
-        Param(
-            "Plots with a house on a hectare of streets and plots, two of three with a shed as well.",
-            within=f"[0, {MAX_HOMES}] per ha",
-        ),
-    ] = 12.0,
-    trees: Annotated[float, Param("Trees in gardens.", within="[0, 200] per ha")] = 15.0,
-    slope: Annotated[float, Param("Mean slope of the ground.", within="[0, 20]°")] = 2.0,
-    overhang: Annotated[
-        float,
-        Param(
-            "How far the eaves jut out over the walls; sheds have half.", label="Overhang of roofs", within="[0, 1] m"
-        ),
-    ] = 0.5,
-    clutter: Annotated[bool, Param("Objects at walls that are no buildings.", label="Cars, hedges and bushes")] = True,
-    noise: Annotated[float, Param("Standard deviation of a point in every direction.", within="[0, 0.2] m")] = 0.03,
-    holes: Annotated[
-        float,
-        Param(
-            "Approximate share of all surfaces where matching finds nothing.", label="Share of holes", within="[0, 0.5]"
-        ),
-    ] = 0.1,
-    oblique: _Oblique = 28.0,
-    noise_points: Annotated[
-        float, Param("Wrong matches above and below the ground.", within="[0, 1000] per ha", advanced=True)
-    ] = 20.0,
-    map_shift: Annotated[
-        float,
-        Param(
-            "How far the old map lies to the east and to the north.", label="Shift of the old map", within="[0, 2] m"
-        ),
-    ] = 0.3,
-    map_noise: Annotated[
-        float,
-        Param(
-            "Standard deviation of its corners to the east and to the north.",
-            label="Noise of the old map",
-            within="[0, 1] m",
-        ),
-    ] = 0.15,
-    map_changes: Annotated[
-        float,
-        Param(
-            "Share of the buildings that the map lacks; as many demolished ones are added to it, where plots are free.",
-            label="Changes since the old map",
-            within="[0, 0.5]",
-        ),
-    ] = 0.1,
-    seed: Seed = 1,
+    size: float = tunable(150.0, "Side of the village, a square from (0, 0).", within="[50, 1000] m"),
+    density: float = tunable(
+        100.0,
+        "Points on open ground; roofs have about as many, walls a tenth of it where a view reaches them.",
+        label="Point density",
+        within="[5, 1000] points/m²",
+    ),
+    buildings: float = tunable(
+        12.0,
+        "Plots with a house on a hectare of streets and plots, two of three with a shed as well.",
+        within=f"[0, {MAX_HOMES}] per ha",
+    ),
+    trees: float = tunable(15.0, "Trees in gardens.", within="[0, 200] per ha"),
+    slope: float = tunable(2.0, "Mean slope of the ground.", within="[0, 20]°"),
+    overhang: float = tunable(
+        0.5, "How far the eaves jut out over the walls; sheds have half.", label="Overhang of roofs", within="[0, 1] m"
+    ),
+    clutter: bool = tunable(True, "Objects at walls that are no buildings.", label="Cars, hedges and bushes"),
+    noise: float = tunable(0.03, "Standard deviation of a point in every direction.", within="[0, 0.2] m"),
+    holes: float = tunable(
+        0.1,
+        "Approximate share of all surfaces where matching finds nothing.",
+        label="Share of holes",
+        within="[0, 0.5]",
+    ),
+    oblique: float = tunable(
+        28.0,
+        "Angle of the four oblique views to the vertical: more shows more of the walls.",
+        label="Oblique angle",
+        within="[0, 30]°",
+        advanced=True,
+    ),
+    noise_points: float = tunable(
+        20.0, "Wrong matches above and below the ground.", within="[0, 1000] per ha", advanced=True
+    ),
+    map_shift: float = tunable(
+        0.3, "How far the old map lies to the east and to the north.", label="Shift of the old map", within="[0, 2] m"
+    ),
+    map_noise: float = tunable(
+        0.15,
+        "Standard deviation of its corners to the east and to the north.",
+        label="Noise of the old map",
+        within="[0, 1] m",
+    ),
+    map_changes: float = tunable(
+        0.1,
+        "Share of the buildings that the map lacks; as many demolished ones are added to it, where plots are free.",
+        label="Changes since the old map",
+        within="[0, 0.5]",
+    ),
+    seed: int = SEED,
     monitor=None,
 ):
     """Photograph a made-up village with a drone: the matched points, the true footprints of the walls, and an old map.

@@ -8,8 +8,8 @@ A stage is an ordinary function with a declaration next to it:
   dimension that the tunable ``dimension`` names, whichever the file has;
 * positional arguments after them are the vector layers that it reads, each
   declared as a :class:`InputLayer`; a stage that reads layers only has no cloud;
-* keyword-only arguments are tunables, each ``Annotated[type, Param(...)]``
-  with its default; ``Optional`` types with the default None are *automatic*:
+* keyword-only arguments are tunables, each ``name: type = tunable(default, ...)``;
+  ``Optional`` types with the default None are *automatic*:
   the stage derives the value from the data and reports it to the monitor;
 * ``sampling`` with the default None is how the cloud was sampled (density, noise and the like, a
   ``CloudSampling``): no tunable. The runner measures it once for all stages of a run, or is given it; a stage that
@@ -49,4 +49,4 @@ from .inputs_outputs import (  # noqa: F401
     given_layers,
 )
 from .monitor import Cancelled, Monitor, Part, ProgressOnly  # noqa: F401
-from .tunables import Param, Tunable  # noqa: F401
+from .tunables import Param, Tunable, tunable  # noqa: F401

@@ -225,9 +225,8 @@ def _checked(function: Callable, declared: Stage) -> Callable:
         check_arrays(bound.arguments, (*declared.reads, *declared.optional), declared.merges, declared.title)
         layers = {input_layer.name: bound.arguments.get(input_layer.name) for input_layer in declared.input_layers}
         given_layers(declared.name, declared.input_layers, layers)
-        for name, tunable in declared.tunables.items():
-            if name in bound.arguments:
-                bound.arguments[name] = tunable.check(bound.arguments[name])
+        given = {name: bound.arguments[name] for name in declared.tunables if name in bound.arguments}
+        bound.arguments.update(declared.check(given))
         if sampling is not None and bound.arguments.get(SAMPLING) is None and "xyz" in declared.reads:
             measured_on = [bound.arguments[name] for name in ("xyz", "classification") if name in declared.reads]
             bound.arguments[SAMPLING] = sampling.of(*measured_on)
@@ -237,12 +236,17 @@ def _checked(function: Callable, declared: Stage) -> Callable:
         bound.arguments[MONITOR].progress(1.0)
         return made
 
+    shown = [
+        one.replace(default=declared.tunables[one.name].default) if one.name in declared.tunables else one
+        for one in signature.parameters.values()
+    ]
+    checked.__signature__ = signature.replace(parameters=shown)  # type: ignore[attr-defined]
     return checked
 
 
 def _declared(function: Callable, title: str, group: str, tags: str, fields: dict[str, Any]) -> Stage:
     """Return the declaration of a function: what its signature and docstring say, and the ``fields`` given."""
-    hints = typing.get_type_hints(function, include_extras=True)
+    hints = typing.get_type_hints(function)
     reads: list[str] = []
     optional: list[str] = []
     tunables = {}
@@ -250,7 +254,7 @@ def _declared(function: Callable, title: str, group: str, tags: str, fields: dic
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY:
             if name not in (MONITOR, SAMPLING):
-                tunables[name] = _tunable(name, hints[name], parameter.default)
+                tunables[name] = Tunable(name, _kind(hints[name]), parameter.default)
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
     doc = with_values(inspect.cleandoc(function.__doc__ or ""), function.__globals__)
@@ -284,12 +288,7 @@ def _check_declaration(declared: Stage) -> None:
         raise TypeError(f"{declared.name} reads {VALUES!r} and has no tunable {DIMENSION!r} that names them.")
 
 
-def _tunable(name: str, hint: Any, default: Any) -> Tunable:
-    """Return the tunable of an annotated argument."""
-    # Up to Python 3.10 a default of None makes the hint optional once more, around what it is annotated with.
-    if typing.get_origin(hint) is typing.Union:
-        hint = typing.get_args(hint)[0]
-    base, param = typing.get_args(hint)[:2]
-    inner = [arg for arg in typing.get_args(base) if arg is not type(None)]
-    kind = inner[0] if typing.get_origin(base) is typing.Union else base
-    return Tunable(name, typing.get_origin(kind) or kind, default, param)
+def _kind(hint: Any) -> type:
+    """Return the type of a tunable, without that it may be None, and without what a tuple holds."""
+    kind = typing.get_args(hint)[0] if typing.get_origin(hint) is typing.Union else hint
+    return typing.get_origin(kind) or kind

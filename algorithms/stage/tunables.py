@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Optional
 
@@ -13,8 +13,9 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Param:
-    """One tunable: everything but its name, type and default, which the signature gives."""
+    """One tunable: everything but its name and type, which the signature gives."""
 
+    default: Any  #: Value where none is given; None for one that is automatic, or that may be left empty
     help: str  #: One or two sentences: what it does and when to change it
     #: Interval and unit of a number: "(0, 100] m" is above 0 and at most 100 m, "[3, inf)" at least 3
     within: str = ""
@@ -25,6 +26,10 @@ class Param:
     empty: str = ""
     advanced: bool = False  #: Folded away in the dialog
     label: str = ""  #: What the dialog calls it, sentence case, without the unit; where that is not its name in words
+
+    def with_default(self, default: Any) -> Any:
+        """Return the same tunable with another default, for a stage that shares it."""
+        return replace(self, default=default)
 
     @cached_property
     def _interval(self) -> re.Match:
@@ -86,6 +91,11 @@ class Param:
         return digits + self.unit if self.unit == "°" else f"{digits} {self.unit}".rstrip()
 
 
+def tunable(default: Any, help: str, **fields: Any) -> Any:
+    """Declare a keyword argument of a stage, in place of its default: see :class:`Param`."""
+    return Param(default, help, **fields)
+
+
 # What ``Param.within`` may be.
 _INTERVAL = re.compile(r"(?:(?P<opens>[\[(])(?P<low>\S+), (?P<high>[^\s\])]+)(?P<closes>[\])]) ?(?P<unit>.*))?")
 
@@ -108,12 +118,16 @@ def in_words(name: str) -> str:
 
 @dataclass(frozen=True)
 class Tunable:
-    """A :class:`Param` with the name, type and default that the signature gives."""
+    """A :class:`Param` with the name and type that the signature gives."""
 
     name: str
     type: type
-    default: Any
     param: Param
+
+    @property
+    def default(self) -> Any:
+        """Value where none is given."""
+        return self.param.default
 
     @property
     def label(self) -> str:

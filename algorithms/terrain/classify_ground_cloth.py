@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 
 from ..geometry.grid import refuse_sparse
 from ..geometry.groups import components
 from ..packages import ndimage
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .cloth import NEIGHBORS, Cloth
 from .ground_points import usable_points, with_ground
 
@@ -42,31 +41,27 @@ def classify_ground_cloth(
     xyz,
     classification,
     *,
-    cell_size: Annotated[
-        float,
-        Param("Distance of the cloth's particles (grid resolution).", label="Grid cell size", within="[0.05, 100] m"),
-    ] = 0.5,
-    rigidness: Annotated[
-        int, Param("Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.", within="[1, 3]")
-    ] = 3,
-    threshold: Annotated[
-        float,
-        Param(
-            "Points at most this far above or below the cloth are ground.", label="Class threshold", within="(0, 100] m"
-        ),
-    ] = 0.5,
-    slope_processing: Annotated[
-        bool,
-        Param(
-            "Let the cloth down where it hangs over slopes without a step of 0.3 m from one particle to the next.",
-            label="Slope post-processing",
-        ),
-    ] = True,
-    time_step: Annotated[
-        float,
-        Param("How far the cloth falls in one step; smaller is slower and steadier.", within="(0, 2]", advanced=True),
-    ] = 0.65,
-    iterations: Annotated[int, Param("Most steps of the simulation.", within="[1, 10_000]", advanced=True)] = 500,
+    cell_size: float = tunable(
+        0.5, "Distance of the cloth's particles (grid resolution).", label="Grid cell size", within="[0.05, 100] m"
+    ),
+    rigidness: int = tunable(
+        3, "Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.", within="[1, 3]"
+    ),
+    threshold: float = tunable(
+        0.5,
+        "Points at most this far above or below the cloth are ground.",
+        label="Class threshold",
+        within="(0, 100] m",
+    ),
+    slope_processing: bool = tunable(
+        True,
+        "Let the cloth down where it hangs over slopes without a step of 0.3 m from one particle to the next.",
+        label="Slope post-processing",
+    ),
+    time_step: float = tunable(
+        0.65, "How far the cloth falls in one step; smaller is slower and steadier.", within="(0, 2]", advanced=True
+    ),
+    iterations: int = tunable(500, "Most steps of the simulation.", within="[1, 10_000]", advanced=True),
     monitor=None,
 ):
     """Find the ground by letting a cloth fall onto the terrain turned upside down.

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..params import PointSource
+from ..params import POINT_SOURCE
 from ..rules import rule
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
 from .smeared_objects import on_no_object, on_smeared_objects
@@ -56,58 +56,43 @@ _GRANULARITIES = {"coarse": 2.0, "medium": 1.0, "fine": 1.0, "extra fine": 0.5}
 # the rest depends on where cells begin.
 _REACH = 40.0
 
-_IterationDistance = Annotated[
-    Optional[float],
-    Param(
-        "Largest distance from its facet at which a point joins the surface.",
-        within="(0, 100] m",
-        automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
-        f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
-        advanced=True,
-    ),
-]
 
-_SweepDistance = Annotated[
-    Optional[float],
-    Param(
-        "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
-        within="[0, 100] m",
-        automatic=f"{GROUND.sweep_noise:g} times the roughness of the finished surface, or the surface noise where "
-        f"that is more; increased by a half, but by {GROUND.sweep_bend:g} cells at most.",
-        advanced=True,
-    ),
-]
+_MAX_BUILDING_SIZE = tunable(
+    None,
+    "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
+    within="[1, 1000] m",
+    automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
+    "that of the kind of terrain.",
+)
 
-_IterationAngle = Annotated[
-    Optional[float],
-    Param(
-        "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
-        "larger follows steeper breaks and lets more low objects in.",
-        within="(0, 90]°",
-        automatic=f"{GROUND.angle:g}°, in nature {GROUND.angle_in_nature:g}°.",
-    ),
-]
 
-_MaxBuildingSize = Annotated[
-    Optional[float],
-    Param(
-        "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
-        within="[1, 1000] m",
-        automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
-        "that of the kind of terrain.",
-    ),
-]
+_CELL_SIZE = tunable(
+    None,
+    "Cell in which the lowest point is looked for.",
+    label="Grid cell size",
+    within="[0.1, 100] m",
+    automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
+    advanced=True,
+)
 
-_CellSize = Annotated[
-    Optional[float],
-    Param(
-        "Cell in which the lowest point is looked for.",
-        label="Grid cell size",
-        within="[0.1, 100] m",
-        automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
-        advanced=True,
-    ),
-]
+
+_ITERATION_ANGLE = tunable(
+    None,
+    "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
+    "larger follows steeper breaks and lets more low objects in.",
+    within="(0, 90]°",
+    automatic=f"{GROUND.angle:g}°, in nature {GROUND.angle_in_nature:g}°.",
+)
+
+
+_SWEEP_DISTANCE = tunable(
+    None,
+    "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
+    within="[0, 100] m",
+    automatic=f"{GROUND.sweep_noise:g} times the roughness of the finished surface, or the surface noise where "
+    f"that is more; increased by a half, but by {GROUND.sweep_bend:g} cells at most.",
+    advanced=True,
+)
 
 
 @stage(
@@ -125,47 +110,46 @@ def classify_ground_tin(
     return_number=None,
     number_of_returns=None,
     *,
-    terrain: Annotated[
-        Optional[str],
-        Param(
-            "Kind of terrain and of its buildings: it sets the maximum building size "
-            f"({', '.join(f'{_largest_building(kind):g}' for kind in _TERRAINS)} m) and the iteration angle "
-            f"({GROUND.angle_in_nature:g}° in nature, else {GROUND.angle:g}°) where these are automatic.",
-            choices=_TERRAINS,
-            automatic="the smallest kind from town on that has room for the largest building found.",
-        ),
-    ] = None,
-    granularity: Annotated[
-        Optional[str],
-        Param(
-            "How finely the surface is started and refined: it sets the grid cell size where that is automatic, at "
-            "least 2 m (coarse), 1 m (medium, fine) or 0.5 m (extra fine).",
-            choices=tuple(_GRANULARITIES),
-            automatic="fine where points are farther apart than 1 m, else medium.",
-        ),
-    ] = None,
-    max_building_size: _MaxBuildingSize = None,
-    cell_size: _CellSize = None,
-    iteration_angle: _IterationAngle = None,
-    iteration_distance: _IterationDistance = None,
-    edge_length: Annotated[
-        Optional[float],
-        Param(
-            "Facets whose edges are all shorter are not refined.",
-            within="[0, 1000] m",
-            automatic="twice the grid cell size.",
-            advanced=True,
-        ),
-    ] = None,
-    sweep_distance: _SweepDistance = None,
-    keep_ground: Annotated[
-        bool,
-        Param(
-            "Where the cloud has ground (2) already, it stays as it is and no other is looked for.",
-            label="Keep existing ground",
-        ),
-    ] = False,
-    source: PointSource = "automatic",
+    terrain: Optional[str] = tunable(
+        None,
+        "Kind of terrain and of its buildings: it sets the maximum building size "
+        f"({', '.join(f'{_largest_building(kind):g}' for kind in _TERRAINS)} m) and the iteration angle "
+        f"({GROUND.angle_in_nature:g}° in nature, else {GROUND.angle:g}°) where these are automatic.",
+        choices=_TERRAINS,
+        automatic="the smallest kind from town on that has room for the largest building found.",
+    ),
+    granularity: Optional[str] = tunable(
+        None,
+        "How finely the surface is started and refined: it sets the grid cell size where that is automatic, at "
+        "least 2 m (coarse), 1 m (medium, fine) or 0.5 m (extra fine).",
+        choices=tuple(_GRANULARITIES),
+        automatic="fine where points are farther apart than 1 m, else medium.",
+    ),
+    max_building_size: Optional[float] = _MAX_BUILDING_SIZE,
+    cell_size: Optional[float] = _CELL_SIZE,
+    iteration_angle: Optional[float] = _ITERATION_ANGLE,
+    iteration_distance: Optional[float] = tunable(
+        None,
+        "Largest distance from its facet at which a point joins the surface.",
+        within="(0, 100] m",
+        automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
+        f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
+        advanced=True,
+    ),
+    edge_length: Optional[float] = tunable(
+        None,
+        "Facets whose edges are all shorter are not refined.",
+        within="[0, 1000] m",
+        automatic="twice the grid cell size.",
+        advanced=True,
+    ),
+    sweep_distance: Optional[float] = _SWEEP_DISTANCE,
+    keep_ground: bool = tunable(
+        False,
+        "Where the cloud has ground (2) already, it stays as it is and no other is looked for.",
+        label="Keep existing ground",
+    ),
+    source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

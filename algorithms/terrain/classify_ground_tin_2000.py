@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Param, stage
+from ..stage import stage, tunable
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_lowest
 from .mirror_points import mirrored_angle
@@ -26,27 +26,6 @@ _MIN_EDGE = 2.0
 # Distance in plan over which points are mirrored: at least this, m, and the point spacing.
 _MIN_MIRROR_REACH = 1.0
 
-_IterationDistance = Annotated[
-    Optional[float],
-    Param(
-        "Largest distance from its facet at which a point joins the surface.",
-        within="(0, 100] m",
-        automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
-        "point spacing, if that is more.",
-        advanced=True,
-    ),
-]
-
-_MaxBuildingSize = Annotated[
-    float,
-    Param(
-        "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
-        "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
-        "towns, 25 m in cities and 50 m in the largest cities.",
-        within="[1, 1000] m",
-    ),
-]
-
 
 @stage(
     "Terrain",
@@ -62,42 +41,47 @@ def classify_ground_tin_2000(
     return_number=None,
     number_of_returns=None,
     *,
-    max_building_size: _MaxBuildingSize = USUAL_BUILDING,
-    terrain_angle: Annotated[
-        float,
-        Param(
-            "Steepest line from a point to the nodes of its facet under which it joins the surface.",
-            within="(0, 90]°",
-            advanced=True,
-        ),
-    ] = 88.0,
-    iteration_angle: Annotated[
-        float,
-        Param(
-            "Upper bound of the angle between a facet and the lines to its nodes under which a point joins the "
-            "surface, which is estimated in each round. Larger follows steeper breaks and lets more low objects in.",
-            within="(0, 90]°",
-        ),
-    ] = 20.0,
-    iteration_distance: _IterationDistance = None,
-    edge_length: Annotated[
-        Optional[float],
-        Param(
-            "Facets whose edges are all shorter are not refined.",
-            within="[0, 1000] m",
-            automatic=f"the point spacing, at least {_MIN_EDGE:g} m.",
-            advanced=True,
-        ),
-    ] = None,
-    sweep_distance: Annotated[
-        Optional[float],
-        Param(
-            "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
-            within="[0, 100] m",
-            automatic=f"{_SWEEP_DEVIATIONS:g} times the roughness of the finished surface.",
-            advanced=True,
-        ),
-    ] = None,
+    max_building_size: float = tunable(
+        USUAL_BUILDING,
+        "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
+        "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
+        "towns, 25 m in cities and 50 m in the largest cities.",
+        within="[1, 1000] m",
+    ),
+    terrain_angle: float = tunable(
+        88.0,
+        "Steepest line from a point to the nodes of its facet under which it joins the surface.",
+        within="(0, 90]°",
+        advanced=True,
+    ),
+    iteration_angle: float = tunable(
+        20.0,
+        "Upper bound of the angle between a facet and the lines to its nodes under which a point joins the "
+        "surface, which is estimated in each round. Larger follows steeper breaks and lets more low objects in.",
+        within="(0, 90]°",
+    ),
+    iteration_distance: Optional[float] = tunable(
+        None,
+        "Largest distance from its facet at which a point joins the surface.",
+        within="(0, 100] m",
+        automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
+        "point spacing, if that is more.",
+        advanced=True,
+    ),
+    edge_length: Optional[float] = tunable(
+        None,
+        "Facets whose edges are all shorter are not refined.",
+        within="[0, 1000] m",
+        automatic=f"the point spacing, at least {_MIN_EDGE:g} m.",
+        advanced=True,
+    ),
+    sweep_distance: Optional[float] = tunable(
+        None,
+        "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
+        within="[0, 100] m",
+        automatic=f"{_SWEEP_DEVIATIONS:g} times the roughness of the finished surface.",
+        advanced=True,
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

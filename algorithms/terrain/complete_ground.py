@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..stage import Param, stage
+from ..stage import stage, tunable
 
 # Points of these classes may become ground.
 _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
@@ -25,13 +23,11 @@ def complete_ground(
     classification,
     height_above_ground,
     *,
-    max_distance: Annotated[
-        float,
-        Param(
-            "Unclassified points no farther above or below the surface of the ground become ground; 0 adds none.",
-            within="[0, 1] m",
-        ),
-    ] = 0.1,
+    max_distance: float = tunable(
+        0.1,
+        "Unclassified points no farther above or below the surface of the ground become ground; 0 adds none.",
+        within="[0, 1] m",
+    ),
     monitor=None,
 ):
     """Add to the ground the points on its surface that have no other class.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..geometry.sparse_voxels import voxel_index
 from ..geometry.tiled_tin import TiledTin
 from ..packages import ndimage
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Monitor, Param, Raster, RasterSurface, stage
+from ..stage import Monitor, Raster, RasterSurface, stage, tunable
 
 # Side of a cell (point spacings): it holds four points on average, and one in fifty is empty.
 _CELL_SPACINGS = 2.0
@@ -44,23 +44,19 @@ def rasterize_terrain(
     xyz,
     classification,
     *,
-    cell_size: Annotated[
-        Optional[float],
-        Param(
-            "Side of a cell of the rasters.",
-            within=f"[0.01, {_MOST_CELL}] m",
-            automatic=f"{_CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
-            f"least {_LEAST_CELL:g} m.",
-        ),
-    ] = None,
-    gap_distance: Annotated[
-        Optional[float],
-        Param(
-            "Cells of the surface model without points are interpolated up to this far from cells with points.",
-            within="[0, 10_000] m",
-            automatic=f"{_GAP_CELLS:g} cells.",
-        ),
-    ] = None,
+    cell_size: Optional[float] = tunable(
+        None,
+        "Side of a cell of the rasters.",
+        within=f"[0.01, {_MOST_CELL}] m",
+        automatic=f"{_CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
+        f"least {_LEAST_CELL:g} m.",
+    ),
+    gap_distance: Optional[float] = tunable(
+        None,
+        "Cells of the surface model without points are interpolated up to this far from cells with points.",
+        within="[0, 10_000] m",
+        automatic=f"{_GAP_CELLS:g} cells.",
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

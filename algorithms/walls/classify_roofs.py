@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..params import MinBuildingArea, PointDensity, PointSource
+from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from .bent_roofs import bent_roofs, with_bent_roofs
 from .party_walls import from_west_to_east, split_blocks
 from .stacked_roofs import join_stacked
@@ -38,21 +38,17 @@ def classify_roofs(
     height_above_ground,
     segment_id,
     *,
-    min_height: Annotated[
-        float, Param("Height above the ground over which half of a roof lies.", within="[0.5, 100] m")
-    ] = 2.0,
-    min_area: MinBuildingArea = 6.0,
-    gap: Annotated[
-        Optional[float],
-        Param(
-            "Points of planes at most this far apart belong to one building.",
-            label="Gap between roofs",
-            within="(0, 20] m",
-            automatic="3 times the point spacing, from 0.6 to 5 m.",
-        ),
-    ] = None,
-    density: PointDensity = None,
-    source: PointSource = "automatic",
+    min_height: float = tunable(2.0, "Height above the ground over which half of a roof lies.", within="[0.5, 100] m"),
+    min_area: float = MIN_BUILDING_AREA.with_default(6.0),
+    gap: Optional[float] = tunable(
+        None,
+        "Points of planes at most this far apart belong to one building.",
+        label="Gap between roofs",
+        within="(0, 20] m",
+        automatic="3 times the point spacing, from 0.6 to 5 m.",
+    ),
+    density: Optional[float] = POINT_DENSITY,
+    source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

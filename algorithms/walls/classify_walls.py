@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -18,11 +18,11 @@ from ..neighborhoods.covariance import (
     smallest_eigenvectors,
 )
 from ..packages import spatial
-from ..params import SurfaceNoise
+from ..params import SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, SURFACES, plane_roughness, surface_density
 from ..segmentation.candidate_points import NO_OBJECTS
-from ..stage import Monitor, Param, stage
+from ..stage import Monitor, stage, tunable
 from ..threads import n_threads
 
 # The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
@@ -55,40 +55,32 @@ def classify_walls(
     height_above_ground,
     cluster_id,
     *,
-    min_height: Annotated[float, Param("Lower points may be ground, kerbs and plants.", within="[0, 10] m")] = 0.3,
-    max_height: Annotated[
-        float, Param("Walls are looked for up to this height above the ground.", within="[0.5, 100] m")
-    ] = 2.5,
-    max_tilt: Annotated[float, Param("Largest angle of a wall to the vertical.", within="[0, 90]°")] = 30.0,
-    neighborhood: Annotated[
-        str,
-        Param(
-            "Which points give a point its normal: a number of nearest ones, or all within a radius.",
-            choices=("nearest", "radius"),
-        ),
-    ] = "nearest",
-    n_neighbors: Annotated[
-        Optional[int],
-        Param(
-            "Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.",
-            label="Nearest points",
-            within="[3, 1000]",
-            automatic=f"as many as reach {_REACH_DEVIATIONS:g} times the roughness at the density of low points near "
-            "roofs, 8 to 30.",
-        ),
-    ] = None,
-    radius: Annotated[
-        float, Param("Radius of the sphere around a point; used by the neighborhood 'radius'.", within="(0, 10] m")
-    ] = 0.5,
-    noise: SurfaceNoise = None,
-    margin: Annotated[
-        float,
-        Param(
-            "How far the convex hull of a roof is grown; walls outside it belong to no roof.",
-            label="Margin around roofs",
-            within="[0, 20] m",
-        ),
-    ] = 0.3,
+    min_height: float = tunable(0.3, "Lower points may be ground, kerbs and plants.", within="[0, 10] m"),
+    max_height: float = tunable(2.5, "Walls are looked for up to this height above the ground.", within="[0.5, 100] m"),
+    max_tilt: float = tunable(30.0, "Largest angle of a wall to the vertical.", within="[0, 90]°"),
+    neighborhood: str = tunable(
+        "nearest",
+        "Which points give a point its normal: a number of nearest ones, or all within a radius.",
+        choices=("nearest", "radius"),
+    ),
+    n_neighbors: Optional[int] = tunable(
+        None,
+        "Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.",
+        label="Nearest points",
+        within="[3, 1000]",
+        automatic=f"as many as reach {_REACH_DEVIATIONS:g} times the roughness at the density of low points near "
+        "roofs, 8 to 30.",
+    ),
+    radius: float = tunable(
+        0.5, "Radius of the sphere around a point; used by the neighborhood 'radius'.", within="(0, 10] m"
+    ),
+    noise: Optional[float] = SURFACE_NOISE,
+    margin: float = tunable(
+        0.3,
+        "How far the convex hull of a roof is grown; walls outside it belong to no roof.",
+        label="Margin around roofs",
+        within="[0, 20] m",
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -15,11 +15,11 @@ from ..geometry.groups import members
 from ..geometry.line_segments import polygons_of
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.rings import perimeter, signed_area
-from ..params import MinBuildingArea, Seed
+from ..params import MIN_BUILDING_AREA, SEED
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..sampling.surface_noise import ROUGHNESS
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .alleys import find_alley
 from .candidate_corners import CORNER_FIELDS, candidate_corners
 from .roof_outline import RoofOutline, outline_roof
@@ -72,20 +72,6 @@ _EDGE_FIELDS = (
     Field("precision", float, "standard deviation across its direction, from its points", "m"),
 )
 
-_Tolerance = Annotated[
-    Optional[float],
-    Param(
-        "Distance within which points lie on a wall.",
-        within="[0.01, 2] m",
-        automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
-    ),
-]
-
-_MaxOverhang = Annotated[
-    float,
-    Param("How far roofs may jut out over their walls; parts deeper under a roof are inside.", within="[0, 10] m"),
-]
-
 
 @stage(
     "Buildings",
@@ -106,22 +92,26 @@ def extract_wall_footprints(
     classification=None,
     voxel_count=None,
     *,
-    min_area: MinBuildingArea = 6.0,
-    min_length: Annotated[
-        float,
-        Param("Length of the shortest wall that is looked for.", label="Minimum wall length", within="[0.2, 100] m"),
-    ] = 1.2,
-    max_overhang: _MaxOverhang = 1.2,
-    min_seen: Annotated[
-        float,
-        Param(
-            "Where less of the perimeter has wall points, the outline of the roof is given instead.",
-            label="Minimum share of walls seen",
-            within="[0, 1]",
-        ),
-    ] = 0.25,
-    tolerance: _Tolerance = None,
-    seed: Seed = 1,
+    min_area: float = MIN_BUILDING_AREA.with_default(6.0),
+    min_length: float = tunable(
+        1.2, "Length of the shortest wall that is looked for.", label="Minimum wall length", within="[0.2, 100] m"
+    ),
+    max_overhang: float = tunable(
+        1.2, "How far roofs may jut out over their walls; parts deeper under a roof are inside.", within="[0, 10] m"
+    ),
+    min_seen: float = tunable(
+        0.25,
+        "Where less of the perimeter has wall points, the outline of the roof is given instead.",
+        label="Minimum share of walls seen",
+        within="[0, 1]",
+    ),
+    tolerance: Optional[float] = tunable(
+        None,
+        "Distance within which points lie on a wall.",
+        within="[0.01, 2] m",
+        automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
+    ),
+    seed: int = SEED,
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):

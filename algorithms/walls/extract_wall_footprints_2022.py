@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 
 from ..geometry.groups import members
 from ..geometry.line_segments import polygons_of
 from ..geometry.rings import perimeter, signed_area
-from ..params import MinBuildingArea, Seed
-from ..stage import Field, Layer, LayerFeatures, Param, stage
+from ..params import MIN_BUILDING_AREA, SEED
+from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .candidate_corners import CORNER, OFF_OUTLINE
 from .corner_pairs import Buffer, CornerPairs, corner_pairs, sequential_lines
 from .wall_lines import WallLine
@@ -69,37 +69,32 @@ def extract_wall_footprints_2022(
     classification=None,
     voxel_count=None,
     *,
-    min_area: MinBuildingArea = 6.0,
-    tolerance: Annotated[float, Param("Distance within which points lie on a line.", within="[0.01, 2] m")] = 0.1,
-    min_points: Annotated[
-        Optional[int],
-        Param(
-            "Points of a line at least; the authors' program takes 90.",
-            label="Minimum points of a line",
-            within="[2, 100_000]",
-            automatic=f"as many as lie on {_SHORTEST:g} m of wall, if the sides of the boxes around all walls have the "
-            f"same number per meter; at least {_LEAST_POINTS}.",
-        ),
-    ] = None,
-    max_skew: Annotated[
-        float, Param("Largest deviation of a corner from a right angle; others are no corners.", within="[0, 90]°")
-    ] = 5.0,
-    width: Annotated[
-        float, Param("How far the buffer around an edge reaches to both sides.", label="Buffer", within="[0.01, 5] m")
-    ] = 0.2,
-    ends: Annotated[
-        float,
-        Param("Length at both ends of an edge that its buffer leaves out.", label="Corner distance", within="[0, 5] m"),
-    ] = 0.2,
-    min_density: Annotated[
-        Optional[float],
-        Param(
-            "Wall points per square meter in the buffer of an edge at least; the authors' program takes 90.",
-            within="(0, 1_000_000] points/m²",
-            automatic=f"{_DENSE:g} times the density around all lines in the median.",
-        ),
-    ] = None,
-    seed: Seed = 1,
+    min_area: float = MIN_BUILDING_AREA.with_default(6.0),
+    tolerance: float = tunable(0.1, "Distance within which points lie on a line.", within="[0.01, 2] m"),
+    min_points: Optional[int] = tunable(
+        None,
+        "Points of a line at least; the authors' program takes 90.",
+        label="Minimum points of a line",
+        within="[2, 100_000]",
+        automatic=f"as many as lie on {_SHORTEST:g} m of wall, if the sides of the boxes around all walls have the "
+        f"same number per meter; at least {_LEAST_POINTS}.",
+    ),
+    max_skew: float = tunable(
+        5.0, "Largest deviation of a corner from a right angle; others are no corners.", within="[0, 90]°"
+    ),
+    width: float = tunable(
+        0.2, "How far the buffer around an edge reaches to both sides.", label="Buffer", within="[0.01, 5] m"
+    ),
+    ends: float = tunable(
+        0.2, "Length at both ends of an edge that its buffer leaves out.", label="Corner distance", within="[0, 5] m"
+    ),
+    min_density: Optional[float] = tunable(
+        None,
+        "Wall points per square meter in the buffer of an edge at least; the authors' program takes 90.",
+        within="(0, 1_000_000] points/m²",
+        automatic=f"{_DENSE:g} times the density around all lines in the median.",
+    ),
+    seed: int = SEED,
     monitor=None,
 ):
     """Draw the walls of each building as published: edges are the pairs of corners with many points between.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 import pytest
 
@@ -19,11 +17,11 @@ from lidar_buildings.algorithms.stage import (
     LayerFeatures,
     Measure,
     Monitor,
-    Param,
     Raster,
     RasterSurface,
     Report,
     stage,
+    tunable,
 )
 from lidar_buildings.algorithms.stages import STAGES
 
@@ -34,7 +32,7 @@ def classify_toy(
     classification,
     height_above_ground=None,
     *,
-    limit: Annotated[float, Param("Higher points become 6.", within="[0, inf) m")] = 2.0,
+    limit: float = tunable(2.0, "Higher points become 6.", within="[0, inf) m"),
     monitor=None,
 ):
     """Make points over a limit class 6, and say how many points there were."""
@@ -52,7 +50,7 @@ def compute_toy(xyz, *, monitor=None):
 
 
 @stage("Toys", title="Toy town", creates=("xyz", "classification"))
-def simulate_toy(*, count: Annotated[int, Param("Points.", within="[1, 9]")] = 3, monitor=None):
+def simulate_toy(*, count: int = tunable(3, "Points.", within="[1, 9]"), monitor=None):
     """Make points in a row."""
     return np.outer(np.arange(count), [1.0, 2.0, 3.0]), np.full(count, 2)
 
@@ -82,9 +80,9 @@ def filter_toy(
     xyz,
     values=None,
     *,
-    dimension: Annotated[str, Param("What is looked at.")] = "",
-    low: Annotated[float, Param("Lower values go.", within="[-1e9, inf)")] = 2.0,
-    step: Annotated[float, Param("Moved east.", within="[0, inf) m")] = 0.0,
+    dimension: str = tunable("", "What is looked at."),
+    low: float = tunable(2.0, "Lower values go.", within="[-1e9, inf)"),
+    step: float = tunable(0.0, "Moved east.", within="[0, inf) m"),
     monitor=None,
 ):
     """Keep what is high, the last point first, and move it east."""
@@ -98,7 +96,7 @@ def merge_toy(
     classification,
     cluster_id=None,
     *,
-    lift: Annotated[float, Param("How far later clouds are lifted.", within="[0, inf) m")] = 0.0,
+    lift: float = tunable(0.0, "How far later clouds are lifted.", within="[0, inf) m"),
     monitor=None,
 ):
     """Put clouds together, each higher than the one before."""

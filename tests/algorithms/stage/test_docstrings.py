@@ -1,17 +1,17 @@
 """Sections of a docstring, and the one that a declaration adds."""
 
-from typing import Annotated, Optional
+from typing import Optional
 
-from lidar_buildings.algorithms.stage import Param, stage
+from lidar_buildings.algorithms.stage import stage, tunable
 
 
 @stage("Toys", writes=("cluster_id",))
 def toy_words(
     xyz,
     *,
-    width: Annotated[float, Param("How wide.", within="[0, inf) m")] = 2.0,
-    count: Annotated[Optional[int], Param("How many.", within="[1, inf)", automatic="all.")] = None,
-    color: Annotated[Optional[str], Param("Which.", empty="it stays as it is.")] = None,
+    width: float = tunable(2.0, "How wide.", within="[0, inf) m"),
+    count: Optional[int] = tunable(None, "How many.", within="[1, inf)", automatic="all."),
+    color: Optional[str] = tunable(None, "Which.", empty="it stays as it is."),
     monitor=None,
 ):
     """Say something in one paragraph.

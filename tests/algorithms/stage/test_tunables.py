@@ -7,11 +7,11 @@ import pytest
 
 from lidar_buildings.algorithms.stage import Param, Tunable
 
-WIDTH = Param("How wide.", label="Width", within="(0, 4] m")
+WIDTH = Param(None, "How wide.", label="Width", within="(0, 4] m")
 
 
 def tunable(kind, default, param=WIDTH, name="width"):
-    return Tunable(name, kind, default, param)
+    return Tunable(name, kind, param.with_default(default))
 
 
 @pytest.mark.parametrize(
@@ -27,7 +27,7 @@ def tunable(kind, default, param=WIDTH, name="width"):
     ],
 )
 def test_values_come_in_the_declared_type(kind, value, taken):
-    param = Param("Which.", label="Way", choices=("up", "down")) if kind in (str, tuple) else WIDTH
+    param = Param(None, "Which.", label="Way", choices=("up", "down")) if kind in (str, tuple) else WIDTH
     found = tunable(kind, None, param).check(value)
     assert found == taken
     assert type(found) is type(taken)
@@ -56,14 +56,14 @@ def test_what_does_not_fit_is_refused_in_one_sentence(kind, value, wanted):
 
 
 def test_an_open_bound_is_none_of_the_values():
-    below = Param("Which.", label="Share", within="[0, 1)")
+    below = Param(None, "Which.", label="Share", within="[0, 1)")
     assert tunable(float, 0.5, below).check(0.0) == 0.0
     with pytest.raises(ValueError, match=r"must be at least 0 and less than 1, got 1\.0\."):
         tunable(float, 0.5, below).check(1.0)
 
 
 def test_words_must_be_among_the_choices():
-    way = Param("Which.", label="Way", choices=("up", "down"))
+    way = Param(None, "Which.", label="Way", choices=("up", "down"))
     for kind, value, allowed in ((str, "left", "one of up, down"), (tuple, ("up", "left"), "any of up, down")):
         with pytest.raises(ValueError, match=rf"Way \(width\) must be {allowed}, got"):
             tunable(kind, "up", way).check(value)
@@ -80,15 +80,15 @@ def test_nothing_is_a_value_of_automatic_tunables_alone():
     ("param", "words"),
     [
         (WIDTH, "greater than 0 m and at most 4 m"),
-        (Param("b", label="a", within="[-1.5, inf)°"), "at least -1.5°"),
-        (Param("b", label="a", within="(-inf, 7)"), "less than 7"),
-        (Param("b", label="a", within="(-inf, 10_000_000]"), "at most 10,000,000"),
-        (Param("b", label="a", within="(-inf, 2.5]"), "at most 2.5"),
-        (Param("b", label="a"), ""),
+        (Param(None, "b", label="a", within="[-1.5, inf)°"), "at least -1.5°"),
+        (Param(None, "b", label="a", within="(-inf, 7)"), "less than 7"),
+        (Param(None, "b", label="a", within="(-inf, 10_000_000]"), "at most 10,000,000"),
+        (Param(None, "b", label="a", within="(-inf, 2.5]"), "at most 2.5"),
+        (Param(None, "b", label="a"), ""),
     ],
 )
 def test_bounds_in_words(param, words):
-    assert param.bounds == Tunable("a", float, 1.0, param).range == words
+    assert param.bounds == Tunable("a", float, param).range == words
 
 
 @pytest.mark.parametrize(
@@ -96,32 +96,33 @@ def test_bounds_in_words(param, words):
     [("min_plane_area", "", "Minimum plane area"), ("max_gap", "Widest gap", "Widest gap"), ("seed", "", "Seed")],
 )
 def test_a_tunable_is_called_by_its_name_in_words_unless_its_declaration_says_otherwise(name, label, shown):
-    made = Tunable(name, float, 1.0, Param("What.", label=label, within="[0, 4] m"))
+    made = Tunable(name, float, Param(1.0, "What.", label=label, within="[0, 4] m"))
     assert (made.label, made.title) == (shown, f"{shown} (m)")
 
 
 def test_an_interval_has_bounds_and_a_unit():
-    interval = Param("b", label="a", within="(-0.5, 10_000] points/m²")
+    interval = Param(None, "b", label="a", within="(-0.5, 10_000] points/m²")
     assert (interval.low, interval.high, interval.unit) == (-0.5, 10_000, "points/m²")
     assert (interval.open_low, interval.open_high) == (True, False)
-    at_least = Param("b", label="a", within="[3, inf)")
+    at_least = Param(None, "b", label="a", within="[3, inf)")
     assert (at_least.low, at_least.high, at_least.unit) == (3, None, "")
 
 
 @pytest.mark.parametrize("wrong", ["0 to 4 m", "[0 4] m", "[0, 4", "4 m"])
 def test_what_is_no_interval_is_refused(wrong):
     with pytest.raises(ValueError, match=r"A tunable lies within an interval such as '\(0, 100\] m'"):
-        _ = Param("b", label="a", within=wrong).unit
+        _ = Param(None, "b", label="a", within=wrong).unit
 
 
 def test_choices_in_words():
-    param = Param("b", label="a", choices=("x", "one of"))
-    assert Tunable("a", str, "x", param).range == "one of x, one of"
-    assert Tunable("a", tuple, ("x",), param).range == "any of x, one of"
+    param = Param(None, "b", label="a", choices=("x", "one of"))
+    assert Tunable("a", str, param).range == "one of x, one of"
+    assert Tunable("a", tuple, param).range == "any of x, one of"
 
 
 def test_what_an_automatic_tunable_is_when_nobody_sets_it():
-    found, without = Param("b", label="a", automatic="the spacing."), Param("b", label="a", empty="all stay.")
+    found = Param(None, "b", label="a", automatic="the spacing.")
+    without = Param(None, "b", label="a", empty="all stay.")
     assert (found.unset, found.unset_text) == ("automatic", "Automatic: the spacing.")
     assert (without.unset, without.unset_text) == ("none", "Empty: all stay.")
-    assert Param("b", label="a").unset_text == ""
+    assert Param(None, "b", label="a").unset_text == ""
