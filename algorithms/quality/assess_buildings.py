@@ -14,7 +14,7 @@ from ..geometry.groups import topmost
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
 from ..params import IGNORED_CLASSES, MIN_BUILDING_AREA
-from ..report.page import Row, build_page, draw_map, outcome_of, percent
+from ..report.page import Row, build_page, draw_map, outcome_of, percent, rows_of
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Report, stage, tunable
 from .point_matching import counted_points, match_points
 
@@ -318,57 +318,42 @@ def _page(xyz: np.ndarray, predicted: np.ndarray, true: np.ndarray, values: dict
         f"and {values['points_hits'] + values['points_false']:,} in the classification that was assessed."
     )
     tables = {
-        "Points": _rows(values, "points", "points"),
-        f"Seen from above, in cells of {values['cell_size']:g} m": _rows(values, "cells", "cells"),
-        f"Buildings of at least {min_area:g} m²": _object_rows(values),
+        "Points": _rates_of(values, "points"),
+        f"Seen from above, in cells of {values['cell_size']:g} m": _rates_of(values, "cells"),
+        f"Buildings of at least {min_area:g} m²": rows_of(values, _MEASURES, _meanings_of_objects(values)),
     }
     legend = ("neither", "building in both", "missed", "falsely called building")
     return build_page("Quality of the buildings", lead, tables, draw_map(xyz, outcome_of(predicted, true), legend))
 
 
-def _rows(values: dict, prefix: str, objects: str) -> list[Row]:
-    hits, misses, false = (values[f"{prefix}_{name}"] for name in ("hits", "misses", "false"))
-    return [
-        Row(
-            "Completeness",
-            percent(values[f"{prefix}_completeness"]),
-            f"Share of the reference's buildings that was found: {hits:,} of {hits + misses:,} {objects}.",
-        ),
-        Row(
-            "Correctness",
-            percent(values[f"{prefix}_correctness"]),
-            f"Share of the {objects} called building that are building: {hits:,} of {hits + false:,} {objects}.",
-        ),
-        Row(
-            "F-score",
-            percent(values[f"{prefix}_f"]),
-            "Completeness and correctness in one figure, their harmonic mean.",
-        ),
-        Row(
-            "Quality",
-            percent(values[f"{prefix}_quality"]),
-            f"Share of the {objects} called building by either side that both call building.",
-        ),
-    ]
+def _rates_of(values: dict, objects: str) -> list[Row]:
+    """Return the rates of points or cells."""
+    hits, misses, false = (values[f"{objects}_{name}"] for name in ("hits", "misses", "false"))
+    called = f"{hits:,} of {hits + false:,} {objects}"
+    meanings = {
+        "completeness": f"Share of the reference's buildings that was found: {hits:,} of {hits + misses:,} {objects}.",
+        "correctness": f"Share of the {objects} called building that are building: {called}.",
+        "f": "Completeness and correctness in one figure, their harmonic mean.",
+        "quality": f"Share of the {objects} called building by either side that both call building.",
+    }
+    titles = {name: title.capitalize() for name, title, _ in _RATES}
+    named = {f"{objects}_{name}": (titles[name], meaning) for name, meaning in meanings.items()}
+    return rows_of(values, _MEASURES, named)
 
 
-def _object_rows(values: dict) -> list[Row]:
-    return [
-        Row(
-            "Completeness",
-            percent(values["objects_completeness"]),
-            f"Share of the reference's {values['objects_true']:,} buildings found, by at least half; "
-            f"{values['objects_misses']:,} were missed.",
-        ),
-        Row(
-            "Correctness",
-            percent(values["objects_correctness"]),
-            f"Share of the {values['objects_predicted']:,} buildings found that are true, by half of their area; "
-            f"{values['objects_false']:,} were invented.",
-        ),
-        Row(
-            "F-score",
-            percent(values["objects_f"]),
-            "Completeness and correctness in one figure; the layer of objects shows each of them.",
-        ),
-    ]
+def _meanings_of_objects(values: dict) -> dict[str, tuple[str, str]]:
+    """Return name and meaning of the rates of objects."""
+    completeness = (
+        f"Share of the reference's {values['objects_true']:,} buildings found, by at least half; "
+        f"{values['objects_misses']:,} were missed."
+    )
+    correctness = (
+        f"Share of the {values['objects_predicted']:,} buildings found that are true, by half of their area; "
+        f"{values['objects_false']:,} were invented."
+    )
+    both = "Completeness and correctness in one figure; the layer of objects shows each of them."
+    return {
+        "objects_completeness": ("Completeness", completeness),
+        "objects_correctness": ("Correctness", correctness),
+        "objects_f": ("F-score", both),
+    }

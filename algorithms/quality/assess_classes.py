@@ -7,7 +7,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes
 from ..params import IGNORED_CLASSES
 from ..report.charts import draw_matrix
-from ..report.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, draw_table, percent
+from ..report.page import FALSE, HIT, MISS, REST, build_page, draw_map, draw_table, percent, rows_of
 from ..stage import Measure, Report, stage, tunable
 from .confusion import class_rates, cohens_kappa, confusion, overall_accuracy
 from .point_matching import compared_points
@@ -38,17 +38,20 @@ _CODES = 256
 _LEGEND = ("right", "another class called ground", "ground called another class", "other classes confused")
 
 
+_MEASURES = (
+    Measure("accuracy", "Overall accuracy", "%"),
+    Measure("kappa", "Cohen's kappa", "%"),
+    Measure("mean_iou", "Mean intersection over union", "%"),
+    *(Measure(f"{kind}_f", f"F-score of {kind}", "%") for kind in _KINDS),
+    *(Measure(f"{kind}_iou", f"Intersection over union of {kind}", "%") for kind in _KINDS),
+    Measure("points", "Points compared"),
+)
+
+
 @stage(
     "Quality",
     tags="accuracy,confusion matrix,kappa,overall accuracy,IoU,F-score,F1,completeness,reference,validation",
-    measures=(
-        Measure("accuracy", "Overall accuracy", "%"),
-        Measure("kappa", "Cohen's kappa", "%"),
-        Measure("mean_iou", "Mean intersection over union", "%"),
-        *(Measure(f"{kind}_f", f"F-score of {kind}", "%") for kind in _KINDS),
-        *(Measure(f"{kind}_iou", f"Intersection over union of {kind}", "%") for kind in _KINDS),
-        Measure("points", "Points compared"),
-    ),
+    measures=_MEASURES,
 )
 def assess_classes(
     xyz,
@@ -210,19 +213,19 @@ def _outcome(called: np.ndarray, true: np.ndarray, is_right: np.ndarray) -> np.n
 
 def _page(matrix: np.ndarray, names: list[str], values: dict, table: str, picture: str) -> str:
     """Return the page: figures of all classes, the matrix, and the HTML of a table and a map."""
-    rows = [
-        Row(
+    meanings = {
+        "accuracy": (
             "Overall accuracy",
-            percent(values["accuracy"]),
             f"{int(np.trace(matrix)):,} of {values['points']:,} points have the class of the reference.",
         ),
-        Row("Kappa", percent(values["kappa"]), "Agreement beyond what chance would give; 100 % is perfect."),
-        Row(
+        "kappa": ("Kappa", "Agreement beyond what chance would give; 100 % is perfect."),
+        "mean_iou": (
             "Mean IoU",
-            percent(values["mean_iou"]),
             "Points of a class in both among those in either, the mean over the classes of the reference.",
         ),
-    ]
+    }
     lead = f"{values['points']:,} points of {len(names)} classes were compared with the reference."
     heat = "<h2>Confusion matrix</h2>\n" + draw_matrix(matrix, names, "Class of the input", "True class")
-    return build_page("Quality of the classes", lead, {"All classes": rows}, heat + table + picture)
+    return build_page(
+        "Quality of the classes", lead, {"All classes": rows_of(values, _MEASURES, meanings)}, heat + table + picture
+    )

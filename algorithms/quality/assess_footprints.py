@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Callable, Optional
 
 import numpy as np
 
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
-from ..report.page import Row, build_page, draw_table, percent
+from ..report.page import build_page, decimal, draw_table, rows_of
 from ..report.polygon_map import draw_polygons
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
 from .building_maps import (
@@ -17,12 +16,13 @@ from .building_maps import (
     Overlap,
     amid,
     clean_map,
+    joined_names,
     measure_overlap,
     refuse_elsewhere,
     rounded_down,
     within,
 )
-from .corner_matching import FARTHEST, NO_LENGTH, Corners, automatic_tolerance, corners_of, nearest_corners
+from .corner_matching import NO_LENGTH, MatchedCorners, corners_of, match_corners
 from .polygon_comparison import hausdorff, polis, squareness
 
 FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "invented"
@@ -213,13 +213,12 @@ def assess_footprints(
     if len(new.area) and not len(true.area):
         monitor.warn("There are no buildings in the reference, so all footprints are invented.")
     match = _match(measure_overlap(true, new, np.zeros(2), monitor.part(0.0, 0.3)), min_overlap)
-    corners = corners_of(true.rings), corners_of(new.rings)
-    pairs = _same_corners(*corners, match, tolerance, monitor)
-    table = _table(true, new, match, corners, pairs, monitor.part(0.4, 0.95))
-    moved = corners[1].xy[pairs[1]] - corners[0].xy[pairs[0]]
-    values = {**_values(table, match, corners, moved), "outside": outside}
+    same = match.building, match.footprint
+    corners = match_corners(corners_of(true.rings), corners_of(new.rings), same, np.zeros(2), tolerance, monitor)
+    table = _table(true, new, match, corners, monitor.part(0.4, 0.95))
+    values = {**_values(table, match, corners), "outside": outside}
     monitor.inform(_summary(values))
-    rings = true.rings + [new.rings[row] for row in np.flatnonzero(match.is_invented)]
+    rings = (true + new.only(match.is_invented)).rings
     return LayerFeatures(rings, table), Report(values, _page(rings, table, values))
 
 
@@ -259,7 +258,7 @@ class _Match:
 def _match(overlap: Overlap, min_overlap: float) -> _Match:
     """Decide which buildings are found, merged, split and missed, and which footprints are invented."""
     least = rounded_down(min_overlap)
-    same = (overlap.of_smaller >= least) & (overlap.covered >= least)[overlap.one]
+    same = overlap.are_same(least)
     building, footprint, iou = overlap.one[same], overlap.other[same], overlap.iou[same]
     n_footprints = np.bincount(building, minlength=len(overlap.area))
     n_buildings = np.bincount(footprint, minlength=len(overlap.other_area))
@@ -273,62 +272,37 @@ def _match(overlap: Overlap, min_overlap: float) -> _Match:
     return _Match(overlap, building, footprint, iou, best, status.tolist(), is_invented)
 
 
-def _same_corners(
-    true: Corners, new: Corners, match: _Match, tolerance: Optional[float], monitor: Monitor
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the pairs of corners of buildings and their footprints that are the same."""
-    reach = max(FARTHEST, tolerance or 0.0)
-    one, other, distance = nearest_corners(true, new, (match.building, match.footprint), np.zeros(2), reach)
-    if tolerance is None:
-        tolerance = automatic_tolerance(distance)
-        monitor.resolved(tolerance=tolerance)
-    near = distance <= tolerance
-    return one[near], other[near]
-
-
-def _table(
-    true: BuildingMap,
-    new: BuildingMap,
-    match: _Match,
-    corners: tuple[Corners, Corners],
-    pairs: tuple[np.ndarray, np.ndarray],
-    monitor: Monitor,
-) -> dict:
+def _table(true: BuildingMap, new: BuildingMap, match: _Match, corners: MatchedCorners, monitor: Monitor) -> dict:
     """Return the attributes of all buildings: of the reference, then of footprints that are invented."""
-    n, invented = len(true.area), np.flatnonzero(match.is_invented)
+    every, invented = true + new.only(match.is_invented), np.flatnonzero(match.is_invented)
     nothing, zero = np.full(len(invented), np.nan), np.zeros(len(invented), np.int64)
-    has_footprint = match.best >= 0
-    counts = [np.bincount(one.building, minlength=len(area)) for one, area in zip(corners, (true.area, new.area))]
     square = [np.array([squareness(rings) for rings in one.rings]) for one in (true, new)]
-    iou = np.full(n, np.nan)
+    iou = np.full(len(true.area), np.nan)
     np.fmax.at(iou, match.building, match.iou)
-    matched, distance, farthest = _of_buildings(corners, pairs, n)
-    farthest[matched < counts[0]] = np.nan
+    counts, counts_of_new = corners.old.counts, corners.new.counts
+    matched, distance, farthest = corners.of_buildings()
+    farthest[matched < counts] = np.nan
+    order = np.lexsort((match.footprint, -match.iou, match.building))
+    partners = [new.names[row] for row in match.footprint[order]]
     return {
-        "id": np.arange(1, n + len(invented) + 1),
+        "id": np.arange(1, len(every.names) + 1),
         "status": match.status + [INVENTED] * len(invented),
-        "building": true.names + [new.names[row] for row in invented],
-        "counterpart": _counterparts(match, new.names) + [""] * len(invented),
-        "area": np.append(true.area, new.area[invented]),
+        "building": every.names,
+        "counterpart": joined_names(match.building[order], partners, len(every.names)),
+        "area": every.area,
         "covered": np.append(match.overlap.covered, match.overlap.other_covered[invented]),
         "iou": np.append(iou, nothing),
         "hausdorff": np.append(_distances(hausdorff, true, new, match.best, monitor), nothing),
         "polis": np.append(_distances(polis, true, new, match.best, Monitor()), nothing),
-        "corners": np.append(counts[0], counts[1][invented]),
-        "counterpart_corners": np.append(_taken(counts[1], match.best, has_footprint, 0), zero),
+        "corners": np.append(counts, counts_of_new[invented]),
+        # What is appended is the last value, which buildings without a counterpart take: their best is -1.
+        "counterpart_corners": np.append(np.append(counts_of_new, 0)[match.best], zero),
         "matched": np.append(matched, zero),
         "corner_distance": np.append(distance, nothing),
         "farthest_corner": np.append(farthest, nothing),
         "squareness": np.append(square[0], square[1][invented]),
-        "counterpart_squareness": np.append(_taken(square[1], match.best, has_footprint, np.nan), nothing),
+        "counterpart_squareness": np.append(np.append(square[1], np.nan)[match.best], nothing),
     }
-
-
-def _taken(values: np.ndarray, rows: np.ndarray, chosen: np.ndarray, otherwise: float) -> np.ndarray:
-    """Return the values (m,) at ``rows`` (n,) where these are chosen, another value elsewhere."""
-    taken = np.full(len(rows), otherwise, values.dtype)
-    taken[chosen] = values[rows[chosen]]
-    return taken
 
 
 def _distances(
@@ -343,31 +317,9 @@ def _distances(
     return distance
 
 
-def _of_buildings(
-    corners: tuple[Corners, Corners], pairs: tuple[np.ndarray, np.ndarray], n: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return how many corners of each building of the reference are matched, their mean and greatest distance (m)."""
-    building = corners[0].building[pairs[0]]
-    distance = np.hypot(*(corners[1].xy[pairs[1]] - corners[0].xy[pairs[0]]).T)
-    matched = np.bincount(building, minlength=n)
-    mean = np.where(matched > 0, np.bincount(building, distance, n) / np.maximum(matched, 1), np.nan)
-    farthest = np.full(n, np.nan)
-    np.fmax.at(farthest, building, distance)
-    return matched, mean, farthest
-
-
-def _counterparts(match: _Match, names: list[str]) -> list[str]:
-    """Return the names of the footprints of each building, the greatest IoU first."""
-    partners: list[list[str]] = [[] for _ in match.best]
-    order = np.lexsort((match.footprint, -match.iou, match.building))
-    for building, footprint in zip(match.building[order].tolist(), match.footprint[order].tolist()):
-        partners[building].append(names[footprint])
-    return [", ".join(one) for one in partners]
-
-
-def _values(table: dict, match: _Match, corners: tuple[Corners, Corners], moved: np.ndarray) -> dict[str, float]:
-    """Return the measures, with the shifts ``moved`` (k, 2), m, of matched corners; medians of nothing are NaN."""
-    n, n_new = len(match.best), len(match.is_invented)
+def _values(table: dict, match: _Match, corners: MatchedCorners) -> dict[str, float]:
+    """Return the measures; medians of nothing are NaN."""
+    n, n_new, moved = len(match.best), len(match.is_invented), corners.moved
     status = np.array(table["status"], dtype=object)
     found, has_footprint = status[:n] == FOUND, match.best >= 0
     n_invented = int(match.is_invented.sum())
@@ -381,8 +333,8 @@ def _values(table: dict, match: _Match, corners: tuple[Corners, Corners], moved:
         "iou": _median(table["iou"][:n][found]),
         "hausdorff": _median(table["hausdorff"][:n][found]),
         "polis": _median(table["polis"][:n][found]),
-        "corners": int(has_footprint[corners[0].building].sum()),
-        "footprint_corners": int(np.isin(corners[1].building, match.footprint).sum()),
+        "corners": int(has_footprint[corners.old.building].sum()),
+        "footprint_corners": int(np.isin(corners.new.building, match.footprint).sum()),
         "matched": len(moved),
         "corner_distance": _median(np.hypot(*moved.T)),
         **{
@@ -410,7 +362,7 @@ def _summary(values: dict[str, float]) -> str:
 
 
 def _page(rings: list, table: dict, values: dict[str, float]) -> str:
-    tables = {"Buildings": _building_rows(values), "Outlines": _outline_rows(values), "Corners": _corner_rows(values)}
+    tables = {name: rows_of(values, _MEASURES, meanings, 2) for name, meanings in _meanings(values).items()}
     is_found = np.array(table["status"], dtype=object) == FOUND
     pictures = [draw_polygons(rings, table["status"], COLORS)]
     for name, heading, axis in (("iou", "IoU", "IoU"), ("hausdorff", "Distances", "Hausdorff distance (m)")):
@@ -421,58 +373,39 @@ def _page(rings: list, table: dict, values: dict[str, float]) -> str:
     return build_page("Quality of the footprints", _summary(values), tables, "\n".join(pictures))
 
 
-def _building_rows(values: dict[str, float]) -> list[Row]:
-    return [
-        Row("Found", f"{values['found']:,}", "Buildings of the reference with one footprint of their own."),
-        Row("Merged", f"{values['merged']:,}", "Buildings that share a footprint with others."),
-        Row("Split", f"{values['split']:,}", "Buildings with several footprints."),
-        Row("Missed", f"{values['missed']:,}", "Buildings without a footprint."),
-        Row("Invented", f"{values['invented']:,}", "Footprints that are not in the reference."),
-        Row("Completeness", percent(values["completeness"]), "Share of the buildings found, merged or split."),
-        Row("Correctness", percent(values["correctness"]), "Share of the footprints that are in the reference."),
-    ]
-
-
-def _outline_rows(values: dict[str, float]) -> list[Row]:
-    return [
-        Row("IoU", _number(values["iou"]), "Median intersection over union of the buildings found one to one."),
-        Row(
-            "Hausdorff distance",
-            _meters(values["hausdorff"]),
-            "Median of these: where two outlines are farthest apart.",
-        ),
-        Row("PoLiS", _meters(values["polis"]), "Median of the mean distances of corners from the other outline."),
-        Row(
-            "Squareness",
-            _number(values["squareness"]),
-            "Median share of a footprint's edges along two directions square to each other; "
-            f"{_number(values['reference_squareness'])} in the reference.",
-        ),
-    ]
-
-
-def _corner_rows(values: dict[str, float]) -> list[Row]:
-    return [
-        Row(
-            "Corners",
-            f"{values['footprint_corners']:,}",
-            f"Of the footprints that belong to buildings; {values['corners']:,} of these buildings.",
-        ),
-        Row("Matched", f"{values['matched']:,}", "Corners that both layers have."),
-        Row("Distance", _meters(values["corner_distance"]), "Median distance between matched corners."),
-        *(
-            Row(
-                f"All within {most:g} m",
-                f"{values[f'within_{100 * most:.0f}_cm']:,}",
-                "Buildings of which every corner has been matched that near.",
-            )
-            for most in _WITHIN
-        ),
-        Row(
-            "Shift eastward", _meters(values["shift_east"]), "Median displacement to the east; negative is to the west."
-        ),
-        Row("Shift northward", _meters(values["shift_north"]), "Median displacement to the north."),
-    ]
+def _meanings(values: dict[str, float]) -> dict[str, dict[str, tuple[str, str]]]:
+    """Return name and meaning of what the page shows, by its tables."""
+    near = "Buildings of which every corner has been matched that near."
+    square = (
+        "Median share of a footprint's edges along two directions square to each other; "
+        f"{decimal(values['reference_squareness'], 3)} in the reference."
+    )
+    of_footprints = f"Of the footprints that belong to buildings; {values['corners']:,} of these buildings."
+    return {
+        "Buildings": {
+            "found": ("Found", "Buildings of the reference with one footprint of their own."),
+            "merged": ("Merged", "Buildings that share a footprint with others."),
+            "split": ("Split", "Buildings with several footprints."),
+            "missed": ("Missed", "Buildings without a footprint."),
+            "invented": ("Invented", "Footprints that are not in the reference."),
+            "completeness": ("Completeness", "Share of the buildings found, merged or split."),
+            "correctness": ("Correctness", "Share of the footprints that are in the reference."),
+        },
+        "Outlines": {
+            "iou": ("IoU", "Median intersection over union of the buildings found one to one."),
+            "hausdorff": ("Hausdorff distance", "Median of these: where two outlines are farthest apart."),
+            "polis": ("PoLiS", "Median of the mean distances of corners from the other outline."),
+            "squareness": ("Squareness", square),
+        },
+        "Corners": {
+            "footprint_corners": ("Corners", of_footprints),
+            "matched": ("Matched", "Corners that both layers have."),
+            "corner_distance": ("Distance", "Median distance between matched corners."),
+            **{f"within_{100 * most:.0f}_cm": (f"All within {most:g} m", near) for most in _WITHIN},
+            "shift_east": ("Shift eastward", "Median displacement to the east; negative is to the west."),
+            "shift_north": ("Shift northward", "Median displacement to the north."),
+        },
+    }
 
 
 def _worst(table: dict) -> str:
@@ -490,11 +423,3 @@ def _worst(table: dict) -> str:
     ]
     head = ["Building", "Status", "Area (m²)", "IoU", "Hausdorff distance (m)"]
     return draw_table("Buildings that agree least", head, rows) if rows else ""
-
-
-def _number(value: float) -> str:
-    return "undefined" if math.isnan(value) else f"{value:.3f}"
-
-
-def _meters(value: float) -> str:
-    return "undefined" if math.isnan(value) else f"{value:.2f} m"

@@ -6,22 +6,24 @@ import numpy as np
 
 from ..cloud.asprs import PointClass, parse_classes
 from ..params import IGNORED_CLASSES
-from ..report.page import Row, build_page, draw_map, outcome_of, percent
+from ..report.page import build_page, draw_map, outcome_of, rows_of
 from ..stage import Measure, Report, stage
 from .point_matching import compared_points
+
+_MEASURES = (
+    Measure("type_1", "Type I error", "%"),
+    Measure("type_2", "Type II error", "%"),
+    Measure("total", "Total error", "%"),
+    Measure("kappa", "Cohen's kappa", "%"),
+    Measure("points", "Points compared"),
+    Measure("ground_points", "Ground points in the reference"),
+)
 
 
 @stage(
     "Quality",
     tags="accuracy,type I error,type II error,total error,kappa,evaluation,reference,filter,validation,RMSE",
-    measures=(
-        Measure("type_1", "Type I error", "%"),
-        Measure("type_2", "Type II error", "%"),
-        Measure("total", "Total error", "%"),
-        Measure("kappa", "Cohen's kappa", "%"),
-        Measure("points", "Points compared"),
-        Measure("ground_points", "Ground points in the reference"),
-    ),
+    measures=_MEASURES,
 )
 def assess_ground(
     xyz,
@@ -105,25 +107,17 @@ def ground_errors(called: np.ndarray, ground: np.ndarray) -> dict[str, float]:
 def _page(xyz: np.ndarray, called: np.ndarray, ground: np.ndarray, values: dict) -> str:
     lost, taken = int((ground & ~called).sum()), int((~ground & called).sum())
     objects = values["points"] - values["ground_points"]
-    rows = [
-        Row("Total error", percent(values["total"]), f"{lost + taken:,} of {values['points']:,} points are wrong."),
-        Row(
-            "Type I error",
-            percent(values["type_1"]),
-            f"Ground that was lost: {lost:,} of {values['ground_points']:,} ground points were not called ground.",
-        ),
-        Row(
+    ground_lost = f"Ground that was lost: {lost:,} of {values['ground_points']:,} ground points were not called ground."
+    meanings = {
+        "total": ("Total error", f"{lost + taken:,} of {values['points']:,} points are wrong."),
+        "type_1": ("Type I error", ground_lost),
+        "type_2": (
             "Type II error",
-            percent(values["type_2"]),
             f"Objects in the terrain: {taken:,} of {objects:,} other points were called ground.",
         ),
-        Row(
-            "Kappa",
-            percent(values["kappa"]),
-            "Agreement beyond what chance would give; 100 % is perfect, 0 % is chance.",
-        ),
-    ]
+        "kappa": ("Kappa", "Agreement beyond what chance would give; 100 % is perfect, 0 % is chance."),
+    }
     lead = f"{values['points']:,} points were compared with the reference, {values['ground_points']:,} of them ground."
     legend = ("object in both", "ground in both", "ground that was lost", "falsely called ground")
     picture = draw_map(xyz, outcome_of(called, ground), legend)
-    return build_page("Quality of the ground", lead, {"Errors": rows}, picture)
+    return build_page("Quality of the ground", lead, {"Errors": rows_of(values, _MEASURES, meanings)}, picture)

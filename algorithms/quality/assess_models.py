@@ -16,7 +16,7 @@ from ..models3d.roof_partition import inside_rings
 from ..models3d.roof_planes import find_roof_planes
 from ..models3d.roof_points import RULES, are_low, are_on_roof, distances, root_mean_square
 from ..report.charts import BLUE, Mark, Series, draw_histogram
-from ..report.page import Row, build_page, percent
+from ..report.page import Row, build_page, meters, percent
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
 
@@ -424,9 +424,9 @@ def _page(buildings: list[_Building], values: dict[str, float], tolerance: float
         f"{values['all_faces']:,} faces."
     )
     distances = [
-        Row("RMS", _meters(values["rms"]), "Root mean square height of all roof points above or below the faces."),
-        Row("95th percentile", _meters(values["p95"]), "95 of 100 roof points are nearer."),
-        Row("Median of buildings", _meters(values["median_rms"]), "Half of the buildings have a smaller RMS."),
+        Row("RMS", meters(values["rms"]), "Root mean square height of all roof points above or below the faces."),
+        Row("95th percentile", meters(values["p95"]), "95 of 100 roof points are nearer."),
+        Row("Median of buildings", meters(values["median_rms"]), "Half of the buildings have a smaller RMS."),
         Row("On the model", percent(values["on_model"]), f"Roof points within {tolerance:.2f} m of a face."),
     ]
     planes = [
@@ -441,8 +441,3 @@ def _page(buildings: list[_Building], values: dict[str, float], tolerance: float
         series = [Series("roof points", BLUE, near)]
         picture = draw_histogram(series, "Distance (m)", "points", [Mark("mean", float(near.mean()))])
     return build_page("Quality of the models", lead, {"Distances": distances, "Planes": planes}, picture)
-
-
-def _meters(value: float) -> str:
-    """Return a length as text for users."""
-    return "undefined" if np.isnan(value) else f"{value:.3f} m"

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from ..geometry.grid import plan_box
 from ..geometry.polygon_overlap import Polygons, as_polygons, overlaps, shared_areas
 from ..geometry.rings import sampled_rings, signed_area
 from ..packages import spatial
@@ -32,41 +35,47 @@ class BuildingMap:
     """The usable polygons of a layer."""
 
     rings: list  #: Rings (m, 2) of each, m, the exterior first
-    polygons: Polygons  #: The same as edges
-    area: np.ndarray  #: (n,): area of each, m²
     names: list[str]  #: What they are called
     rows: np.ndarray  #: (n,), int64: their positions in the layer
+
+    @cached_property
+    def polygons(self) -> Polygons:
+        """The same as edges."""
+        return as_polygons(self.rings)
+
+    @cached_property
+    def area(self) -> np.ndarray:
+        """Area (n,) of each, m²."""
+        return np.maximum(self.polygons.area, _NO_AREA)
 
     def only(self, kept: np.ndarray) -> BuildingMap:
         """Return the map of some of the polygons (n,), bool."""
         rows = np.flatnonzero(kept).tolist()
-        rings = [self.rings[row] for row in rows]
-        return BuildingMap(
-            rings, as_polygons(rings), self.area[rows], [self.names[row] for row in rows], self.rows[rows]
-        )
+        return BuildingMap([self.rings[row] for row in rows], [self.names[row] for row in rows], self.rows[rows])
+
+    def __add__(self, other: BuildingMap) -> BuildingMap:
+        """Return the polygons of both maps, those of the other one last."""
+        return BuildingMap(self.rings + other.rings, self.names + other.names, np.append(self.rows, other.rows))
 
 
 def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> BuildingMap:
     """Return the polygons of a layer that have an area; say how many don't, and how many cross themselves."""
-    every_name = feature_names(features)
+    names = feature_names(features)
     proper = [_proper(rings) for rings in features.geometries]
     usable = [row for row, rings in enumerate(proper) if rings]
     if len(usable) < len(features):
         monitor.warn(f"{len(features) - len(usable)} of {len(features)} {called} have no area and were left out.")
-    rings = [proper[row] for row in usable]
-    polygons = as_polygons(rings)
-    area, every = polygons.area, np.arange(len(rings))
+    found = BuildingMap([proper[row] for row in usable], [names[row] for row in usable], np.array(usable, np.int64))
+    polygons, every = found.polygons, np.arange(len(usable))
     # Where rings wind twice, or the wrong way, the overlap of a polygon with itself differs from its area.
     own = shared_areas(polygons, polygons, every, every, Monitor())
-    n_crossing = int((np.abs(own - area) > _CROSSING * area).sum())
+    n_crossing = int((np.abs(own - polygons.area) > _CROSSING * polygons.area).sum())
     if n_crossing:
         monitor.warn(
             f"{n_crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
             "run 'Fix geometries' on the layer first."
         )
-    return BuildingMap(
-        rings, polygons, np.maximum(area, _NO_AREA), [every_name[row] for row in usable], np.array(usable, np.int64)
-    )
+    return found
 
 
 def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str) -> None:
@@ -90,8 +99,9 @@ def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str
     """
     if not old.rings or not new.rings:
         return
-    vertices = [np.concatenate([rings[0] for rings in one.rings]) for one in (old, new)]
-    (low, high), (other_low, other_high) = [(xy.min(axis=0), xy.max(axis=0)) for xy in vertices]
+    (low, high), (other_low, other_high) = (
+        plan_box(np.concatenate([rings[0] for rings in one.rings])) for one in (old, new)
+    )
     apart = float(np.hypot(*np.maximum(0.0, np.maximum(low - other_high, other_low - high))))
     if apart > _ELSEWHERE:
         raise ValueError(
@@ -144,6 +154,10 @@ class Overlap:
         """Intersection over union (k,) of each pair."""
         return self.shared / (self.area[self.one] + self.other_area[self.other] - self.shared)
 
+    def are_same(self, least: float) -> np.ndarray:
+        """Return the mask of pairs (k,) with ``least`` of the smaller one shared and of the first one covered."""
+        return (self.of_smaller >= least) & (self.covered >= least)[self.one]
+
 
 def measure_overlap(first: BuildingMap, second: BuildingMap, shift: np.ndarray, monitor: Monitor) -> Overlap:
     """Return what two layers of buildings share, the first one moved by ``shift`` (2,), m.
@@ -161,6 +175,14 @@ def measure_overlap(first: BuildingMap, second: BuildingMap, shift: np.ndarray, 
     """
     pairs = overlaps(first.polygons.moved(shift), second.polygons, monitor)
     return Overlap(*pairs, first.area, second.area)
+
+
+def joined_names(rows: np.ndarray, names: Iterable[str], count: int) -> list[str]:
+    """Return, for each of ``count`` buildings, the names (k,) at its number in ``rows`` (k,), separated by commas."""
+    of_each: list[list[str]] = [[] for _ in range(count)]
+    for row, name in zip(rows.tolist(), names):
+        of_each[row].append(name)
+    return [", ".join(one) for one in of_each]
 
 
 def rounded_down(share: float) -> float:
@@ -186,7 +208,7 @@ def amid(first: BuildingMap, second: BuildingMap, overlap: Overlap) -> np.ndarra
     if not len(rest) or not first.rings:
         return inside
     outlines = sampled_rings([ring for rings in first.rings for ring in rings[:1]], _OUTLINE_STEP)
-    middles = np.array([(second.rings[row][0].min(axis=0) + second.rings[row][0].max(axis=0)) / 2 for row in rest])
+    middles = np.array([plan_box(second.rings[row][0]).sum(axis=0) / 2 for row in rest])
     for row, middle, near in zip(rest, middles, spatial.cKDTree(outlines).query_ball_point(middles, _AROUND)):
         angles = np.sort(np.arctan2(*(outlines[near] - middle).T))
         gaps = np.diff(angles, append=angles[:1] + 2 * np.pi)

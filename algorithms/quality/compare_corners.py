@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
 from ..report.charts import BLUE, Mark, Series, draw_histogram, draw_scatter
-from ..report.page import Row, build_page
+from ..report.page import Row, build_page, meters
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
-from .building_maps import BuildingMap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
-from .corner_matching import FARTHEST, NO_LENGTH, Corners, automatic_tolerance, corners_of, nearest_corners
+from .building_maps import (
+    BuildingMap,
+    Overlap,
+    clean_map,
+    joined_names,
+    measure_overlap,
+    refuse_elsewhere,
+    rounded_down,
+)
+from .corner_matching import FARTHEST, NO_LENGTH, Corners, MatchedCorners, corners_of, match_corners, nearest_corners
 
 # Change (m) of the shift between two maps in one round, below which it is known.
 _STILL = 1e-3
@@ -163,50 +170,42 @@ def compare_corners(
         old_map = LayerFeatures([], {})
     new, old = clean_map(footprints, "footprints", monitor), clean_map(old_map, "buildings of the old map", monitor)
     refuse_elsewhere(old, new, "footprints", "old map")
-    corners, others = corners_of(old.rings), corners_of(new.rings)
+    corners = corners_of(old.rings), corners_of(new.rings)
     reach = max(FARTHEST, tolerance or 0.0)
-    shift = _shift(corners, others, _linked(old, new, min_overlap, np.zeros(2), monitor.part(0.0, 0.4)), reach)
+    shift = _shift(*corners, _linked(old, new, min_overlap, np.zeros(2), monitor.part(0.0, 0.4)).same, reach)
     link = _linked(old, new, min_overlap, shift, monitor.part(0.4, 0.8))
-    if len(old.area) and len(new.area) and not link.old_covered.any():
+    if len(old.area) and len(new.area) and not link.overlap.covered.any():
         monitor.warn("No footprint overlaps a building of the old map; check that both show the same area.")
-    pairs = _same_corners(corners, others, link, tolerance, shift, reach, monitor)
+    matched = match_corners(*corners, link.same, shift, tolerance, monitor)
     monitor.progress(0.9)
-    moved = others.xy[pairs[1]] - corners.xy[pairs[0]]
-    values = _values(corners, link, moved)
-    layers = _displacements(old, new, corners, others, pairs), _buildings(old, new, corners, others, link, pairs)
-    return (*layers, Report(values, _page(values, moved)))
+    values = _values(matched, link)
+    layers = _displacements(old, new, matched), _buildings(old, new, matched, link)
+    return (*layers, Report(values, _page(values, matched.moved)))
 
 
 @dataclass(frozen=True)
 class _Link:
-    """Which buildings are the same: ``old[k]`` and ``new[k]``, in this order; and how much of each is covered."""
+    """Which buildings of two maps are the same."""
 
-    #: old, new, (k,), int64: buildings of the old map and footprints
-    old: np.ndarray
-    new: np.ndarray
-    #: old_covered, new_covered: Share (0 to 1) of each building of the old map, and of each footprint
-    old_covered: np.ndarray
-    new_covered: np.ndarray
+    overlap: Overlap
+    same: tuple[np.ndarray, np.ndarray]  #: Buildings of the old map and footprints that are the same, in this order
     is_found: np.ndarray  #: bool: which buildings of the old map footprints cover
     is_new: np.ndarray  #: bool: which footprints are not in the old map
 
 
 def _linked(old: BuildingMap, new: BuildingMap, min_overlap: float, shift: np.ndarray, monitor: Monitor) -> _Link:
     """Find the buildings that are the same in both maps, the old one moved by ``shift`` (2,)."""
-    overlap = measure_overlap(old, new, shift, monitor)
-    least = rounded_down(min_overlap)
-    old_covered = overlap.covered
-    is_found = old_covered >= least
-    same = is_found[overlap.one] & (overlap.of_smaller >= least)
+    overlap, least = measure_overlap(old, new, shift, monitor), rounded_down(min_overlap)
+    same, is_found = overlap.are_same(least), overlap.covered >= least
     is_new = overlap.other_covered_by(is_found) < least
-    return _Link(overlap.one[same], overlap.other[same], old_covered, overlap.other_covered, is_found, is_new)
+    return _Link(overlap, (overlap.one[same], overlap.other[same]), is_found, is_new)
 
 
-def _shift(old: Corners, new: Corners, link: _Link, reach: float) -> np.ndarray:
+def _shift(old: Corners, new: Corners, same: tuple, reach: float) -> np.ndarray:
     """Return by how much (2,), m, the new map is off the old one: the median displacement of corners."""
     shift = np.zeros(2)
     for _ in range(_MOST_ROUNDS):
-        one, other, _ = nearest_corners(old, new, (link.old, link.new), shift, reach)
+        one, other, _ = nearest_corners(old, new, same, shift, reach)
         before = shift
         shift = np.median(new.xy[other] - old.xy[one], axis=0) if len(one) else shift
         if np.hypot(*(shift - before)) < _STILL:
@@ -214,104 +213,58 @@ def _shift(old: Corners, new: Corners, link: _Link, reach: float) -> np.ndarray:
     return shift
 
 
-def _same_corners(
-    old: Corners,
-    new: Corners,
-    link: _Link,
-    tolerance: Optional[float],
-    shift: np.ndarray,
-    reach: float,
-    monitor: Monitor,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Match corners of the same buildings one to one, the shift between the maps taken off."""
-    one, other, distance = nearest_corners(old, new, (link.old, link.new), shift, reach)
-    if tolerance is None:
-        tolerance = automatic_tolerance(distance)
-        monitor.resolved(tolerance=tolerance)
-    near = distance <= tolerance
-    return one[near], other[near]
-
-
-def _values(old: Corners, link: _Link, moved: np.ndarray) -> dict[str, float]:
+def _values(corners: MatchedCorners, link: _Link) -> dict[str, float]:
     """Return the measures of the comparison; distances are NaN without corners that match."""
-    distance = np.hypot(*moved.T)
-    undefined = not len(distance)
+    dx, dy = corners.moved.T
+    distance = np.hypot(dx, dy)
+    measures = {"mean": np.mean, "minimum": np.min, "maximum": np.max, "median": np.median, "deviation": np.std}
+    measured = {name: measure(distance) if len(distance) else np.nan for name, measure in measures.items()}
     return {
         "old_buildings": len(link.is_found),
         "all_footprints": len(link.is_new),
         "found": int(link.is_found.sum()),
         "missed": int((~link.is_found).sum()),
         "new": int(link.is_new.sum()),
-        "corners": int(link.is_found[old.building].sum()),
+        "corners": int(link.is_found[corners.old.building].sum()),
         "matched": len(distance),
-        **{
-            name: float("nan") if undefined else float(measure(distance))
-            for name, measure in (
-                ("mean", np.mean),
-                ("minimum", np.min),
-                ("maximum", np.max),
-                ("median", np.median),
-                ("deviation", np.std),
-            )
-        },
-        "mean_dx": float("nan") if undefined else float(moved[:, 0].mean()),
-        "mean_dy": float("nan") if undefined else float(moved[:, 1].mean()),
+        **{name: float(value) for name, value in measured.items()},
+        "mean_dx": float(dx.mean()) if len(dx) else np.nan,
+        "mean_dy": float(dy.mean()) if len(dy) else np.nan,
     }
 
 
-def _displacements(
-    old: BuildingMap, new: BuildingMap, corners: Corners, others: Corners, pairs: tuple
-) -> LayerFeatures:
+def _displacements(old: BuildingMap, new: BuildingMap, corners: MatchedCorners) -> LayerFeatures:
     """Return the layer of arrows, by building of the old map."""
-    order = np.lexsort((pairs[1], pairs[0]))
-    layer = LayerFeatures([], {declared.name: [] for declared in _DISPLACEMENTS.fields})
-    for i, j in zip(pairs[0][order].tolist(), pairs[1][order].tolist()):
-        dx, dy = (others.xy[j] - corners.xy[i]).tolist()
-        length = float(np.hypot(dx, dy))
-        if length <= NO_LENGTH:
-            continue
-        row = (len(layer) + 1, old.names[corners.building[i]], new.names[others.building[j]], length, dx, dy)
-        layer.geometries.append(np.stack([corners.xy[i], others.xy[j]]))
-        for column, value in zip(layer.columns.values(), row):
-            column.append(value)
-    return layer
+    features = []
+    for i, j in sorted(zip(corners.one.tolist(), corners.other.tolist())):
+        start, end = corners.old.xy[i], corners.new.xy[j]
+        dx, dy = (end - start).tolist()
+        facts = {"length": float(np.hypot(dx, dy)), "dx": dx, "dy": dy}
+        if facts["length"] > NO_LENGTH:
+            names = old.names[corners.old.building[i]], new.names[corners.new.building[j]]
+            facts |= {"old_building": names[0], "footprint": names[1]}
+            features.append((np.stack([start, end]), facts))
+    return LayerFeatures.numbered(features, _DISPLACEMENTS.fields)
 
 
-def _buildings(
-    old: BuildingMap,
-    new: BuildingMap,
-    corners: Corners,
-    others: Corners,
-    link: _Link,
-    pairs: tuple[np.ndarray, np.ndarray],
-) -> LayerFeatures:
+def _buildings(old: BuildingMap, new: BuildingMap, corners: MatchedCorners, link: _Link) -> LayerFeatures:
     """Return the layer of buildings: of the old map, then the new ones."""
-    distance = np.hypot(*(others.xy[pairs[1]] - corners.xy[pairs[0]]).T)
-    building, n = corners.building[pairs[0]], len(old.names)
-    matched = np.bincount(building, minlength=n)
-    most = np.full(n, np.nan)
-    np.fmax.at(most, building, distance)
-    mean = np.where(matched > 0, np.bincount(building, distance, n) / np.maximum(matched, 1), np.nan)
-    partners: list[list[str]] = [[] for _ in old.names]
-    for i, j in zip(link.old.tolist(), link.new.tolist()):
-        partners[i].append(new.names[j])
-    fresh = np.flatnonzero(link.is_new)
-    none = np.full(len(fresh), np.nan)
+    every, n_new = old + new.only(link.is_new), int(link.is_new.sum())
+    matched, mean, most = corners.of_buildings()
+    none = np.full(n_new, np.nan)
     columns = {
-        "id": np.arange(1, n + len(fresh) + 1),
-        "status": [FOUND if is_found else MISSED for is_found in link.is_found] + [NEW] * len(fresh),
-        "building": old.names + [new.names[j] for j in fresh],
-        "counterpart": [", ".join(names) for names in partners] + [""] * len(fresh),
-        "area": np.append(old.area, new.area[fresh]),
-        "covered": np.append(link.old_covered, link.new_covered[fresh]),
-        "corners": np.append(
-            np.bincount(corners.building, minlength=n), np.bincount(others.building, minlength=len(new.names))[fresh]
-        ),
-        "matched": np.append(matched, np.zeros(len(fresh), np.int64)),
+        "id": np.arange(1, len(every.names) + 1),
+        "status": [FOUND if is_found else MISSED for is_found in link.is_found] + [NEW] * n_new,
+        "building": every.names,
+        "counterpart": joined_names(link.same[0], [new.names[j] for j in link.same[1]], len(every.names)),
+        "area": every.area,
+        "covered": np.append(link.overlap.covered, link.overlap.other_covered[link.is_new]),
+        "corners": np.append(corners.old.counts, corners.new.counts[link.is_new]),
+        "matched": np.append(matched, np.zeros(n_new, np.int64)),
         "mean_distance": np.append(mean, none),
         "max_distance": np.append(most, none),
     }
-    return LayerFeatures(old.rings + [new.rings[j] for j in fresh], columns)
+    return LayerFeatures(every.rings, columns)
 
 
 def _page(values: dict[str, float], moved: np.ndarray) -> str:
@@ -326,11 +279,11 @@ def _page(values: dict[str, float], moved: np.ndarray) -> str:
             Row("New", f"{values['new']:,}", "Footprints that are not in the old map."),
         ],
         "Distances of corners": [
-            Row("Mean", _meters(values["mean"]), "From the corner in the old map to the new corner."),
-            Row("Minimum", _meters(values["minimum"]), "The corner that has moved least."),
-            Row("Maximum", _meters(values["maximum"]), "The corner that has moved most."),
-            Row("Median", _meters(values["median"]), "Half of the corners have moved by less."),
-            Row("Standard deviation", _meters(values["deviation"]), "How much the distances differ among themselves."),
+            Row("Mean", meters(values["mean"]), "From the corner in the old map to the new corner."),
+            Row("Minimum", meters(values["minimum"]), "The corner that has moved least."),
+            Row("Maximum", meters(values["maximum"]), "The corner that has moved most."),
+            Row("Median", meters(values["median"]), "Half of the corners have moved by less."),
+            Row("Standard deviation", meters(values["deviation"]), "How much the distances differ among themselves."),
         ],
         "Shift between the maps": _shift_rows(moved),
     }
@@ -348,17 +301,12 @@ def _shift_rows(moved: np.ndarray) -> list[Row]:
     dx, dy = moved.mean(axis=0).tolist() if len(moved) else (undefined, undefined)
     remaining = float(np.sqrt(((moved - [dx, dy]) ** 2).sum(axis=1).mean())) if len(moved) else undefined
     return [
-        Row("Eastward", _meters(dx), "Mean of the displacements to the east; negative is to the west."),
-        Row("Northward", _meters(dy), "Mean of the displacements to the north; negative is to the south."),
-        Row("Together", _meters(float(np.hypot(dx, dy))), "Length of the mean shift."),
+        Row("Eastward", meters(dx), "Mean of the displacements to the east; negative is to the west."),
+        Row("Northward", meters(dy), "Mean of the displacements to the north; negative is to the south."),
+        Row("Together", meters(float(np.hypot(dx, dy))), "Length of the mean shift."),
         Row(
             "Without it",
-            _meters(remaining),
+            meters(remaining),
             "Root mean square of the distances that were left if the shift were taken off.",
         ),
     ]
-
-
-def _meters(value: float) -> str:
-    """Return a length as text for users."""
-    return "undefined" if math.isnan(value) else f"{value:.3f} m"

@@ -7,12 +7,20 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, split_groups
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
-from .building_maps import BuildingMap, Overlap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
+from .building_maps import (
+    BuildingMap,
+    Overlap,
+    clean_map,
+    joined_names,
+    measure_overlap,
+    refuse_elsewhere,
+    rounded_down,
+)
 from .polygon_comparison import distances_from, positions_along
 
 UNCHANGED, HEIGHT, OUTLINE, BOTH = "unchanged", "height changed", "outline changed", "height and outline changed"
@@ -177,19 +185,18 @@ def compare_surveys(
     refuse_elsewhere(old, new, "footprints", "earlier survey")
     overlap = measure_overlap(old, new, np.zeros(2), monitor.part(0.0, 0.3))
     groups = _groups(overlap, min_overlap)
-    heights = _heights(footprints, earlier, (new, old), monitor)
-    changes = _changes(old, new, overlap, groups, heights, monitor.part(0.3, 0.95))
+    height = _height_changes((footprints, earlier), (new, old), groups, monitor)
+    outline = _outline_changes(old, new, groups, monitor.part(0.3, 0.95))
     tolerances = {
-        "outline_tolerance": _tolerance(outline_tolerance, changes.outline, RULES.least_outline, RULES.most_outline),
-        "height_tolerance": _tolerance(height_tolerance, changes.height, RULES.least_height, RULES.most_height),
+        "outline_tolerance": _tolerance(outline_tolerance, outline, RULES.least_outline, RULES.most_outline),
+        "height_tolerance": _tolerance(height_tolerance, height, RULES.least_height, RULES.most_height),
     }
     monitor.resolved(**tolerances)
-    status = _status(changes, *tolerances.values())
-    gone = np.flatnonzero(~np.isin(groups.old, groups.new))
-    table = _table(old, new, groups, changes, status, gone)
-    rings = new.rings + [old.rings[row] for row in gone]
+    status = _status(groups, outline > tolerances["outline_tolerance"], np.abs(height) > tolerances["height_tolerance"])
+    changes = {**_area_changes(overlap, groups), "outline_change": outline, "height_change": height}
+    every, table = _table(old, new, groups, {"status": status, **changes})
     values = _values(table, len(old.area), len(new.area))
-    return LayerFeatures(rings, table), Report(values, _page(rings, table, values, tolerances))
+    return LayerFeatures(every.rings, table), Report(values, _page(every.rings, table, values, tolerances))
 
 
 @dataclass(frozen=True)
@@ -201,22 +208,6 @@ class _Groups:
     count: int
 
 
-@dataclass(frozen=True)
-class _Changes:
-    """What has changed in each group: area gained and lost (m²), distance of outlines and difference in height (m).
-
-    Distances and differences are NaN in groups that one survey lacks, and where heights are unknown. ``in_old`` and
-    ``in_new`` say which survey has the group.
-    """
-
-    gained: np.ndarray
-    lost: np.ndarray
-    outline: np.ndarray
-    height: np.ndarray
-    in_old: np.ndarray
-    in_new: np.ndarray
-
-
 def _groups(overlap: Overlap, min_overlap: float) -> _Groups:
     """Return groups of buildings that share at least ``min_overlap`` of the smaller one with another of the group."""
     same = overlap.of_smaller >= rounded_down(min_overlap)
@@ -225,16 +216,21 @@ def _groups(overlap: Overlap, min_overlap: float) -> _Groups:
     return _Groups(group[:n], group[n:], count)
 
 
-def _heights(
-    footprints: LayerFeatures, earlier: LayerFeatures, maps: tuple[BuildingMap, BuildingMap], monitor: Monitor
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the heights (m) of the buildings of the new and of the earlier survey, NaN where they are unknown."""
+def _height_changes(
+    layers: tuple, maps: tuple[BuildingMap, BuildingMap], groups: _Groups, monitor: Monitor
+) -> np.ndarray:
+    """Return the rise (m) of each group from the earlier to the new survey, the new one first; NaN where unknown."""
     for name in _HEIGHTS:
-        new, old = (_numbers(layer.columns.get(name)) for layer in (footprints, earlier))
-        if new is not None and old is not None:
-            return new[maps[0].rows], old[maps[1].rows]
+        found = (_numbers(layer.columns.get(name)) for layer in layers)
+        columns = [column for column in found if column is not None]
+        if len(columns) == len(layers):
+            new, old = (
+                _group_heights(column[one.rows], one.area, group, groups.count)
+                for column, one, group in zip(columns, maps, (groups.new, groups.old))
+            )
+            return new - old
     monitor.warn("Heights are not compared: no attribute 'ridge_height' or 'height' is in both layers.")
-    return np.full(len(maps[0].area), np.nan), np.full(len(maps[1].area), np.nan)
+    return np.full(groups.count, np.nan)
 
 
 def _numbers(values: Any) -> Optional[np.ndarray]:
@@ -246,24 +242,12 @@ def _numbers(values: Any) -> Optional[np.ndarray]:
     return found if found.ndim == 1 else None
 
 
-def _changes(
-    old: BuildingMap,
-    new: BuildingMap,
-    overlap: Overlap,
-    groups: _Groups,
-    heights: tuple[np.ndarray, np.ndarray],
-    monitor: Monitor,
-) -> _Changes:
-    """Compare the buildings of each group."""
+def _area_changes(overlap: Overlap, groups: _Groups) -> dict[str, np.ndarray]:
+    """Return the areas (m²) that each group has gained and lost."""
     one, other = groups.old[overlap.one], groups.new[overlap.other]
     shared = np.bincount(one[one == other], overlap.shared[one == other], groups.count)
-    areas = [np.bincount(group, area, groups.count) for group, area in ((groups.old, old.area), (groups.new, new.area))]
-    counts = [np.bincount(group, minlength=groups.count) for group in (groups.old, groups.new)]
-    in_old, in_new = counts[0] > 0, counts[1] > 0
-    height = _group_heights(heights[0], new.area, groups.new, groups.count)
-    height = height - _group_heights(heights[1], old.area, groups.old, groups.count)
-    gained, lost = (np.maximum(area - shared, 0.0) for area in (areas[1], areas[0]))
-    return _Changes(gained, lost, _outline_changes(old, new, groups, in_old & in_new, monitor), height, in_old, in_new)
+    sides = {"gained": (groups.new, overlap.other_area), "lost": (groups.old, overlap.area)}
+    return {name: np.maximum(np.bincount(*side, groups.count) - shared, 0.0) for name, side in sides.items()}
 
 
 def _group_heights(height: np.ndarray, area: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
@@ -274,19 +258,15 @@ def _group_heights(height: np.ndarray, area: np.ndarray, group: np.ndarray, coun
     return np.where(weight > 0, total / np.where(weight > 0, weight, 1.0), np.nan)
 
 
-def _outline_changes(
-    old: BuildingMap, new: BuildingMap, groups: _Groups, chosen: np.ndarray, monitor: Monitor
-) -> np.ndarray:
-    """Return the greatest distance (m) between the outlines of both surveys in chosen groups, NaN in the others."""
+def _outline_changes(old: BuildingMap, new: BuildingMap, groups: _Groups, monitor: Monitor) -> np.ndarray:
+    """Return the greatest distance (m) between the outlines of both surveys in each group, NaN where one lacks it."""
     distance = np.full(groups.count, np.nan)
-    members: list[tuple[list, list]] = [([], []) for _ in range(groups.count)]
-    for side, (one, group) in enumerate(((old, groups.old), (new, groups.new))):
-        for row, number in enumerate(group.tolist()):
-            members[number][side].append(one.rings[row])
-    for step, number in enumerate(np.flatnonzero(chosen).tolist()):
-        first, second = members[number]
-        distance[number] = max(_farthest(first, second), _farthest(second, first))
-        monitor.progress(step / len(distance))
+    members = zip(*(split_groups(group, groups.count) for group in (groups.old, groups.new)))
+    for number, (olds, news) in enumerate(members):
+        first, second = [old.rings[row] for row in olds], [new.rings[row] for row in news]
+        if first and second:
+            distance[number] = max(_farthest(first, second), _farthest(second, first))
+        monitor.progress(number / groups.count)
     return distance
 
 
@@ -312,32 +292,27 @@ def _tolerance(given: Optional[float], differences: np.ndarray, least: float, mo
     return float(np.clip(RULES.deviations * np.median(known), least, most)) if len(known) else least
 
 
-def _status(changes: _Changes, outline_tolerance: float, height_tolerance: float) -> np.ndarray:
-    """Return the status of each group."""
-    outline = changes.outline > outline_tolerance
-    height = np.abs(changes.height) > height_tolerance
-    chosen = [~changes.in_old, ~changes.in_new, outline & height, outline, height]
+def _status(groups: _Groups, outline: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """Return the status of each group, given whether its outline and its height have changed."""
+    in_old, in_new = (np.isin(np.arange(groups.count), group) for group in (groups.old, groups.new))
+    chosen = [~in_old, ~in_new, outline & height, outline, height]
     return np.select(chosen, [NEW, GONE, BOTH, OUTLINE, HEIGHT], UNCHANGED)
 
 
 def _table(
-    old: BuildingMap, new: BuildingMap, groups: _Groups, changes: _Changes, status: np.ndarray, gone: np.ndarray
-) -> dict:
-    """Return the attributes of the buildings of the new survey, then of those that are gone."""
-    group = np.append(groups.new, groups.old[gone])
-    names: list[list[str]] = [[] for _ in range(groups.count)]
-    for name, number in zip(old.names, groups.old.tolist()):
-        names[number].append(name)
-    return {
+    old: BuildingMap, new: BuildingMap, groups: _Groups, found: dict[str, np.ndarray]
+) -> tuple[BuildingMap, dict]:
+    """Return the buildings of the new survey, then those that are gone, and the attributes of their groups."""
+    is_gone = ~np.isin(groups.old, groups.new)
+    every, group = new + old.only(is_gone), np.append(groups.new, groups.old[is_gone])
+    names = joined_names(groups.old, old.names, groups.count)
+    return every, {
         "id": np.arange(1, len(group) + 1),
-        "status": status[group].tolist(),
-        "building": new.names + [old.names[row] for row in gone],
-        "counterpart": [", ".join(names[number]) for number in groups.new.tolist()] + [""] * len(gone),
-        "area": np.append(new.area, old.area[gone]),
-        "gained": changes.gained[group],
-        "lost": changes.lost[group],
-        "outline_change": changes.outline[group],
-        "height_change": changes.height[group],
+        "status": found["status"][group].tolist(),
+        "building": every.names,
+        "counterpart": [names[number] for number in groups.new] + [""] * int(is_gone.sum()),
+        "area": every.area,
+        **{name: values[group] for name, values in found.items() if name != "status"},
     }
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import find_cells
 from ..packages import spatial
+from ..stage import Monitor
 
 # A vertex at which the outline turns by less is no corner but a point on a straight or round wall, degrees.
 _LEAST_TURN = 20.0
@@ -33,11 +35,42 @@ NO_LENGTH = 1e-3
 
 @dataclass(frozen=True)
 class Corners:
-    """Corners (n, 2) of polygons, the polygon of each, and the unit vector that it faces."""
+    """Corners (n, 2) of polygons, the polygon of each, the unit vector that it faces, and the number of polygons."""
 
     xy: np.ndarray
     building: np.ndarray
     facing: np.ndarray
+    count: int
+
+    @property
+    def counts(self) -> np.ndarray:
+        """Number of corners (count,) of each polygon."""
+        return np.bincount(self.building, minlength=self.count)
+
+
+@dataclass(frozen=True)
+class MatchedCorners:
+    """Corners of an old and of a new layer, and which of them are the same."""
+
+    old: Corners
+    new: Corners
+    #: one, other, (k,), int64: rows of the corners of each pair in ``old`` and in ``new``
+    one: np.ndarray
+    other: np.ndarray
+
+    @property
+    def moved(self) -> np.ndarray:
+        """Displacements (k, 2) of the corners of the old layer, m."""
+        return self.new.xy[self.other] - self.old.xy[self.one]
+
+    def of_buildings(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how many corners of each old building (n,) are matched, their mean and greatest distance (m)."""
+        building, distance, count = self.old.building[self.one], np.hypot(*self.moved.T), self.old.count
+        matched = np.bincount(building, minlength=count)
+        mean = np.where(matched > 0, np.bincount(building, distance, count) / np.maximum(matched, 1), np.nan)
+        farthest = np.full(count, np.nan)
+        np.fmax.at(farthest, building, distance)
+        return matched, mean, farthest
 
 
 def corners_of(polygons: list) -> Corners:
@@ -49,6 +82,7 @@ def corners_of(polygons: list) -> Corners:
         np.concatenate([np.zeros((0, 2)), *(xy for _, xy, _ in found)]),
         np.repeat([number for number, *_ in found], counts).astype(np.int64),
         np.concatenate([np.zeros((0, 2)), *(facing for *_, facing in found)]),
+        len(polygons),
     )
 
 
@@ -63,6 +97,32 @@ def _turns(ring: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     chosen = np.abs(turn) >= np.deg2rad(_LEAST_TURN)
     facing = (before - after)[chosen]
     return xy[chosen], facing / np.hypot(*facing.T)[:, None]
+
+
+def match_corners(
+    old: Corners, new: Corners, same: tuple, shift: np.ndarray, tolerance: Optional[float], monitor: Monitor
+) -> MatchedCorners:
+    """Return the corners of the same buildings matched one to one.
+
+    Parameters
+    ----------
+    old, new : Corners
+        Corners of two layers.
+    same : tuple of ndarray of shape (k,), int64
+        Buildings of the one and of the other that are the same, in this order.
+    shift : ndarray of shape (2,)
+        By how much the new layer is off the old one, m.
+    tolerance : float, optional
+        Corners farther apart after the shift (m) are not the same; None for an automatic one.
+    monitor : Monitor
+        Receives the automatic tolerance.
+    """
+    one, other, distance = nearest_corners(old, new, same, shift, max(FARTHEST, tolerance or 0.0))
+    if tolerance is None:
+        tolerance = automatic_tolerance(distance)
+        monitor.resolved(tolerance=tolerance)
+    near = distance <= tolerance
+    return MatchedCorners(old, new, one[near], other[near])
 
 
 def automatic_tolerance(distance: np.ndarray) -> float:

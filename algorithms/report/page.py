@@ -15,6 +15,7 @@ from typing import Callable
 import numpy as np
 
 from ..geometry.grid import plan_box
+from ..stage import Measure
 
 # Distinguishable with any color vision and in gray (Tol's high-contrast scheme); the last is the paper.
 _COLORS = ((221, 221, 221), (0, 68, 136), (221, 170, 51), (187, 85, 102), (255, 255, 255))
@@ -62,9 +63,46 @@ class Row:
     meaning: str
 
 
+def decimal(value: float, digits: int, unit: str = "") -> str:
+    """Return a number with a number of digits and its unit, such as " m", as text."""
+    return "undefined" if math.isnan(value) else f"{value:.{digits}f}{unit}"
+
+
 def percent(value: float) -> str:
     """Return a percentage as text."""
-    return "undefined" if math.isnan(value) else f"{value:.1f} %"
+    return decimal(value, 1, " %")
+
+
+def meters(value: float, digits: int = 3) -> str:
+    """Return a length as text."""
+    return decimal(value, digits, " m")
+
+
+def rows_of(
+    values: dict[str, float], measures: Iterable[Measure], meanings: dict[str, tuple[str, str]], digits: int = 3
+) -> list[Row]:
+    """Return the rows of some measures.
+
+    Parameters
+    ----------
+    values : dict
+        Values of measures by name: whole numbers are counts.
+    measures : iterable of Measure
+        Their declarations, which give the units.
+    meanings : dict
+        What the page calls each, and a sentence that says what it means.
+    digits : int
+        Digits of lengths.
+    """
+    units = {measure.name: measure.unit for measure in measures}
+
+    def shown(measure: str) -> str:
+        value, unit = values[measure], units[measure]
+        if unit in ("%", "m"):
+            return percent(value) if unit == "%" else meters(value, digits)
+        return f"{value:,}" if isinstance(value, int) else decimal(value, 3)
+
+    return [Row(name, shown(measure), meaning) for measure, (name, meaning) in meanings.items()]
 
 
 def outcome_of(predicted: np.ndarray, true: np.ndarray) -> np.ndarray:

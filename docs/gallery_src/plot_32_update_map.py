@@ -11,7 +11,7 @@ import numpy as np
 
 from lidar_buildings.algorithms.geometry.rings import polygon_area
 from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.quality.update_map import COLORS, GONE
+from lidar_buildings.algorithms.quality.map_changes import COLORS, GONE
 from lidar_buildings.algorithms.run import run_pipeline, run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures
 from lidar_buildings.algorithms.stages import STAGES

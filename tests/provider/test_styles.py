@@ -33,7 +33,7 @@ from lidar_buildings.algorithms.features.classify_dimensionality import Dimensio
 from lidar_buildings.algorithms.quality import assess_footprints as footprints
 from lidar_buildings.algorithms.quality import compare_corners as corners
 from lidar_buildings.algorithms.quality import compare_surveys as surveys
-from lidar_buildings.algorithms.quality import update_map
+from lidar_buildings.algorithms.quality import map_changes
 from lidar_buildings.algorithms.quality.assess_buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
 from lidar_buildings.algorithms.stage import Field
 from lidar_buildings.algorithms.walls.extract_wall_footprints import ROOF, WALL
@@ -172,7 +172,7 @@ def test_a_feature_is_called_by_its_number_and_shows_what_matters_where_the_mous
         ("assessed_footprints", "status", set(footprints.COLORS)),
         ("compared_surveys", "status", set(surveys.COLORS)),
         ("regularized", "regularized", {0, 1}),
-        ("updated_map", "status", set(update_map.COLORS) - {update_map.GONE}),
+        ("updated_map", "status", set(map_changes.COLORS) - {map_changes.GONE}),
         ("compared_buildings", "status", {corners.FOUND, corners.MISSED, corners.NEW}),
     ],
 )

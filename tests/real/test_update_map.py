@@ -11,7 +11,8 @@ from qgis.core import QgsVectorLayer
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.geometry.line_segments import is_valid
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, meeting_boxes, overlaps
-from lidar_buildings.algorithms.quality.update_map import CHANGED, GONE, NEW, UNCHANGED, update_map
+from lidar_buildings.algorithms.quality.map_changes import CHANGED, GONE, NEW, UNCHANGED
+from lidar_buildings.algorithms.quality.update_map import update_map
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 from lidar_buildings.tests.real.base_map import MAP, footprints
 

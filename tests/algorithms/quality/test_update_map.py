@@ -7,7 +7,7 @@ from lidar_buildings.algorithms.geometry.line_segments import is_valid
 from lidar_buildings.algorithms.geometry.points_in_polygons import are_within
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
 from lidar_buildings.algorithms.geometry.rings import polygon_area, sides_of_rings
-from lidar_buildings.algorithms.quality.update_map import (
+from lidar_buildings.algorithms.quality.map_changes import (
     CHANGED,
     DOUBTFUL,
     GONE,
@@ -17,8 +17,8 @@ from lidar_buildings.algorithms.quality.update_map import (
     NEW,
     UNCHANGED,
     UNSEEN,
-    update_map,
 )
+from lidar_buildings.algorithms.quality.update_map import update_map
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 
 

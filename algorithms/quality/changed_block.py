@@ -1,0 +1,225 @@
+"""Old buildings and new outlines that lie together, compared on a lattice and drawn anew where they have changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..footprints.soft_shares import Lattice
+from ..geometry.grid import plan_box
+from ..geometry.groups import components
+from ..geometry.points_in_polygons import are_within
+from ..geometry.polygon_overlap import as_polygons, meeting_boxes
+from ..geometry.rings import polygon_area, sides_of_rings
+from ..models3d.model_inputs import rows_near
+from ..packages import ndimage
+from . import map_changes
+from .map_changes import BUILT, OLD, RULES, Label, MapUpdate, SeenPoints
+from .map_drawing import draw_labels
+
+
+class ChangedBlock:
+    """Old buildings and new outlines that lie together, on a lattice; the decisions go into the update."""
+
+    def __init__(
+        self, update: MapUpdate, points: SeenPoints, olds: list[int], news: list[int], width: float, min_area: float
+    ) -> None:
+        self.update, self.olds, self.news, self.width, self.min_area = update, olds, news, width, min_area
+        self.radius = width / 2 / RULES.step
+        corners = [update.rings[row][0] for row in olds] + [update.outlines[row][0] for row in news]
+        box = plan_box(np.concatenate(corners)) + [[-2 * width], [2 * width]]
+        self.lattice, self.box = Lattice.around(box, 2 * RULES.step), [box]
+        self.old, self.own = self._painted(olds, update.rings)
+        self.new, _ = self._painted(news, update.outlines)
+        near = rows_near(points.xyz, self.box)
+        reach = max(RULES.reach * points.spacing, RULES.step)
+        self.is_seen = self._around(points.xyz[near], reach)
+        self.is_low = self._around(points.xyz[near[points.is_low[near]]], reach)
+        self.wanted, self.labels = np.full(self.lattice.shape, 0), dict[Label, int]()
+
+    def _painted(self, rows: list[int], polygons: list) -> tuple[np.ndarray, dict[int, tuple]]:
+        """Return the polygon of each node by row, -1 without one, and the window and the mask of each."""
+        painted, masks = np.full(self.lattice.shape, -1), {}
+        for row in rows:
+            rings = polygons[row]
+            box = self.lattice.nodes(np.array([rings[0].min(axis=0), rings[0].max(axis=0)]))
+            (west, south), (east, north) = np.floor(box[0]).astype(int), np.ceil(box[1]).astype(int) + 1
+            window = slice(max(south, 0), north), slice(max(west, 0), east)
+            inner = self.lattice.part(window)
+            mask = are_within(inner.positions, sides_of_rings(rings)).reshape(inner.shape)
+            painted[window][mask] = row
+            masks[row] = window, mask
+        return painted, masks
+
+    def _around(self, xyz: np.ndarray, reach: float) -> np.ndarray:
+        """Return the nodes (rows, columns), bool, within a distance (m) of points (n, 3)."""
+        hit = np.zeros(self.lattice.shape, bool)
+        hit[self.lattice.nearest(xyz[:, :2])] = True
+        return _within(hit, reach / RULES.step)
+
+    def decide(self, roofs: list[np.ndarray]) -> None:
+        """Decide on all buildings, draw the changed and the new ones; ``roofs`` are the roof points of each survey."""
+        for row in self.olds:
+            self._decide_old(row)
+        self._add_parts()
+        self._draw()
+        if len(roofs) > 1:
+            self._compare_heights(*(self._surface(own[rows_near(own, self.box)]) for own in roofs))
+
+    def _surface(self, xyz: np.ndarray) -> np.ndarray:
+        """Return the highest elevation (rows, columns), m, around each node of the lattice, NaN without points."""
+        top = np.full(self.lattice.shape, -np.inf)
+        np.maximum.at(top, self.lattice.nearest(xyz[:, :2]), xyz[:, 2])
+        top = ndimage.maximum_filter(top, round(RULES.rise / RULES.step))
+        return np.where(np.isfinite(top), top, np.nan)
+
+    def _compare_heights(self, new: np.ndarray, old: np.ndarray) -> None:
+        """Measure how far the roofs that are still there have risen from one surface (rows, columns), m, to another."""
+        update, risen = self.update, new - old
+        for row in self.olds:
+            window, mask = self.own[row]
+            known = risen[window][mask & (self.new[window] >= 0) & np.isfinite(risen[window])]
+            if len(known) and update.status[row] in (map_changes.UNCHANGED, map_changes.MOVED, map_changes.CHANGED):
+                update.rise[row] = by = float(np.median(known))
+                if update.status[row] == map_changes.UNCHANGED and abs(by) > RULES.rise:
+                    update.status[row] = map_changes.HEIGHTENED if by > 0 else map_changes.LOWERED
+
+    def _decide_old(self, row: int) -> None:
+        """Decide whether an old building is there, and which parts of it are gone."""
+        update, (window, mask) = self.update, self.own[row]
+        if not mask.any():
+            update.status[row] = map_changes.DOUBTFUL
+            return
+        has_new, low, seen = (one[window][mask] for one in (self.new >= 0, self.is_low, self.is_seen))
+        covered = float(has_new.mean())
+        update.confidence[row] = covered
+        is_empty = float((low & ~has_new).mean()) >= RULES.shown
+        if covered < RULES.there and seen.mean() < RULES.shown:
+            update.status[row], update.confidence[row] = map_changes.UNSEEN, 0.0
+        elif covered <= RULES.gone:
+            update.status[row] = map_changes.GONE if is_empty else map_changes.DOUBTFUL
+            update.confidence[row] = float(low.mean()) if is_empty else covered
+        else:
+            removed = self._removed(window, mask)
+            if removed.any():
+                self._label((OLD, row), window, mask & ~removed)
+                update.removed[row] = removed.sum() * RULES.step**2
+            elif covered < RULES.there:
+                update.status[row] = map_changes.DOUBTFUL
+
+    def _removed(self, window: tuple, mask: np.ndarray) -> np.ndarray:
+        """Return the nodes of a building (rows, columns), bool, that are of it no more."""
+        lost = np.pad(mask & (self.new[window] < 0), 1)
+        part, count = ndimage.label(_opened(lost, self.radius)[1:-1, 1:-1])
+        size = np.bincount(part.ravel(), minlength=count + 1) * RULES.step**2
+        low = np.bincount(part.ravel(), self.is_low[window].ravel(), count + 1) * RULES.step**2
+        is_gone = (size >= self.min_area) & (low >= RULES.shown * size)
+        is_gone[0] = False
+        gone = is_gone[part]
+        # No strip is left along the parts cut off.
+        kept = np.pad(mask & ~gone, 1)
+        return gone | (kept & ~_opened(kept, self.radius))[1:-1, 1:-1] & _within(gone, 2 * self.radius)
+
+    def _label(self, label: Label, window: tuple, mask: np.ndarray) -> None:
+        """Want a building to have some nodes: an old one those that it keeps, and others that are added."""
+        self.wanted[window][mask] = self.labels.setdefault(label, len(self.labels) + 1)
+
+    def _add_parts(self) -> None:
+        """Find what the new outlines have and the map has not, and whose it is."""
+        is_added = _opened((self.new >= 0) & (self.old < 0), self.radius)
+        part = ndimage.label(is_added)[0]
+        pairs, number = np.unique(np.stack([part, self.new])[:, is_added], axis=1, return_inverse=True)
+        part[is_added] = number.ravel() + 1
+        parts = list(zip(ndimage.find_objects(part), pairs[1].tolist()))
+        size = np.bincount(part.ravel(), minlength=len(parts) + 1)[1:] * RULES.step**2
+        for number in np.argsort(-size, kind="stable")[: np.sum(size >= self.min_area)].tolist():
+            window, outline = parts[number]
+            kind, row = label = self._owner(outline, part == number + 1, size[number])
+            if kind == OLD:
+                if label not in self.labels:
+                    self._label(label, *self.own[row])
+                self.update.added[row] += size[number]
+            self._label(label, window, part[window] == number + 1)
+
+    def _owner(self, outline: int, mask: np.ndarray, size: float) -> Label:
+        """Return the building that a part of a new outline, with that size (m²), is of: one that it adjoins or its own.
+
+        A part that is as large as the old building that it adjoins is a building of its own.
+        """
+        update = self.update
+        if update.is_new[outline]:
+            return BUILT, outline
+        near, least = _within(mask, self.width / RULES.step), RULES.step**2
+        there = map_changes.UNCHANGED, map_changes.MOVED
+        may = [row for row in update.covered[outline] if update.status[row] in there]
+        may = [row for row in may if size < polygon_area(update.rings[row])]
+        new = [number for (kind, _), number in self.labels.items() if kind == BUILT]
+        # Areas next to the part: the length of the border times the width of a change.
+        old_side, row = max(((np.sum(self.old[near] == row) * least, row) for row in may), default=(0.0, -1))
+        new_side, number = max(((np.sum(self.wanted[near] == one) * least, one) for one in new), default=(0.0, 0))
+        # Walls of the map are known better than those that a survey has between roofs: a strip along one is the new
+        # building's beyond.
+        if new_side > old_side or (new_side and size < RULES.strip * old_side):
+            return list(self.labels)[number - 1]
+        return (OLD, row) if old_side else (BUILT, outline)
+
+    def _draw(self) -> None:
+        """Draw all buildings that have changed or are new, those that lie together at once."""
+        stays = [row for row in self.olds if self.update.status[row] != map_changes.GONE]
+        is_fixed = (self.wanted == 0) & np.isin(self.old, stays)
+        for kind, row in self.labels:
+            if kind == OLD:
+                window, mask = self.own[row]
+                is_fixed[window] &= ~mask
+        wanted = np.where(is_fixed, -1, self.wanted)
+        for numbers, window, is_own in self._together(wanted):
+            labels = [list(self.labels)[number - 1] for number in numbers]
+            kind, row = labels[0]
+            is_alone = kind == BUILT and not (is_own & (wanted[window] < 0)).any()
+            if len(labels) > 1 or not is_alone or (self.old[self.new == row] >= 0).any():
+                here = np.where(is_own | (wanted[window] <= 0), wanted[window], -1)
+                drawn = self._drawn(window, here, labels, stays)
+            else:
+                drawn = {numbers[0]: [self.update.outlines[row]]}
+            for number, label in zip(numbers, labels):
+                self._keep(label, drawn.get(number, []))
+
+    def _together(self, wanted: np.ndarray) -> Iterator[tuple[list[int], tuple, np.ndarray]]:
+        """Yield labels that are drawn together, the window around their nodes and which are near these, bool."""
+        area, count = ndimage.label(_within(wanted > 0, self.width / RULES.step))
+        there = np.unique(np.stack([area, wanted])[:, wanted > 0], axis=1)
+        n_groups, group = components(there[0], count + there[1], count + len(self.labels) + 1)
+        for number in np.unique(group[count + 1 :]).tolist() if n_groups else []:
+            near = (group == number)[area] & (area > 0)
+            window = ndimage.find_objects(near.astype(np.uint8))[0]
+            yield (np.flatnonzero(group[count + 1 :] == number) + 1).tolist(), window, near[window]
+
+    def _drawn(self, window: tuple, wanted: np.ndarray, whose: list[Label], stays: list[int]) -> dict[int, list]:
+        """Return the polygons of labels that lie together, along the walls of the map and of their new outlines."""
+        lattice, update = self.lattice.part(window), self.update
+        used = {row for kind, row in whose if kind == BUILT}
+        used |= {one for one in self.news if any((OLD, row) in whose for row in update.covered[one])}
+        changed = [row for kind, row in whose if kind == OLD]
+        around = np.array([[-self.width], [self.width]]) + lattice.positions[[0, -1]]
+        here = meeting_boxes(around[None], as_polygons([update.rings[row] for row in stays]).box)[1]
+        fixed = np.setdiff1d(np.array(stays, int)[here], changed).tolist()
+        old, kept = ([update.rings[row] for row in rows] for rows in (changed, fixed))
+        return draw_labels(lattice, wanted, old, kept, [update.outlines[row] for row in sorted(used)], self.width)
+
+    def _keep(self, label: Label, drawn: list) -> None:
+        """Take the polygons that were drawn of a building; an old one without any stays as it was."""
+        polygons = [rings for rings in drawn if polygon_area(rings) >= self.min_area]
+        self.update.drawn[label] = polygons
+        if label[0] == OLD:
+            self.update.status[label[1]] = map_changes.CHANGED if polygons else map_changes.DOUBTFUL
+
+
+def _within(mask: np.ndarray, reach: float) -> np.ndarray:
+    """Return the nodes (rows, columns), bool, within a distance (nodes) of a mask."""
+    return ndimage.distance_transform_edt(~mask) <= reach if mask.any() else mask
+
+
+def _opened(mask: np.ndarray, radius: float) -> np.ndarray:
+    """Return the parts of a mask that a disc of a radius (nodes) reaches within it."""
+    return _within(ndimage.distance_transform_edt(mask) > radius, radius)
