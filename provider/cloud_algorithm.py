@@ -18,13 +18,11 @@ from qgis.core import (
 
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.files import NOWHERE, check_readable, count_points, read_extent
-from ..algorithms.cloud.outputs import replacing
 from ..algorithms.report.page import with_coordinates
 from ..algorithms.run import Results
 from ..algorithms.stage import (
     CLOUD,
     REPORT,
-    FileContent,
     InputLayer,
     Layer,
     LayerFeatures,
@@ -43,7 +41,14 @@ from .crs_authority import crs_reader, text_of
 from .destinations import Made
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
-from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
+from .given import Given
+from .input_layers import (
+    find_input_layers,
+    input_layer_files,
+    input_layer_parameter,
+    read_input_layers,
+    refuse_elsewhere,
+)
 from .inputs import (
     CRS,
     INPUT,
@@ -61,13 +66,13 @@ from .inputs import (
     spacing_parameter,
     subject_of,
 )
-from .layer_outputs import UNWANTED, write_layer
+from .layer_outputs import write_layer
 from .memory import warn_if_memory_is_short
 from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_clouds
 from .outputs import all_in_place, check_targets, write_for_qgis
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
-from .run_log import RunLog, about_run, complete_page
+from .run_log import RunLog, about_run, write_page
 from .styles import cloud_style, layer_style, show_on_load
 from .text_files import write_text
 from .web import check_sizes, tell_sizes
@@ -139,7 +144,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Declare the parameters that are tunables."""
         raise NotImplementedError
 
-    def tunables(self, parameters: dict, context: QgsProcessingContext) -> dict[str, Any]:
+    def tunables(self, given: Given) -> dict[str, Any]:
         """Return the checked values of the tunables by their names."""
         raise NotImplementedError
 
@@ -182,7 +187,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
         """Check the parameters; raise a ValueError where a run can't succeed."""
-        self.job = self._job(parameters, context)
+        self.job = self._job(Given(self, parameters, context))
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the clouds, and the one that is given."""
@@ -191,33 +196,30 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         has_file = any(isinstance(made.declared, TextFile) for made in self.job.wanted)
         return [*systems, *self.job.systems, *names_of_crs(self.job.crs), *[WGS84] * has_file]
 
-    def _job(self, parameters: dict, context: QgsProcessingContext) -> Job:
+    def _job(self, given: Given) -> Job:
         """Return the checked parameters of a run; raise a ValueError where it can't succeed."""
         inputs = self.inputs
-        tunables = self.tunables(parameters, context)
-        wanted = [made for made in self.made if parameters.get(made.name) not in UNWANTED]
-        found = {one: find_input_layer(self, one, parameters, context) for one in inputs.layers}
-        given = [one.name for one, layer in found.items() if layer is not None]
-        given += [REFERENCE.lower()] * (parameters.get(REFERENCE) not in UNWANTED)
-        unmade = [made for made in wanted if made.only_with and not set(made.only_with) & set(given)]
-        wanted = [made for made in wanted if made not in unmade]
-        job = Job(tunables, wanted)
-        job.unmade = unmade
+        tunables = self.tunables(given)
+        wanted = [made for made in self.made if given.has(made.name)]
+        layers = find_input_layers(given, inputs.layers)
+        compared = {one.name for one in layers} | ({REFERENCE.lower()} if given.has(REFERENCE) else set())
+        job = Job(tunables, [made for made in wanted if not made.only_with or compared & set(made.only_with)])
+        job.unmade = [made for made in wanted if made not in job.wanted]
         # Others last as long as their layers.
-        job.systems = [layer.sourceCrs().authid() for one, layer in found.items() if one.read and layer is not None]
-        if inputs.clouds and (inputs.needs_cloud or parameters.get(INPUT) not in UNWANTED):
-            job.clouds = input_paths(self, inputs.several, parameters, context)
-            job.layer = name_of_layer(parameters.get(INPUT))
-        if inputs.compared is not None and (inputs.needs_reference or parameters.get(REFERENCE) not in UNWANTED):
-            job.reference = cloud_path(self, REFERENCE, parameters, context)
-        job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
+        job.systems = [layer.sourceCrs().authid() for one, layer in layers.items() if one.read]
+        if inputs.clouds and (inputs.needs_cloud or given.has(INPUT)):
+            job.clouds = input_paths(given, inputs.several)
+            job.layer = name_of_layer(given.parameters.get(INPUT))
+        if inputs.compared is not None and (inputs.needs_reference or given.has(REFERENCE)):
+            job.reference = cloud_path(given, REFERENCE)
+        job.crs = given_crs(given) if self.parameterDefinition(CRS) else job.crs
         if job.clouds:
             crs = read_extent(job.clouds[0], crs_reader(job.crs), NOWHERE)[2]
-            job.box = extent_box(self, crs.plane, parameters, context)
-            spacing = given_spacing(self, parameters, context)
+            job.box = extent_box(given, crs.plane)
+            spacing = given_spacing(given)
             job.spacing = spacing / crs.factors if spacing else None
-        read = [*files_read(job.paths), *input_layer_files(self, inputs.layers, parameters, context)]
-        check_targets(self.destinationParameterDefinitions(), parameters, read, job.clouds)
+        read = [*files_read(job.paths), *input_layer_files(given, layers)]
+        check_targets(self.destinationParameterDefinitions(), given.parameters, read, job.clouds)
         # A cloud that is classified anew may well be assessed by the classes that it had.
         if job.reference and (inputs.needs_reference or all(made.declared != CLOUD for made in self.made)):
             refuse_same(job.clouds, job.reference)
@@ -225,7 +227,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             check_readable(path, box=job.box)
         check_sizes(job.paths, job.box, job.spacing)
         if job.clouds:
-            refuse_elsewhere(self, inputs.layers, job.clouds, job.box, parameters, context)
+            refuse_elsewhere(layers, job.clouds, job.box, given.context)
         return job
 
     def processAlgorithm(  # noqa: N802
@@ -243,7 +245,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             if self.job.unmade:
                 titles = ", ".join(made.title for made in self.job.unmade)
                 monitor.inform(f"Not made, as what they compare with is not given: {titles}.")
-            read = self._read(parameters, context, monitor.part(0.0, self.shares[0]))
+            read = self._read(Given(self, parameters, context), monitor.part(0.0, self.shares[0]))
             results = self.compute(read, monitor.part(*self.shares))
             monitor.end_steps()
             if self.creates and results.cloud is not None:
@@ -251,7 +253,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             place = place_of_cloud(results.cloud) if results.cloud is not None else read.place
             if place is None:
                 raise ValueError(f"{self.displayName()} has neither a point cloud nor a layer; choose one.")
-            writer = _Writer(self, run.parameters, context, monitor.part(self.shares[1], 1.0), place)
+            writer = _Writer(Given(self, run.parameters, context), monitor.part(self.shares[1], 1.0), place)
             written = writer.write(self.job.wanted, results)
             written.update(writer.write_pages(self.job, results, log))
             monitor.end()
@@ -261,7 +263,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             return {**run.final(written), **numbers}
         return {}
 
-    def _read(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> Read:
+    def _read(self, given: Given, monitor: Monitor) -> Read:
         """Read clouds and layers."""
         job = self.job
         # Before reading: a process that runs out of memory is ended without a message.
@@ -271,14 +273,9 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         parts = [monitor.part(i / count, (i + 1) / count) for i in range(count)]
         clouds = read_clouds(job.paths, parts, job.crs, job.box, job.spacing)
         reference = clouds.pop() if job.reference else None
-        found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.inputs.layers}
-        given = {wanted: layer for wanted, layer in found.items() if layer is not None}
-        place = place_of_cloud(clouds[0]) if clouds else place_of_layers(given, monitor)
-        layers = {
-            input_layer.name: read_input_layer(input_layer, layer, place, context, monitor.part(1.0, 1.0))
-            for input_layer, layer in given.items()
-            if place is not None
-        }
+        found = find_input_layers(given, self.inputs.layers)
+        place = place_of_cloud(clouds[0]) if clouds else place_of_layers(found, monitor)
+        layers = read_input_layers(found, place, given.context, monitor.part(1.0, 1.0)) if place is not None else {}
         return Read(clouds, reference, layers, place)
 
 
@@ -286,9 +283,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 class _Writer:
     """Writes results in memory to where the user wants them."""
 
-    algorithm: CloudAlgorithm
-    parameters: dict
-    context: QgsProcessingContext
+    given: Given
     monitor: Monitor
     place: Place
 
@@ -304,28 +299,26 @@ class _Writer:
 
     def _write(self, made: Made, results: Results, monitor: Monitor) -> dict[str, str]:
         """Write one result; return where it is."""
-        algorithm, declared, parameters, context = self.algorithm, made.declared, self.parameters, self.context
+        declared = made.declared
         if isinstance(declared, Layer):
-            features = results.layers[made.key]
-            return write_layer(algorithm, made.name, declared, features, self.place, parameters, context, monitor)
+            return write_layer(self.given, made.name, declared, results.layers[made.key], self.place, monitor)
         if isinstance(declared, Raster):
             return self._write_raster(made.name, declared, results.rasters[made.key], monitor)
         if isinstance(declared, TextFile):
-            content: FileContent = results.files[made.key]
-            return write_text(algorithm, declared, content, self.place, parameters, context, monitor)
+            return write_text(self.given, declared, results.files[made.key], self.place, monitor)
         cloud = results.cloud if made.key == CLOUD else results.clouds[made.key]
         return self._write_cloud(made, cloud, monitor) if cloud is not None else {}
 
     def _write_cloud(self, made: Made, cloud: Cloud, monitor: Monitor) -> dict[str, str]:
-        target = self.algorithm.parameterAsOutputLayer(self.parameters, made.name, self.context)
-        shown = write_for_qgis(cloud, target, self.context, monitor)
-        show_on_load(self.context, shown, "Cloud", cloud_style(made.stage, cloud), crs=cloud.crs.plane)
+        target = self.given.read("OutputLayer", made.name)
+        shown = write_for_qgis(cloud, target, self.given.context, monitor)
+        show_on_load(self.given.context, shown, "Cloud", cloud_style(made.stage, cloud), crs=cloud.crs.plane)
         return {made.name: target}
 
     def _write_raster(self, name: str, raster: Raster, surface: RasterSurface, monitor: Monitor) -> dict[str, str]:
-        target = self.algorithm.parameterAsOutputLayer(self.parameters, name, self.context)
+        target = self.given.read("OutputLayer", name)
         write_raster(raster, surface, self.place, Path(target), monitor)
-        show_on_load(self.context, target, "Raster", layer_style(raster))
+        show_on_load(self.given.context, target, "Raster", layer_style(raster))
         return {name: target}
 
     def write_pages(self, job: Job, results: Results, log: RunLog) -> dict[str, str]:
@@ -335,10 +328,7 @@ class _Writer:
             report: Optional[Report] = results.reports.get(made.key)
             if report is None:
                 continue
-            target = self.algorithm.parameterAsFileOutput(self.parameters, made.name, self.context)
-            with replacing(Path(target)) as stream:
-                stream.write(with_coordinates(report.html, self.place.to_map).encode())
-            rows = about_run(self.algorithm.displayName(), job.paths, job.points, text_of(self.place.crs))
-            complete_page(Path(target), rows, log.steps)
-            written[made.name] = target
+            written[made.name] = target = self.given.read("FileOutput", made.name)
+            rows = about_run(self.given.algorithm.displayName(), job.paths, job.points, text_of(self.place.crs))
+            write_page(target, with_coordinates(report.html, self.place.to_map), rows, log.steps)
         return written

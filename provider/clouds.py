@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Callable, Optional
 
@@ -10,7 +11,6 @@ from qgis.core import (
     Qgis,
     QgsMapLayer,
     QgsPointCloudLayer,
-    QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingOutputLayerDefinition,
     QgsProcessingParameterDefinition,
@@ -23,6 +23,7 @@ from qgis.core import (
 
 from ..algorithms.cloud.files import named_files_of
 from ..algorithms.cloud.web_file import is_on_web
+from .given import Given
 from .web import web_file
 
 SUFFIXES = (".las", ".laz", ".vpc", ".json")
@@ -101,7 +102,7 @@ def files_read(clouds: Iterable[Path]) -> list[Path]:
     return [file for cloud in clouds for file in (cloud, *named_files_of(cloud))]
 
 
-def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Path:
+def cloud_path(given: Given, name: str) -> Path:
     """Return the file of the point cloud that a parameter gives as layer, layer id, layer name, source or path.
 
     Raises
@@ -109,42 +110,33 @@ def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, c
     ValueError
         If there is no such file or layer, or it is no point cloud with a file.
     """
-    title = algorithm.parameterDefinition(name).description()
-    value = _plain(algorithm, name, parameters.get(name), context)
+    value = _plain(given, name, given.parameters.get(name))
     if not value:
-        raise ValueError(f"{title} ({name}) is missing; choose a point cloud.")
-    return _path(title, name, value, context)
+        raise ValueError(f"{given.title(name)} ({name}) is missing; choose a point cloud.")
+    return _path(given, name, value)
 
 
-def cloud_paths(
-    algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
-) -> list[Path]:
+def cloud_paths(given: Given, name: str) -> list[Path]:
     """Return the files of the point clouds that a parameter gives, see :func:`cloud_path`; at least one."""
-    title, values = _several(algorithm, name, parameters, context)
+    values = _several(given, name)
     if not values:
-        raise ValueError(f"{title} ({name}) are missing; choose a point cloud.")
-    return [_path(title, name, value, context) for value in values]
+        raise ValueError(f"{given.title(name)} ({name}) are missing; choose a point cloud.")
+    return [_path(given, name, value) for value in values]
 
 
-def survey_paths(
-    algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
-) -> list[Path]:
+def survey_paths(given: Given, name: str) -> list[Path]:
     """Return the folders and the files of the point clouds that a parameter gives, see :func:`cloud_path`."""
-    title, values = _several(algorithm, name, parameters, context)
+    values = _several(given, name)
     if not values:
-        raise ValueError(f"{title} ({name}) is missing; choose a folder or files of points.")
-    return [
-        Path(value) if isinstance(value, str) and Path(value).is_dir() else _path(title, name, value, context)
-        for value in values
-    ]
+        raise ValueError(f"{given.title(name)} ({name}) is missing; choose a folder or files of points.")
+    folders = [value if isinstance(value, str) and Path(value).is_dir() else "" for value in values]
+    return [Path(folder) if folder else _path(given, name, value) for folder, value in zip(folders, values)]
 
 
-def _several(
-    algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
-) -> tuple[str, list]:
-    """Return the title of a parameter, and the layers and texts that it gives, without empty ones."""
-    values = [_plain(algorithm, name, value, context) for value in _flat(parameters.get(name))]
-    return algorithm.parameterDefinition(name).description(), [value for value in values if value]
+def _several(given: Given, name: str) -> list:
+    """Return the layers and texts that a parameter gives, without empty ones."""
+    values = [_plain(given, name, value) for value in _flat(given.parameters.get(name))]
+    return [value for value in values if value]
 
 
 def _flat(value: Any) -> list:
@@ -154,12 +146,15 @@ def _flat(value: Any) -> list:
     return [value]
 
 
-def _path(title: str, name: str, value: Any, context: QgsProcessingContext) -> Path:
+def _path(given: Given, name: str, value: Any) -> Path:
+    title = given.title(name)
     if isinstance(value, str) and Path(value).is_file():
         return _known(title, Path(value))
     if isinstance(value, str) and (on_web := web_file(value)):
         return _known(title, on_web)
-    layer = value if isinstance(value, QgsMapLayer) else QgsProcessingUtils.mapLayerFromString(value, context, False)
+    layer = (
+        value if isinstance(value, QgsMapLayer) else QgsProcessingUtils.mapLayerFromString(value, given.context, False)
+    )
     if layer is None:
         raise ValueError(f"{title} ({name}) must be a point cloud file or layer; nothing was found at {value}.")
     if not isinstance(layer, QgsPointCloudLayer):
@@ -200,12 +195,12 @@ def names_of(value: Any) -> Optional[list]:
     return [one if isinstance(one, str) else one.source() for one in values]
 
 
-def _plain(algorithm: QgsProcessingAlgorithm, name: str, value: Any, context: QgsProcessingContext) -> Any:
+def _plain(given: Given, name: str, value: Any) -> Any:
     """Return a parameter's value as a layer or text, whatever QGIS wrapped it in."""
     if isinstance(value, QgsProcessingOutputLayerDefinition):
         value = value.sink
     if isinstance(value, QgsProperty):
-        value = algorithm.parameterAsString({name: value}, name, context)
+        value = replace(given, parameters={name: value}).read("String", name)
     if value is not None and not isinstance(value, (str, QgsMapLayer)):
         value = None if hasattr(value, "isNull") and value.isNull() else str(value)
     return value

@@ -26,6 +26,7 @@ from .clouds import CloudsParameter, survey_paths
 from .crs import WGS84
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
+from .given import Given
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
 from .outputs import target_path
 from .surveys import VPC, check_vpc, write_survey
@@ -63,12 +64,12 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
         """Find the files of the survey, and refuse invalid input before the run."""
-        given = survey_paths(self, INPUT, parameters, context)
-        check_vpc(target_path(parameters.get(OUTPUT)), given)
-        self.given, self.files = given, files_of_survey(given)
-        self.plane = crs_of_survey(given).plane
-        self.extent = extent_box(self, self.plane, parameters, context)
-        check_sizes(given, self.extent)
+        given = Given(self, parameters, context)
+        self.paths = survey_paths(given, INPUT)
+        check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
+        self.files, self.plane = files_of_survey(self.paths), crs_of_survey(self.paths).plane
+        self.extent = extent_box(given, self.plane)
+        check_sizes(self.paths, self.extent)
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the survey and of its virtual point cloud."""
@@ -84,7 +85,7 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         compressed = self.parameterAsBool(parameters, COMPRESSED, context)
         monitor = FeedbackMonitor(feedback)
         with as_processing_errors(feedback, f"Cancelled; tiles that were complete are in {folder}."):
-            survey = open_survey(self.given, monitor=monitor, extent=self.extent)
+            survey = open_survey(self.paths, monitor=monitor, extent=self.extent)
             stem = self.files[0].name.split(".")[0] if len(self.files) == 1 else "tile"
             tiles = cut_into_tiles(survey, side, folder, stem, compressed, monitor)
             vpc = write_survey(survey, tiles, folder, context, monitor)

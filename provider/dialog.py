@@ -25,6 +25,7 @@ from ..algorithms.cloud.files import dimension_names
 from ..algorithms.presets import Preset, presets_of
 from ..algorithms.stage import DIMENSION
 from .clouds import cloud_path
+from .given import Given
 from .inputs import INPUT
 from .pickers import Picker, fill_with_classes, fill_with_names
 from .sections import Section, sections_of
@@ -182,8 +183,8 @@ class GroupedPanel(ParametersPanel):
     def _fill_with_dimensions(self, menu: QMenu, field: QLineEdit) -> None:
         """Fill a menu with the dimensions of the cloud that is chosen."""
         try:
-            given = {INPUT: self.wrappers[INPUT].parameterValue()}
-            names = dimension_names(cloud_path(self.algorithm(), INPUT, given, self.processing_context))
+            parameters = {INPUT: self.wrappers[INPUT].parameterValue()}
+            names = dimension_names(cloud_path(Given(self.algorithm(), parameters, self.processing_context), INPUT))
         except (KeyError, ValueError):
             names = []
         fill_with_names(names, menu, field)

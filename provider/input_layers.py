@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Callable, Optional
 
@@ -14,7 +15,6 @@ from qgis.core import (
     QgsCsException,
     QgsFeatureRequest,
     QgsGeometry,
-    QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeatureSource,
     QgsProcessingParameterDefinition,
@@ -31,6 +31,7 @@ from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime
 from ..algorithms.cloud.files import read_extent
 from ..algorithms.stage import InputLayer, Layer, LayerFeatures, Monitor
 from .crs import crs_of, crs_of_layer
+from .given import Given
 from .places import Place, refuse_degrees
 from .vectors import SOURCE_TYPES, WKB, fields_of, qgis_features
 
@@ -68,9 +69,7 @@ def input_layer_parameter(input_layer: InputLayer) -> QgsProcessingParameterDefi
     return definition
 
 
-def find_input_layer(
-    algorithm: QgsProcessingAlgorithm, input_layer: InputLayer, parameters: dict, context: QgsProcessingContext
-) -> Optional[QgsProcessingFeatureSource]:
+def find_input_layer(given: Given, input_layer: InputLayer) -> Optional[QgsProcessingFeatureSource]:
     """Return the layer that a parameter gives; None where an optional one is not given.
 
     Raises
@@ -79,14 +78,14 @@ def find_input_layer(
         If it is missing, or no vector layer, or of another kind of geometry.
     """
     name = input_layer_name(input_layer)
-    value = parameters.get(name)
+    value = given.parameters.get(name)
     if QgsVariantUtils.isNull(value) or value == "":
         if input_layer.optional:
             return None
         raise ValueError(f"{input_layer.title} ({name}) is missing; choose a layer of {input_layer.objects}.")
     if input_layer.read is not None:
-        return _read_file(algorithm, input_layer, Path(algorithm.parameterAsFile(parameters, name, context)), context)
-    found = algorithm.parameterAsSource(parameters, name, context)
+        return _read_file(given, input_layer, Path(given.read("File", name)))
+    found = given.read("Source", name)
     if found is None:
         raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; nothing was found at {value}.")
     kind = QgsWkbTypes.geometryType(found.wkbType())
@@ -100,9 +99,7 @@ def find_input_layer(
     return found
 
 
-def _read_file(
-    algorithm: QgsProcessingAlgorithm, input_layer: InputLayer, path: Path, context: QgsProcessingContext
-) -> QgsProcessingFeatureSource:
+def _read_file(given: Given, input_layer: InputLayer, path: Path) -> QgsProcessingFeatureSource:
     """Return a layer in memory with the features of a file."""
     name = input_layer_name(input_layer)
     if not path.is_file():
@@ -118,38 +115,34 @@ def _read_file(
     layer.updateFields()
     layer.dataProvider().addFeatures(list(qgis_features(declared, features, np.asarray)))
     layer.updateExtents()
-    source = algorithm.parameterAsSource({name: layer}, name, context)
+    source = replace(given, parameters={name: layer}).read("Source", name)
     source.layer = layer  # which lasts as long as its source
     return source
 
 
-def input_layer_files(
-    algorithm: QgsProcessingAlgorithm,
-    input_layers: Iterable[InputLayer],
-    parameters: dict,
-    context: QgsProcessingContext,
-) -> list[Path]:
-    """Return the files of the layers that an algorithm reads, if they have one; refuse as :func:`find_input_layer`."""
+def find_input_layers(given: Given, wanted: Iterable[InputLayer]) -> dict[InputLayer, QgsProcessingFeatureSource]:
+    """Return the layers that are given, see :func:`find_input_layer`."""
+    found = {input_layer: find_input_layer(given, input_layer) for input_layer in wanted}
+    return {input_layer: layer for input_layer, layer in found.items() if layer is not None}
+
+
+def input_layer_files(given: Given, found: Iterable[InputLayer]) -> list[Path]:
+    """Return the files of the layers that were found, if they have one."""
     files = []
-    for input_layer in input_layers:
+    for input_layer in found:
+        name = input_layer_name(input_layer)
         if input_layer.read is not None:
-            files.append(Path(algorithm.parameterAsFile(parameters, input_layer_name(input_layer), context)))
-            continue
-        if find_input_layer(algorithm, input_layer, parameters, context) is None:
-            continue
-        layer = algorithm.parameterAsVectorLayer(parameters, input_layer_name(input_layer), context)
-        if layer is not None:
+            files.append(Path(given.read("File", name)))
+        elif (layer := given.read("VectorLayer", name)) is not None:
             uri = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
             files.append(Path(uri.get("path") or ""))
     return [path for path in files if path.is_file()]
 
 
 def refuse_elsewhere(
-    algorithm: QgsProcessingAlgorithm,
-    input_layers: Iterable[InputLayer],
+    layers: dict[InputLayer, QgsProcessingFeatureSource],
     clouds: Sequence[Path],
     box: Optional[np.ndarray],
-    parameters: dict,
     context: QgsProcessingContext,
 ) -> None:
     """Refuse layers that lie wholly outside of the clouds, before any work; of tiles on the web those in a box count.
@@ -159,11 +152,7 @@ def refuse_elsewhere(
     ValueError
         If a layer doesn't touch the bounding box of a single cloud.
     """
-    found = {input_layer: find_input_layer(algorithm, input_layer, parameters, context) for input_layer in input_layers}
-    layers = {input_layer: layer for input_layer, layer in found.items() if layer is not None}
-    if not layers:
-        return
-    boxes = [_plan_box(cloud, box) for cloud in clouds]
+    boxes = [_plan_box(cloud, box) for cloud in clouds] if layers else []
     for input_layer, layer in layers.items():
         extent = layer.sourceExtent()
         cloud_boxes = [_brought_to(input_layer, layer, box, crs, context) for box, crs in boxes]
@@ -205,6 +194,13 @@ def _brought_to(
 def _range(box: QgsRectangle) -> str:
     """Return the coordinates of a box as text for users."""
     return f"x {box.xMinimum():.7g} to {box.xMaximum():.7g}, y {box.yMinimum():.7g} to {box.yMaximum():.7g}"
+
+
+def read_input_layers(
+    found: dict[InputLayer, QgsProcessingFeatureSource], place: Place, context: QgsProcessingContext, monitor: Monitor
+) -> dict[str, LayerFeatures]:
+    """Return layers by their names, see :func:`read_input_layer`."""
+    return {one.name: read_input_layer(one, layer, place, context, monitor) for one, layer in found.items()}
 
 
 def read_input_layer(

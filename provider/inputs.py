@@ -11,8 +11,6 @@ from qgis.core import (
     Qgis,
     QgsCoordinateReferenceSystem,
     QgsMapLayer,
-    QgsProcessingAlgorithm,
-    QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
@@ -27,6 +25,7 @@ from ..algorithms.tiling.settings import READ_SETTINGS, Setting
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
 from .feedback import is_step
+from .given import Given
 from .parameters import is_given
 from .styles import subject_of_file
 
@@ -73,13 +72,9 @@ def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:
     return with_help(definition, f"File or layer. {stage.reference}")
 
 
-def input_paths(
-    algorithm: QgsProcessingAlgorithm, several: bool, parameters: dict, context: QgsProcessingContext
-) -> list[Path]:
+def input_paths(given: Given, several: bool) -> list[Path]:
     """Return the file of the cloud, or the files of the clouds, that an algorithm works on."""
-    if several:
-        return cloud_paths(algorithm, INPUTS, parameters, context)
-    return [cloud_path(algorithm, INPUT, parameters, context)]
+    return cloud_paths(given, INPUTS) if several else [cloud_path(given, INPUT)]
 
 
 def extent_parameter() -> QgsProcessingParameterDefinition:
@@ -103,9 +98,7 @@ def crs_parameter(default: Optional[str] = None) -> QgsProcessingParameterDefini
     return with_help(definition, "Of the simulated cloud." if default else of_clouds)
 
 
-def given_crs(
-    algorithm: QgsProcessingAlgorithm, parameters: dict, context: QgsProcessingContext
-) -> QgsCoordinateReferenceSystem:
+def given_crs(given: Given) -> QgsCoordinateReferenceSystem:
     """Return the coordinate reference system that a user gives for clouds that name none; an invalid one if not given.
 
     Raises
@@ -113,10 +106,10 @@ def given_crs(
     ValueError
         If coordinates of it are degrees, or it is unknown.
     """
-    raw = parameters.get(CRS)
-    crs = algorithm.parameterAsCrs(parameters, CRS, context)
+    raw = given.parameters.get(CRS)
+    crs = given.read("Crs", CRS)
     if not crs.isValid():
-        if raw not in (None, "") and not (isinstance(raw, QgsCoordinateReferenceSystem) or hasattr(raw, "isNull")):
+        if given.has(CRS) and not (isinstance(raw, QgsCoordinateReferenceSystem) or hasattr(raw, "isNull")):
             raise ValueError(f"{raw!r} ({CRS}) is no coordinate reference system; give it as EPSG:code.")
         return crs
     if crs.isGeographic():
@@ -127,9 +120,7 @@ def given_crs(
     return crs
 
 
-def extent_box(
-    algorithm: QgsProcessingAlgorithm, plane: str, parameters: dict, context: QgsProcessingContext
-) -> Optional[np.ndarray]:
+def extent_box(given: Given, plane: str) -> Optional[np.ndarray]:
     """Return the extent that a user gives, (2, 2) in the CRS ``plane`` of a cloud; None where none is given.
 
     An extent in another coordinate reference system becomes the box around it.
@@ -139,15 +130,15 @@ def extent_box(
     ValueError
         If the text is not an extent.
     """
-    if parameters.get(EXTENT) in (None, ""):
+    if not given.has(EXTENT):
         return None
-    rectangle = algorithm.parameterAsExtent(parameters, EXTENT, context, crs_of(plane))
+    rectangle = given.read("Extent", EXTENT, crs_of(plane))
     if rectangle.isNull() or not rectangle.isFinite():
-        raise ValueError(f"{parameters[EXTENT]!r} is not an extent; give it as xmin,xmax,ymin,ymax.")
+        raise ValueError(f"{given.parameters[EXTENT]!r} is not an extent; give it as xmin,xmax,ymin,ymax.")
     return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])
 
 
-def given_spacing(algorithm: QgsProcessingAlgorithm, parameters: dict, context: QgsProcessingContext) -> float:
+def given_spacing(given: Given) -> float:
     """Return the spacing (m) of the points that a user gives, 0 where all points are read.
 
     Raises
@@ -155,12 +146,13 @@ def given_spacing(algorithm: QgsProcessingAlgorithm, parameters: dict, context: 
     ValueError
         If it is no number within the bounds.
     """
-    if not is_given(parameters.get(SPACING)):
+    raw = given.parameters.get(SPACING)
+    if not is_given(raw):
         return 0.0
-    spacing = algorithm.parameterAsDouble(parameters, SPACING, context)
+    spacing = given.read("Double", SPACING)
     if not SPACINGS[0] <= spacing <= SPACINGS[1]:
         low, high = SPACINGS
-        raise ValueError(f"{parameters[SPACING]!r} ({SPACING}) is no spacing; give meters from {low:g} to {high:g}.")
+        raise ValueError(f"{raw!r} ({SPACING}) is no spacing; give meters from {low:g} to {high:g}.")
     return spacing
 
 

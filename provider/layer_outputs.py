@@ -8,20 +8,16 @@ from pathlib import Path
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeatureSink,
-    QgsProcessingAlgorithm,
-    QgsProcessingContext,
     QgsProcessingException,
 )
 
 from ..algorithms.stage import Layer, LayerFeatures, Monitor
 from .crs import crs_of
+from .given import Given
 from .outputs import target_path, through_memory
 from .places import Place
 from .styles import layer_style, show_on_load, store_styles, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
-
-# Values of an optional output that is not wanted: None where it is left out, "" where the command line gives none.
-UNWANTED = (None, "")
 
 # Formats that name systems by a code only.
 _BY_CODE = (".geojson", ".json")
@@ -35,16 +31,7 @@ GPKG = ".gpkg"
 BETWEEN_CHECKS = 1000
 
 
-def write_layer(
-    algorithm: QgsProcessingAlgorithm,
-    name: str,
-    layer: Layer,
-    features: LayerFeatures,
-    place: Place,
-    parameters: dict,
-    context: QgsProcessingContext,
-    monitor: Monitor,
-) -> dict:
+def write_layer(given: Given, name: str, layer: Layer, features: LayerFeatures, place: Place, monitor: Monitor) -> dict:
     """Write a layer, if it is wanted, to the output ``name``; return it by that name.
 
     Features are in meters from the origin of the frame ``place``.
@@ -54,19 +41,19 @@ def write_layer(
     ValueError, QgsProcessingException
         If it can't be written.
     """
-    if parameters.get(name) in UNWANTED:
+    if not given.has(name):
         return {}
     monitor.resolved(**{layer.name: len(features)})
-    path = target_path(parameters[name])
+    path = target_path(given.parameters[name])
     place = replace(place, crs=_crs_in_file(path.name.lower() if path else "", place.crs, monitor))
-    with through_memory(parameters, name, context) as (redirected, final):
-        target = _fill_sink(algorithm, name, layer, features, place, redirected, context, monitor)
+    with through_memory(given.parameters, name, given.context) as (redirected, final):
+        target = _fill_sink(replace(given, parameters=redirected), name, layer, features, place, monitor)
         if Path(target.split("|")[0]).suffix.lower() == GPKG:
             store_styles(target, layer_style(layer), layer.fields)
     target = final(target)
-    show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
+    show_on_load(given.context, target, layer.geometry, layer_style(layer), layer.fields)
     if not len(features):
-        switch_off(context, [target])
+        switch_off(given.context, [target])
         if layer.on_demand:
             monitor.warn(f"{layer.title} has no features; {layer.on_demand}.")
     return {name: target}
@@ -85,22 +72,11 @@ def _crs_in_file(file: str, crs: QgsCoordinateReferenceSystem, monitor: Monitor)
     return crs
 
 
-def _fill_sink(
-    algorithm: QgsProcessingAlgorithm,
-    name: str,
-    layer: Layer,
-    features: LayerFeatures,
-    place: Place,
-    parameters: dict,
-    context: QgsProcessingContext,
-    monitor: Monitor,
-) -> str:
+def _fill_sink(given: Given, name: str, layer: Layer, features: LayerFeatures, place: Place, monitor: Monitor) -> str:
     """Write the features of a layer where the parameter ``name`` says; return where that is."""
-    sink, target = algorithm.parameterAsSink(
-        parameters, name, context, fields_of(layer, features), wkb_type(layer, features), place.crs
-    )
+    sink, target = given.read("Sink", name, fields_of(layer, features), wkb_type(layer, features), place.crs)
     if sink is None:
-        raise QgsProcessingException(algorithm.invalidSinkError(parameters, name))
+        raise QgsProcessingException(given.algorithm.invalidSinkError(given.parameters, name))
     try:
         for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
             if row % BETWEEN_CHECKS == 0:

@@ -25,6 +25,7 @@ from ..algorithms.cloud.web_file import is_on_web
 from . import PROVIDER_ID
 from .clouds import cloud_path, file_of_layer
 from .crs_authority import crs_reader
+from .given import Given
 from .inputs import EXTENT, INPUT, extent_box
 from .paths import GROUP_ICONS, ICON, PLUGIN
 from .questions import is_answered_yes
@@ -148,11 +149,12 @@ def _size_of_view(parameters: dict[str, Any]) -> Optional[Size]:
     """Return how much of the cloud on the web lies in the view, None of one on this computer."""
     algorithm, context = QgsApplication.processingRegistry().createAlgorithmById(DETECT), QgsProcessingContext()
     context.setProject(QgsProject.instance())
-    path = cloud_path(algorithm, INPUT, parameters, context)
+    given = Given(algorithm, parameters, context)
+    path = cloud_path(given, INPUT)
     if not is_on_web(path):
         return None
     plane = read_extent(path, crs_reader(QgsCoordinateReferenceSystem()), NOWHERE)[2].plane
-    return size_on_web([path], extent_box(algorithm, plane, parameters, context))
+    return size_on_web([path], extent_box(given, plane))
 
 
 def view_parameters(iface: Any) -> dict[str, Any]:

@@ -7,8 +7,6 @@ from typing import Any, Optional
 
 from qgis.core import (
     Qgis,
-    QgsProcessingAlgorithm,
-    QgsProcessingContext,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterEnum,
@@ -17,6 +15,7 @@ from qgis.core import (
 )
 
 from ..algorithms.stage import Stage, Tunable
+from .given import Given
 
 _NUMBERS = {float: Qgis.ProcessingNumberParameterType.Double, int: Qgis.ProcessingNumberParameterType.Integer}
 
@@ -129,14 +128,9 @@ def number_outputs(stage: Stage) -> dict[str, str]:
 
 
 def tunable_values(
-    algorithm: QgsProcessingAlgorithm,
-    stage: Stage,
-    parameters: dict,
-    context: QgsProcessingContext,
-    named: Optional[dict[str, str]] = None,
-    defaults: Optional[dict[str, Any]] = None,
+    given: Given, stage: Stage, named: Optional[dict[str, str]] = None, defaults: Optional[dict[str, Any]] = None
 ) -> dict[str, Any]:
-    """Return the values of a stage's tunables in ``parameters``, checked.
+    """Return the values of a stage's tunables, checked.
 
     ``named`` gives other parameters' names; ``defaults`` are those of a step, which take the place of the stage's own.
 
@@ -146,16 +140,11 @@ def tunable_values(
         In the words of the core, when a value is of the wrong kind or out of bounds; it names the parameter.
     """
     names = named or {name: parameter_name(tunable) for name, tunable in stage.tunables.items()}
-    defaults = {name: tunable.default for name, tunable in stage.tunables.items()} | (defaults or {})
-    return {
-        name: tunable.check(
-            _value(algorithm, tunable, names[name], parameters, context)
-            if is_given(parameters.get(names[name]))
-            else defaults[name],
-            names[name],
-        )
-        for name, tunable in stage.tunables.items()
-    }
+    values = {name: tunable.default for name, tunable in stage.tunables.items()} | (defaults or {})
+    for name, tunable in stage.tunables.items():
+        if is_given(given.parameters.get(names[name])):
+            values[name] = _value(given, tunable, names[name])
+    return {name: tunable.check(values[name], names[name]) for name, tunable in stage.tunables.items()}
 
 
 def is_given(raw: Any) -> bool:
@@ -163,18 +152,14 @@ def is_given(raw: Any) -> bool:
     return not (raw is None or raw == "" or (hasattr(raw, "isNull") and raw.isNull()))
 
 
-def _value(
-    algorithm: QgsProcessingAlgorithm, tunable: Tunable, name: str, parameters: dict, context: QgsProcessingContext
-) -> Any:
-    raw = parameters[name]
+def _value(given: Given, tunable: Tunable, name: str) -> Any:
+    raw = given.parameters[name]
     if tunable.type is tuple:
-        words = (
-            raw if isinstance(raw, (list, tuple)) else algorithm.parameterAsString(parameters, name, context).split(",")
-        )
+        words = raw if isinstance(raw, (list, tuple)) else given.read("String", name).split(",")
         return tuple(str(word).strip() for word in words if str(word).strip())
     if tunable.type is bool:
-        return algorithm.parameterAsBool(parameters, name, context)
-    text = str(raw) if isinstance(raw, (int, float)) else algorithm.parameterAsString(parameters, name, context)
+        return given.read("Bool", name)
+    text = str(raw) if isinstance(raw, (int, float)) else given.read("String", name)
     return text if tunable.type is str else _number_of(text)
 
 

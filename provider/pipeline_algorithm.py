@@ -14,6 +14,7 @@ from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, TextFile
 from .cloud_algorithm import CloudAlgorithm, Inputs, Read
 from .destinations import Made
 from .feedback import ChainMonitor
+from .given import Given
 from .models import output_label, output_title, pipeline_parameters
 from .parameters import automatic_numbers, number_outputs, tunable_values, used_name
 from .run_log import RunLog
@@ -72,9 +73,9 @@ class PipelineAlgorithm(CloudAlgorithm):
         for definition in pipeline_parameters(self.pipeline).values():
             self.addParameter(definition)
 
-    def tunables(self, parameters: dict, context: QgsProcessingContext) -> dict[str, Any]:
+    def tunables(self, given: Given) -> dict[str, Any]:
         """Return the checked values of the parameters of all steps by their names."""
-        return pipeline_tunables(self, self.pipeline, parameters, context)
+        return pipeline_tunables(given, self.pipeline)
 
     def number_titles(self) -> dict[str, str]:
         """Return the titles of the numbers of all steps (used values, measures) by name."""
@@ -129,16 +130,14 @@ class PipelineAlgorithm(CloudAlgorithm):
         return results
 
 
-def pipeline_tunables(
-    algorithm: Any, pipeline: Pipeline, parameters: dict, context: QgsProcessingContext
-) -> dict[str, Any]:
+def pipeline_tunables(given: Given, pipeline: Pipeline) -> dict[str, Any]:
     """Return the checked values of a composite's parameters by its own names."""
     values = {}
     for step in pipeline.steps:
         named = {name: pipeline.parameter(step, name) for name in step.stage.tunables}
         shown = {name: composite.upper() for name, composite in named.items()}
-        given = tunable_values(algorithm, step.stage, parameters, context, shown, step.tunables)
-        values.update({named[name]: value for name, value in given.items()})
+        of_step = tunable_values(given, step.stage, shown, step.tunables)
+        values.update({named[name]: value for name, value in of_step.items()})
     return values
 
 

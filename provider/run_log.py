@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..algorithms.cloud.header import SOFTWARE
+from ..algorithms.cloud.outputs import replacing
 from ..algorithms.report.page import Row, with_run
 from ..algorithms.report.run_facts import StepFacts, draw_facts, draw_steps
 from ..algorithms.stage import Stage, Tunable
@@ -117,10 +118,10 @@ def about_run(title: str, inputs: Sequence[Path], points: int, plane: str) -> li
     return [*rows, Row("Made by", f"{SOFTWARE} {plugin_version()}", title)]
 
 
-def complete_page(path: Path, rows: Iterable[Row], steps: Iterable[StepFacts], of_seconds: str = "") -> None:
-    """Add to a page in a working folder the facts about its run, and the steps with their parameters.
+def write_page(target: str, page: str, rows: Iterable[Row], steps: Iterable[StepFacts], of_seconds: str = "") -> None:
+    """Write a page with the facts about its run, and the steps with their parameters.
 
     ``of_seconds`` says what the seconds of the steps are of.
     """
-    page = path.read_text(encoding="utf-8")
-    path.write_text(with_run(page, draw_facts(rows), draw_steps(steps, of_seconds)), encoding="utf-8")
+    with replacing(Path(target)) as stream:
+        stream.write(with_run(page, draw_facts(rows), draw_steps(steps, of_seconds)).encode())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from qgis.core import QgsProcessingContext, QgsProcessingFeedback
+from qgis.core import QgsProcessingFeedback
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.help import stage_help
@@ -16,7 +16,8 @@ from .cloud_algorithm import CloudAlgorithm, Inputs, Read
 from .crs_authority import crs_reader
 from .destinations import Made
 from .feedback import FeedbackMonitor, announce
-from .input_layers import find_input_layer, read_input_layer
+from .given import Given
+from .input_layers import find_input_layers, read_input_layers
 from .inputs import cloud_title
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .run_log import RunLog
@@ -53,9 +54,9 @@ class StageAlgorithm(CloudAlgorithm):
         for tunable in self.stage.tunables.values():
             self.addParameter(parameter(tunable))
 
-    def tunables(self, parameters: dict, context: QgsProcessingContext) -> dict[str, Any]:
+    def tunables(self, given: Given) -> dict[str, Any]:
         """Return the checked values of the tunables by their names."""
-        return tunable_values(self, self.stage, parameters, context)
+        return tunable_values(given, self.stage)
 
     def number_titles(self) -> dict[str, str]:
         """Return the titles of the measures, and of what automatic tunables took, by name."""
@@ -67,16 +68,15 @@ class StageAlgorithm(CloudAlgorithm):
         log.begin(self.stage, self.job.tunables)
         return FeedbackMonitor(feedback, self.stage, self.job.tunables, log)
 
-    def _read(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> Read:
+    def _read(self, given: Given, monitor: Monitor) -> Read:
         """Read clouds and layers; of a large cloud the layer whose features are measured block by block."""
         job, stage = self.job, self.stage
         if not stage.each or job.points <= LARGEST:
-            return super()._read(parameters, context, monitor)
+            return super()._read(given, monitor)
         tell_sizes(job.paths, job.box, job.spacing, monitor)
         survey = open_survey(job.paths, crs_reader(job.crs), monitor, job.box, job.spacing)
-        (wanted,), place = stage.input_layers, place_of_survey(survey)
-        layer = read_input_layer(wanted, find_input_layer(self, wanted, parameters, context), place, context, monitor)
-        return Read([], None, {wanted.name: layer}, place, survey)
+        place, found = place_of_survey(survey), find_input_layers(given, stage.input_layers)
+        return Read([], None, read_input_layers(found, place, given.context, monitor), place, survey)
 
     def compute(self, read: Read, monitor: Monitor) -> Results:
         """Run the stage on what was read."""

@@ -6,16 +6,15 @@ from pathlib import Path
 
 from qgis.core import (
     QgsCsException,
-    QgsProcessingAlgorithm,
-    QgsProcessingContext,
     QgsProcessingParameterFileDestination,
 )
 
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.stage import FileContent, MapFrame, Monitor, TextFile
 from .crs import to_degrees
+from .given import Given
 from .inputs import with_help
-from .layer_outputs import BETWEEN_CHECKS, UNWANTED
+from .layer_outputs import BETWEEN_CHECKS
 from .places import Place
 
 
@@ -27,23 +26,14 @@ def file_parameter(file: TextFile) -> QgsProcessingParameterFileDestination:
     return with_help(definition, f"A file: {formats}, as its name ends.")
 
 
-def write_text(
-    algorithm: QgsProcessingAlgorithm,
-    file: TextFile,
-    content: FileContent,
-    place: Place,
-    parameters: dict,
-    context: QgsProcessingContext,
-    monitor: Monitor,
-) -> dict:
+def write_text(given: Given, file: TextFile, content: FileContent, place: Place, monitor: Monitor) -> dict:
     """Write a text file, if it is wanted; return its output."""
     name = file.name.upper()
-    wanted = parameters.get(name) not in UNWANTED
-    target = algorithm.parameterAsFileOutput(parameters, name, context) if wanted else ""
+    target = given.read("FileOutput", name) if given.has(name) else ""
     if not target:
         return {}
     path = Path(target)
-    frame = MapFrame(place.to_map, place.code, to_degrees(place.crs, context), path.name.split(".")[0])
+    frame = MapFrame(place.to_map, place.code, to_degrees(place.crs, given.context), path.name.split(".")[0])
     try:
         with replacing(path) as stream:
             for number, piece in enumerate(content.pieces(file.format_of(target), frame)):

@@ -10,6 +10,7 @@ from qgis.core import (
     Qgis,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
+    QgsProcessingFeatureSource,
     QgsProcessingFeedback,
     QgsProcessingOutputFile,
     QgsProcessingOutputNumber,
@@ -21,11 +22,11 @@ from qgis.core import (
     QgsProcessingUtils,
 )
 
-from ..algorithms.cloud.outputs import COPC, replacing, stem_of
+from ..algorithms.cloud.outputs import COPC, stem_of
 from ..algorithms.pipeline import CLOUD
 from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
-from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster, TextFile
+from ..algorithms.stage import FileContent, InputLayer, Layer, LayerFeatures, Raster, TextFile
 from ..algorithms.tiling.mosaics import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
@@ -43,7 +44,8 @@ from .declared import on_command_line
 from .destinations import Made
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
-from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer
+from .given import Given
+from .input_layers import find_input_layers, input_layer_files, input_layer_parameter, read_input_layers
 from .inputs import (
     INPUT,
     OUTPUT,
@@ -58,13 +60,13 @@ from .inputs import (
     with_help,
     with_setting,
 )
-from .layer_outputs import UNWANTED, write_layer
+from .layer_outputs import write_layer
 from .models import pipeline_parameters
 from .named_clouds import names_of_crs
 from .outputs import all_in_place, check_targets, target_path
 from .pipeline_algorithm import pipeline_tunables
 from .rasters import write_mosaic
-from .run_log import about_run, complete_page, parameter_rows
+from .run_log import about_run, parameter_rows, write_page
 from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, check_vpc, place_of_survey, write_survey
@@ -120,37 +122,25 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
         """Find out files, tunables and workers; refuse what can be refused before the run."""
-        self.paths = survey_paths(self, INPUT, parameters, context)
+        given = Given(self, parameters, context)
+        self.paths = survey_paths(given, INPUT)
         check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
         self.files = files_of_survey(self.paths)
-        self.tunables = pipeline_tunables(self, self.tiled.pipeline, parameters, context)
-        self.crs = given_crs(self, parameters, context)
+        self.tunables = pipeline_tunables(given, self.tiled.pipeline)
+        self.crs = given_crs(given)
         crs = crs_of_survey(self.paths, crs_reader(self.crs))
-        self.plane, spacing = crs.plane, given_spacing(self, parameters, context)
-        self.extent = extent_box(self, self.plane, parameters, context)
+        self.plane, spacing = crs.plane, given_spacing(given)
+        self.extent = extent_box(given, self.plane)
         self.spacing = spacing / crs.factors if spacing else None
         check_sizes(self.paths, self.extent, self.spacing)
-        self.workers = self._workers(parameters, context)
+        self.workers = _workers(given)
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
-        given = input_layer_files(self, self.tiled.pipeline.input_layers.values(), parameters, context)
-        check_targets(sinks, parameters, [*self.files, *given])
+        layers = input_layer_files(given, self._given_layers(given))
+        check_targets(sinks, parameters, [*self.files, *layers])
 
-    def _workers(self, parameters: dict, context: QgsProcessingContext) -> Workers:
-        """Return where blocks are worked on; refuse a scheduler or certificates that can't be used."""
-        processes = parameters.get(PROCESSES)
-        count = None if processes is None else self.parameterAsInt(parameters, PROCESSES, context)
-        scheduler = self.parameterAsString(parameters, SCHEDULER, context).strip()
-        check_scheduler(scheduler)
-        listed = self.parameterAsString(parameters, CERTIFICATES, context).split(";")
-        certificates = tuple(one.strip() for one in listed if one.strip())
-        if certificates and len(certificates) != 3:
-            raise ValueError(
-                f"The certificates must be three files (authority; certificate; key), got {len(certificates)}."
-            )
-        missing = [one for one in certificates if not Path(one).is_file()]
-        if missing:
-            raise ValueError(f"There is no certificate {missing[0]}; check the name.")
-        return Workers(count, scheduler, certificates)
+    def _given_layers(self, given: Given) -> dict[InputLayer, QgsProcessingFeatureSource]:
+        """Return the layers that the composite is given."""
+        return find_input_layers(given, self.tiled.pipeline.input_layers.values())
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the survey and of its virtual point cloud."""
@@ -170,9 +160,10 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         with as_processing_errors(feedback, cancelled):
             with all_in_place(sinks, parameters, context, self._subject(folder), self.displayName()) as run:
                 results: dict[str, Any] = {}
-                outcome = self._run(folder, run.parameters, context, monitor, results)
-                results.update(self._write_layers(outcome, run.parameters, context, monitor))
-                results.update(self._write_report(outcome, run.parameters, context))
+                given = Given(self, run.parameters, context)
+                outcome = self._run(folder, given, monitor, results)
+                results.update(self._write_layers(outcome, given, monitor))
+                results.update(self._write_report(outcome, given))
                 results[VPC] = str(write_survey(outcome.survey, outcome.tiles, folder, context, monitor))
                 results = run.final(results)
                 if self.shows and outcome.tiles:
@@ -207,29 +198,28 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         found = (style_of(stage.writes) for stage in reversed(makers))
         return next((style for style in found if style), None)
 
-    def _run(
-        self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor, results: dict
-    ) -> TilesOutcome:
+    def _run(self, folder: Path, given: Given, monitor: FeedbackMonitor, results: dict) -> TilesOutcome:
         """Run the survey, and write the rasters and text files that are wanted, which are added to the results."""
         tell_sizes(self.paths, self.extent, self.spacing, monitor)
-        side, wanted = parameters.get(BLOCK_SIDE), self._wanted(parameters)
+        side, wanted = given.parameters.get(BLOCK_SIDE), self._wanted(given)
         declared = {made.key: made.declared for made in self.made if made.key in wanted}
 
-        def find_layers(survey: Survey) -> dict[str, Optional[LayerFeatures]]:
-            return self._given_layers(survey, parameters, context, monitor)
+        def find_layers(survey: Survey) -> dict[str, LayerFeatures]:
+            part, place = monitor.part(_DONE, _DONE), place_of_survey(survey)
+            return read_input_layers(self._given_layers(given), place, given.context, part)
 
         def take_raster(survey: Survey, mosaic: RasterMosaic) -> None:
             raster, name = declared.get(mosaic.name), mosaic.name.upper()
             if isinstance(raster, Raster):
-                target = self.parameterAsOutputLayer(parameters, name, context)
+                target = given.read("OutputLayer", name)
                 write_mosaic(raster, mosaic, place_of_survey(survey), Path(target), monitor.part(_DONE, _DONE))
-                show_on_load(context, target, "Raster", layer_style(raster))
+                show_on_load(given.context, target, "Raster", layer_style(raster))
                 results[name] = target
 
         def take_file(survey: Survey, name: str, content: FileContent) -> None:
             part, place, file = monitor.part(_DONE, _DONE), place_of_survey(survey), declared.get(name)
             if isinstance(file, TextFile):
-                results.update(write_text(self, file, content, place, parameters, context, part))
+                results.update(write_text(given, file, content, place, part))
 
         return run_in_tiles(
             self.tiled.pipeline,
@@ -238,8 +228,8 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             monitor.part(0.0, _DONE),
             TilesOptions(
                 workers=self.workers,
-                block_side=None if side is None else self.parameterAsDouble(parameters, BLOCK_SIDE, context),
-                compressed=self.parameterAsBool(parameters, COMPRESSED, context),
+                block_side=None if side is None else given.read("Double", BLOCK_SIDE),
+                compressed=given.read("Bool", COMPRESSED),
                 read=crs_reader(self.crs),
                 extent=self.extent,
                 spacing=self.spacing,
@@ -252,35 +242,21 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             **self.tunables,
         )
 
-    def _wanted(self, parameters: dict) -> tuple[str, ...]:
+    def _wanted(self, given: Given) -> tuple[str, ...]:
         """Return the names of the outputs, other than the tiles, that the user wants."""
-        return tuple(made.key for made in self.made if parameters.get(made.name) not in UNWANTED)
+        return tuple(made.key for made in self.made if given.has(made.name))
 
-    def _given_layers(
-        self, survey: Survey, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
-    ) -> dict[str, Optional[LayerFeatures]]:
-        """Return the layers that the composite is given, in meters from the origin of the survey."""
-        place, layers = place_of_survey(survey), {}
-        for name, wanted in self.tiled.pipeline.input_layers.items():
-            found = find_input_layer(self, wanted, parameters, context)
-            part = monitor.part(_DONE, _DONE)
-            layers[name] = None if found is None else read_input_layer(wanted, found, place, context, part)
-        return layers
-
-    def _write_report(self, outcome: TilesOutcome, parameters: dict, context: QgsProcessingContext) -> dict:
+    def _write_report(self, outcome: TilesOutcome, given: Given) -> dict:
         """Write the page of numbers, if it is wanted; return its output."""
         report = outcome.reports.get(self.tiled.report.name) if self.tiled.report else None
-        if report is None or parameters.get(REPORT) in UNWANTED:
+        if report is None or not given.has(REPORT):
             return {}
-        target, place = self.parameterAsFileOutput(parameters, REPORT, context), place_of_survey(outcome.survey)
-        page = with_coordinates(report.html, place.to_map)
-        with replacing(Path(target)) as stream:
-            stream.write(page.encode())
+        target, place = given.read("FileOutput", REPORT), place_of_survey(outcome.survey)
         rows = about_run(self.displayName(), self.paths, outcome.points, self.plane)
         blocks = f"{outcome.blocks:,} of {outcome.side:g} m"
         rows.append(Row("Blocks", blocks, f"Tiles written: {len(outcome.tiles):,}. Sampling: {outcome.sampling}."))
-        steps = self._steps(outcome, self._wanted(parameters))
-        complete_page(Path(target), rows, steps, "In all processes together.")
+        steps, page = self._steps(outcome, self._wanted(given)), with_coordinates(report.html, place.to_map)
+        write_page(target, page, rows, steps, "In all processes together.")
         return {REPORT: target}
 
     def _steps(self, outcome: TilesOutcome, wanted: Collection[str]) -> list[StepFacts]:
@@ -295,18 +271,33 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             steps.append(StepFacts(step.stage.title, seconds, parameter_rows(step.stage, chosen, used)))
         return steps
 
-    def _write_layers(
-        self, outcome: TilesOutcome, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
-    ) -> dict:
+    def _write_layers(self, outcome: TilesOutcome, given: Given, monitor: FeedbackMonitor) -> dict:
         """Write the layers that are wanted; return their outputs."""
-        survey, results = outcome.survey, {}
-        place = place_of_survey(survey)
+        place, results = place_of_survey(outcome.survey), {}
         for made in self.made:
             features = outcome.layers.get(made.key)
             if isinstance(made.declared, Layer) and features is not None:
                 part = monitor.part(_DONE, _DONE)
-                results.update(write_layer(self, made.name, made.declared, features, place, parameters, context, part))
+                results.update(write_layer(given, made.name, made.declared, features, place, part))
         return results
+
+
+def _workers(given: Given) -> Workers:
+    """Return where blocks are worked on; refuse a scheduler or certificates that can't be used."""
+    processes = given.parameters.get(PROCESSES)
+    count = None if processes is None else given.read("Int", PROCESSES)
+    scheduler = given.read("String", SCHEDULER).strip()
+    check_scheduler(scheduler)
+    listed = given.read("String", CERTIFICATES).split(";")
+    certificates = tuple(one.strip() for one in listed if one.strip())
+    if certificates and len(certificates) != 3:
+        raise ValueError(
+            f"The certificates must be three files (authority; certificate; key), got {len(certificates)}."
+        )
+    missing = [one for one in certificates if not Path(one).is_file()]
+    if missing:
+        raise ValueError(f"There is no certificate {missing[0]}; check the name.")
+    return Workers(count, scheduler, certificates)
 
 
 def _made(tiled: TiledPipeline) -> list[Made]:

@@ -27,6 +27,7 @@ from lidar_buildings.algorithms.cloud.crs import NO_CRS
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import InputLayer, Monitor, Raster, RasterSurface
 from lidar_buildings.provider import cloud_algorithm, layer_outputs, rasters, stage_algorithm
+from lidar_buildings.provider.given import Given
 from lidar_buildings.provider.input_layers import find_input_layer, read_input_layer
 from lidar_buildings.provider.places import place_of_cloud
 from lidar_buildings.provider.styles import layer_style
@@ -612,4 +613,4 @@ def test_gdals_own_words_are_reported(town_file, tmp_path, monkeypatch):
 def test_what_is_given_as_nothing_is_missing(provider, context):
     input_layer = TOYS["toy_arrows"].input_layers[0]
     with pytest.raises(ValueError, match="Old map"):
-        find_input_layer(provider.algorithm("toyarrows").create(), input_layer, {}, context)
+        find_input_layer(Given(provider.algorithm("toyarrows").create(), {}, context), input_layer)

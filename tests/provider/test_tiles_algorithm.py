@@ -13,6 +13,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.algorithms.tiling.survey import files_of_survey
 from lidar_buildings.provider import schedulers
+from lidar_buildings.provider.given import Given
 from lidar_buildings.provider.pipeline_algorithm import pipeline_tunables
 from lidar_buildings.provider.settings import SCHEDULERS
 from lidar_buildings.tests.builders import roof
@@ -76,10 +77,10 @@ def test_what_is_not_set_is_what_the_steps_have(provider, context):
     ):
         algorithm = provider.algorithm(name).create()
         for empty in ({}, {parameter.upper(): None}):
-            given = pipeline_tunables(algorithm, algorithm.tiled.pipeline, empty, context)
+            given = pipeline_tunables(Given(algorithm, empty, context), algorithm.tiled.pipeline)
             assert given[parameter] == value
         pipeline = algorithm.tiled.pipeline
-        assert pipeline.by_step(pipeline_tunables(algorithm, pipeline, {}, context)) == [
+        assert pipeline.by_step(pipeline_tunables(Given(algorithm, {}, context), pipeline)) == [
             (step, {name: step.stage.check(of_step)[name] for name in step.stage.tunables})
             for step, of_step in pipeline.by_step({})
         ]

@@ -1,0 +1,32 @@
+"""What a user gives an algorithm, as its other modules ask for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from qgis.core import QgsProcessingAlgorithm, QgsProcessingContext
+
+# Values of an optional parameter that is not given: None where it is left out, "" where the command line gives none.
+_NOTHING = (None, "")
+
+
+@dataclass(frozen=True)
+class Given:
+    """The parameters of a run, with what QGIS reads them by."""
+
+    algorithm: QgsProcessingAlgorithm  #: Declares them
+    parameters: dict
+    context: QgsProcessingContext
+
+    def has(self, name: str) -> bool:
+        """Whether an input is given, or an output is wanted."""
+        return self.parameters.get(name) not in _NOTHING
+
+    def read(self, kind: str, name: str, *more: Any) -> Any:
+        """Return a parameter as QGIS reads it: as "Extent", say, by ``parameterAsExtent``, which may ask for more."""
+        return getattr(self.algorithm, f"parameterAs{kind}")(self.parameters, name, self.context, *more)
+
+    def title(self, name: str) -> str:
+        """Return what the dialog calls a parameter."""
+        return self.algorithm.parameterDefinition(name).description()
