@@ -47,5 +47,5 @@ def test_all_three_ways_to_give_a_constant_are_read(constants):
     page = constants.constants_page(PIPELINES["detect_buildings"])
     value = {constant: value for constant, value, *_ in rows(page)}
     assert value["refine_buildings._RULES.becomes"] == "0.65"
-    assert value["water_bodies._RULES.window"] == "5.0"
+    assert value["classify_water._RULES.window"] == "5.0"
     assert value["soft_shares._NEAR"] == "0.9"

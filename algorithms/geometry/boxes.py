@@ -9,7 +9,7 @@ from typing import Callable
 import numpy as np
 
 from ..stage import Monitor
-from .groups import components, run_starts
+from .groups import components, placed, run_starts
 
 # Point pairs compared at once: 130 bytes each, so 130 MB.
 _PAIRS_AT_ONCE = 1_000_000
@@ -218,6 +218,5 @@ def by_first_point(component: np.ndarray) -> np.ndarray:
     """Renumber components (n,) from 0 in the order of their first points, int32; negative numbers become -1."""
     number, first, inverse = np.unique(component, return_index=True, return_inverse=True)
     negative = int(np.searchsorted(number, 0))
-    rank = np.full(len(first), -1, np.int32)
-    rank[negative + np.argsort(first[negative:])] = np.arange(len(first) - negative, dtype=np.int32)
-    return rank[inverse]
+    order = negative + np.argsort(first[negative:])
+    return placed(np.arange(len(order), dtype=np.int32), order, len(first), -1)[inverse]

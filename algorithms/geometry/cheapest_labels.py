@@ -7,7 +7,7 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..packages import csgraph, sparse
-from .groups import run_starts
+from .groups import mask_of, run_starts
 
 # Steps per unit of cost in :func:`cheapest_cut` by default: the flow takes costs as whole numbers of 32 bits.
 _STEPS = 1000
@@ -103,9 +103,7 @@ def _takers(
     keeps = cheapest_cut(
         ends[0], ends[1], edge_cost, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, _STEPS_OF_LABELS
     )
-    takes = np.zeros(len(extra), bool)
-    takes[chosen[~keeps]] = True
-    return takes
+    return mask_of(len(extra), chosen[~keeps])
 
 
 def cheapest_cut(
@@ -150,8 +148,7 @@ def cheapest_cut(
     graph = sparse.csr_matrix((total, end.astype(np.int32), row_starts), (n + 2, n + 2))
     has_room = total > csgraph.maximum_flow(graph, source, sink).flow.data
     start, end = start[has_room], end[has_room]
-    inside = np.zeros(n + 2, bool)
-    inside[source] = True
+    inside = mask_of(n + 2, source)
     # All nodes that the source reaches over edges with capacity left.
     while (leads_on := inside[start] & ~inside[end]).any():
         inside[end[leads_on]] = True

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .boxes import Boxes, by_first_point, connected
+from .groups import placed
 
 
 def connect(xyz: np.ndarray, plan_distance: float, height_distance: float, monitor: Monitor) -> np.ndarray:
@@ -40,9 +41,7 @@ def connect(xyz: np.ndarray, plan_distance: float, height_distance: float, monit
     def is_near(offset: np.ndarray) -> np.ndarray:
         return (offset[:, 0] ** 2 + offset[:, 1] ** 2 < plan_distance**2) & (np.abs(offset[:, 2]) < height_distance)
 
-    component = np.empty(len(xyz), np.int64)
-    component[boxes.order] = connected(boxes, is_near, monitor)[boxes.box()]
-    return by_first_point(component)
+    return by_first_point(placed(connected(boxes, is_near, monitor)[boxes.box()], boxes.order, len(xyz)))
 
 
 def number_large(component: np.ndarray, min_points: float) -> np.ndarray:
@@ -54,6 +53,4 @@ def number_large(component: np.ndarray, min_points: float) -> np.ndarray:
     size = np.bincount(component[inside]) if inside.any() else np.zeros(0, np.int64)
     large = (size >= min_points) & (size > 0)
     number = np.where(large, np.cumsum(large), 0).astype(np.int32)
-    ids = np.zeros(len(component), np.int32)
-    ids[inside] = number[component[inside]]
-    return ids
+    return placed(number[component[inside]], inside, len(component))

@@ -19,7 +19,7 @@ from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 from .grid import find_cells, plan_box
-from .groups import components
+from .groups import components, mask_of
 
 # Most positions of a tile: each takes half the time that it takes among a hundred thousand.
 _TILE_POSITIONS = 3000
@@ -217,6 +217,5 @@ def _mended(part: Triangulation, rows: np.ndarray) -> Optional[Triangulation]:
 
 def _is_whole(mesh: Triangulation) -> bool:
     """Check by Euler's formula whether facets neither leave holes nor lie on one another."""
-    used = np.zeros(len(mesh.plan), bool)
-    used[mesh.facets] = True
+    used = mask_of(len(mesh.plan), mesh.facets)
     return len(mesh.facets) == 2 * int(used.sum()) - 2 - int((mesh.neighbors < 0).sum())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..packages import sparse
-from .groups import components
+from .groups import components, mask_of
 
 # A cell of a raster and the eight around it.
 EIGHT = np.ones((3, 3), bool)
@@ -134,8 +134,7 @@ def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     length = int(numbers.max()) - least + 1 if len(numbers) else 0
     if length > _TABLE * len(numbers):
         return np.unique(numbers, return_inverse=True)
-    is_there = np.zeros(length, bool)
-    is_there[numbers - least] = True
+    is_there = mask_of(length, numbers - least)
     rank = np.cumsum(is_there, dtype=np.int32) - np.int32(1)
     return np.flatnonzero(is_there) + least, rank[numbers - least]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..packages import csgraph, sparse
@@ -12,6 +14,32 @@ def run_starts(numbers: np.ndarray) -> np.ndarray:
     is_start = np.ones(len(numbers), bool)
     is_start[1:] = numbers[1:] != numbers[:-1]
     return np.flatnonzero(is_start)
+
+
+def mask_of(length: Any, rows: Any) -> np.ndarray:
+    """Return a mask of a ``length``, or of a shape, that is true in some rows or cells."""
+    mask = np.zeros(length, bool)
+    mask[rows] = True
+    return mask
+
+
+def placed(values: np.ndarray, rows: np.ndarray, length: int, otherwise: float = 0) -> np.ndarray:
+    """Return values in their rows of a longer array of their type.
+
+    Parameters
+    ----------
+    values : ndarray of shape (m, ...)
+        Values.
+    rows : ndarray of shape (m,), or bool of shape (length,)
+        Row of each.
+    length : int
+        Number of rows.
+    otherwise : float
+        Value of all other rows.
+    """
+    whole = np.full((length, *values.shape[1:]), otherwise, values.dtype)
+    whole[rows] = values
+    return whole
 
 
 def ordered(key: np.ndarray, *ties: np.ndarray) -> np.ndarray:

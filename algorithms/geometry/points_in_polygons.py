@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..stage import Monitor
+from .groups import placed
 from .polygon_overlap import Polygons
 
 # Points are sorted into rows so high that a square of that height holds this many of them on average.
@@ -93,6 +94,4 @@ def are_within(plan: np.ndarray, edges: np.ndarray) -> np.ndarray:
     for ((x0, y0), (x1, y1)), start, stop in zip(upward, first, last):
         if start < stop:
             is_odd[start:stop] ^= x[start:stop] < x0 + (y[start:stop] - y0) * ((x1 - x0) / (y1 - y0))
-    inside = np.zeros(len(plan), bool)
-    inside[order] = is_odd
-    return inside
+    return placed(is_odd, order, len(plan))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..packages import spatial
 from ..threads import n_threads
-from .groups import components, run_starts
+from .groups import components, placed, run_starts
 
 # A coordinate this little (m) under the side of a voxel is on it: above rounding, below the resolution of files.
 TOUCH = 1e-7
@@ -81,9 +81,7 @@ def voxelize(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.n
     order = np.argsort(key, kind="stable")
     starts = run_starts(key[order])
     count = np.diff(starts, append=len(order))
-    voxel = np.empty(len(xyz), np.int64)
-    voxel[order] = np.repeat(np.arange(len(starts)), count)
-    return index[order[starts]], voxel, count
+    return index[order[starts]], placed(np.repeat(np.arange(len(starts)), count), order, len(xyz)), count
 
 
 def one_per_voxel(xyz: np.ndarray, size: float) -> np.ndarray:

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.grid import distinct, find_cells, fixed_grid_over, plan_box
-from ..geometry.groups import components, least_of
+from ..geometry.groups import components, least_of, mask_of
 from ..packages import spatial
 from ..stage import Monitor
-from .points_under_ground import mask_of, near_cells
+from .points_under_ground import near_cells
 
 # Largest distance (m) between points of one object: chimneys and structures on roofs are lower, points along masts and
 # wires closer.
@@ -90,9 +90,7 @@ def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
     rows = np.flatnonzero(is_loose)
     rows = rows[_is_open(xyz, is_loose, rows, link)]
     rows = rows[~_on_wires(xyz[rows])]
-    found = np.zeros(len(xyz), bool)
-    found[rows] = True
-    return found
+    return mask_of(len(xyz), rows)
 
 
 def _components(xyz: np.ndarray, link: float) -> np.ndarray:

@@ -12,7 +12,7 @@ from itertools import count
 import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over
-from ..geometry.groups import ordered
+from ..geometry.groups import mask_of, ordered
 from ..packages import spatial
 from ..rules import rule
 from ..sampling.density import DENSITY
@@ -83,13 +83,6 @@ def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor
         n_found = np.bincount(which[found], minlength=len(cells))
         near = near_cells(grid, cells, which[rows])
     return found
-
-
-def mask_of(length: int, positions: np.ndarray) -> np.ndarray:
-    """Return a mask (length,) that is true at some positions."""
-    mask = np.zeros(length, bool)
-    mask[positions] = True
-    return mask
 
 
 def _by_cell_and_height(which: np.ndarray, xyz: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ from typing import Callable
 
 import numpy as np
 
+from ..geometry.groups import mask_of, placed
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
 from ..threads import in_chunks
@@ -66,8 +67,7 @@ def merge_best_pairs(
         became = number[target]
         planes = planes.merged(became, int(stays.sum()))
         group, first = became[group], first[stays]
-        changed = np.zeros(len(planes), bool)
-        changed[became[low[best]]] = True
+        changed = mask_of(len(planes), became[low[best]])
         low, high, price = _adjacent(became[low], became[high], price, len(planes))
         again = changed[low] | changed[high]
         price[again] = cost(planes, low[again], high[again])
@@ -80,8 +80,7 @@ def _mutually_best(low: np.ndarray, high: np.ndarray, price: np.ndarray, first: 
     Of equal prices (k,) the pair with the lowest numbers ``first`` (n,) counts.
     """
     order = np.lexsort((np.maximum(first[low], first[high]), np.minimum(first[low], first[high]), price))
-    rank = np.empty(len(order), np.int64)
-    rank[order] = np.arange(len(order))
+    rank = placed(np.arange(len(order)), order, len(order))
     least = np.full(n, len(order))
     np.minimum.at(least, low, rank)
     np.minimum.at(least, high, rank)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.components import connect
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
-from ..geometry.groups import items, run_starts
+from ..geometry.groups import items, placed, run_starts
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
 from ..rules import rule
@@ -283,8 +283,7 @@ def _numbered(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
 
 def _of_chosen(rows: np.ndarray, number: np.ndarray, chosen: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the rows of ``chosen`` pieces out of ``count``, with their new numbers from 0."""
-    renumbered = np.full(count, -1)
-    renumbered[chosen] = np.arange(len(chosen))
+    renumbered = placed(np.arange(len(chosen)), chosen, count, -1)
     kept = renumbered[number] >= 0
     return rows[kept], renumbered[number[kept]]
 

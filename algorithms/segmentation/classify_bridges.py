@@ -7,13 +7,17 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
+from ..geometry.adjacent_cells import DIRECTIONS
+from ..geometry.components import connect
+from ..geometry.grid import raster_cells, refuse_sparse
+from ..geometry.groups import least_of
+from ..packages import ndimage, spatial
 from ..params import BRIDGE_AREA, BRIDGE_HEIGHT, BRIDGE_WIDTH, POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import LASER
-from ..stage import stage, tunable
+from ..stage import Monitor, stage, tunable
 from ..terrain.on_decks import on_decks
-from .bridge_decks import Decks
-from .deck_sites import deck_sites
+from .bridge_decks import DECK, Decks
 
 # No deck is of these classes.
 _NO_DECK = (*VEGETATION, PointClass.BUILDING, PointClass.WATER)
@@ -117,3 +121,111 @@ def classify_bridges(
     classes[used[ground[on_decks(points[ground], points[is_deck], LASER.foot)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     return classes
+
+
+def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, decks: Decks) -> np.ndarray:
+    """Return the mask of points (n,) that are near surfaces that may be decks.
+
+    In cells of one meter and more, a surface over the ground hides it, and ground between two lower sides may itself be
+    a deck. Such cells are joined where they are level. The parts that are as large as bridges and reach ground of their
+    own height at both ends stay, with the points around them that are no higher.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points, m.
+    is_open : ndarray of shape (n,), bool
+        Points that may be of decks.
+    is_ground : ndarray of shape (n,), bool
+        Ground and water.
+    decks : Decks
+        Criteria of bridges.
+    """
+    refuse_sparse(xyz, decks.cell)
+    row, column = raster_cells(xyz, decks.cell, 0)
+    shape = (int(row.max()) + 1, int(column.max()) + 1)
+    cell = row * shape[1] + column
+    ground = _lowest(cell[is_ground], xyz[is_ground, 2], shape)
+    unseen = ~np.isfinite(ground)
+    nearest = ndimage.distance_transform_edt(unseen, return_distances=False, return_indices=True)
+    is_other = is_open & ~is_ground
+    is_over = is_other & (xyz[:, 2] - ground[tuple(nearest)].ravel()[cell] >= decks.min_height)
+    hides = _count(cell[is_ground], shape) < DECK.most_below * _count(cell[is_over], shape)
+    surface = np.where(unseen, _lowest(cell[is_other], xyz[is_other, 2], shape), ground)
+    surface = np.where(hides, _lowest(cell[is_over], xyz[is_over, 2], shape), surface)
+    is_raised = _between_lower(surface, ground, decks)
+    is_site = np.zeros(shape, bool)
+    raised, beside = np.argwhere(is_raised), np.argwhere(np.isfinite(surface) & ~is_raised)
+    is_site[tuple(raised[_leads_on(raised, beside, surface, decks)].T)] = True
+    if not is_site.any():
+        return np.zeros(len(xyz), bool)
+    reach = DECK.far * decks.reach
+    is_near = ndimage.distance_transform_edt(~is_site) * decks.cell <= reach
+    # A road that rises from the surfaces around gets no higher than this; points above it are of crowns.
+    side = 2 * int(np.ceil(reach / decks.cell)) + 1
+    highest = ndimage.maximum_filter(np.where(is_site, surface, -np.inf), side) + decks.near.slope * reach
+    return is_near[row, column] & (xyz[:, 2] <= highest[row, column])
+
+
+def _lowest(cell: np.ndarray, height: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return the lowest of the heights in each cell, m; infinite without any."""
+    return least_of(height, cell, shape[0] * shape[1]).reshape(shape)
+
+
+def _count(cell: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return the number of points in each cell."""
+    return np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape)
+
+
+def _between_lower(surface: np.ndarray, ground: np.ndarray, decks: Decks) -> np.ndarray:
+    """Return the mask of cells that have a surface over the ground on both sides, within the width of decks."""
+    result = np.zeros(ground.shape, bool)
+    for down, right in DIRECTIONS:
+        count = max(1, int(decks.max_width / 2 / decks.cell / np.hypot(down, right)))
+        sides = [_lowest_ahead(ground, sign * down, sign * right, count) for sign in (1, -1)]
+        result |= np.maximum(*sides) <= surface - decks.min_height
+    return result & np.isfinite(surface)
+
+
+def _lowest_ahead(ground: np.ndarray, down: int, right: int, count: int) -> np.ndarray:
+    """Return the least height of the next ``count`` cells in a direction, m; infinite beyond the raster."""
+    lowest, seen = _ahead(ground, down, right), 1
+    while seen < count:
+        more = min(seen, count - seen)
+        lowest = np.minimum(lowest, _ahead(lowest, more * down, more * right))
+        seen += more
+    return lowest
+
+
+def _ahead(values: np.ndarray, down: int, right: int) -> np.ndarray:
+    """Return the value of the cell some rows and columns further for each cell, infinite beyond the raster."""
+    padded = np.pad(values, [(max(0, -step), max(0, step)) for step in (down, right)], constant_values=np.inf)
+    return padded[max(0, down) :, max(0, right) :][: values.shape[0], : values.shape[1]]
+
+
+def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks: Decks) -> np.ndarray:
+    """Return the mask of ``raised`` cells (m, 2) of large level parts with ground at their height at both ends."""
+    if not len(raised) or not len(beside):
+        return np.zeros(len(raised), bool)
+
+    def points(cells: np.ndarray) -> np.ndarray:
+        return np.column_stack([cells * decks.cell, surface[tuple(cells.T)]])
+
+    cells = points(raised)
+    # Level cells that touch at a side or a corner are of one part.
+    part = connect(cells, 1.5 * decks.cell, LASER.foot, Monitor())
+    # Heights are stretched, so that the largest step of a road counts as much as the reach in plan.
+    stretch = np.array([1.0, 1.0, decks.reach / LASER.foot])
+    distance, _ = spatial.cKDTree(points(beside) * stretch).query(cells * stretch, distance_upper_bound=decks.reach)
+    touches = np.isfinite(distance)
+    size = np.bincount(part)
+    x, y = (axis - (np.bincount(part, axis) / size)[part] for axis in cells[:, :2].T)
+    xx, yy, xy = (np.bincount(part, product) for product in (x * x, y * y, x * y))
+    angle = np.arctan2(2 * xy, xx - yy)[part] / 2
+    along = x * np.cos(angle) + y * np.sin(angle)
+    half = np.zeros(len(size))
+    np.maximum.at(half, part, np.abs(along))
+    # Ends are the outer thirds of a part.
+    far = np.abs(along) >= half[part] / 3
+    ends = (np.bincount(part, touches & far & (way > 0)) > 0 for way in (along, -along))
+    return (np.logical_and(*ends) & (size * decks.cell**2 >= decks.min_area))[part]

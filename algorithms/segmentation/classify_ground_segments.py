@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
-from ..geometry.groups import least_of
+from ..geometry.groups import least_of, placed
 from ..params import BRIDGE_AREA, BRIDGE_HEIGHT, BRIDGE_WIDTH, POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import LASER
@@ -158,9 +158,7 @@ def _bare_earth(
     is_object = np.bincount(number, raised, n) >= _RAISED_BORDER * np.maximum(n_border, 1)
     is_object &= area <= max_object_area
     is_large = area >= min_area
-    is_earth = np.zeros(len(points), bool)
-    is_earth[member] = (~is_object & is_large)[of]
-    return is_earth
+    return placed((~is_object & is_large)[of], member, len(points))
 
 
 def _is_low(points: np.ndarray, cell: float, step: float) -> np.ndarray:

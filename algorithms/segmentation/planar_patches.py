@@ -8,6 +8,7 @@ from typing import Union
 import numpy as np
 
 from ..geometry.boxes import by_first_point
+from ..geometry.groups import placed
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import Wide
 from ..packages import csgraph, sparse, spatial
@@ -100,9 +101,7 @@ def segment_patches(
     del points, planes, plane
     component = np.empty(len(order), np.int32)
     component[order] = np.where(on_surface, _components(*links), -1)
-    patch = np.full(len(order), -1, np.int32)
-    patch[component >= 0] = by_first_point(component[component >= 0])
-    return patch
+    return placed(by_first_point(component[component >= 0]), component >= 0, len(order), -1)
 
 
 def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _PointPlanes:

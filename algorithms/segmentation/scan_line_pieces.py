@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..geometry.grid import lattice, turned_in_plan
-from ..geometry.groups import components, items, ordered
+from ..geometry.groups import components, items, ordered, placed
 from ..sampling.surface_noise import LEAST_NEIGHBORS
 
 
@@ -81,9 +81,8 @@ def pieces(
         Width of obstacles that a piece goes on behind, m.
     """
     order, line = slices(xyz, direction, width)
-    piece = np.empty(len(order), np.int64)
-    piece[order] = pieces_of_lines(xyz[order], line, direction, near, min_points, obstacle)
-    return piece
+    piece = pieces_of_lines(xyz[order], line, direction, near, min_points, obstacle)
+    return placed(piece, order, len(order))
 
 
 def pieces_of_lines(

@@ -7,6 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.boxes import Boxes, Offset, around, by_first_point, connected
+from ..geometry.groups import placed
 from ..params import MIN_CLUSTER_HEIGHT, POINT_DENSITY
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, stage, tunable
@@ -110,9 +111,7 @@ def segment_clusters(
     radius = _RADIUS_SPACINGS / float(np.sqrt(density)) if radius is None else radius
     min_points = points_at_corner(radius, density) if min_points is None else min_points
     monitor.resolved(density=density, radius=radius, min_points=min_points)
-    cluster_id = np.zeros(len(xyz), np.int32)
-    cluster_id[used] = dbscan(xyz[used], radius, min_points, monitor) + 1
-    return cluster_id
+    return placed(dbscan(xyz[used], radius, min_points, monitor) + 1, used, len(xyz))
 
 
 def points_at_corner(radius: float, density: float) -> int:

@@ -7,6 +7,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.components import number_large
+from ..geometry.groups import placed
 from ..packages import spatial
 from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
@@ -181,9 +182,7 @@ def segment_recorded_lines(
     regions = Regions(pieces, adjacency, growth)
     regions.grow(min_overlap, monitor.part(0.6, 0.9))
     segment = _with_others(points, row, piece, regions, line_distance, tolerance)
-    segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[used] = number_large(segment, min_points)
-    return segment_id
+    return placed(number_large(segment, min_points), used, len(xyz))
 
 
 def _is_last(return_number: Any, number_of_returns: Any, used: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.components import connect, number_large
+from ..geometry.groups import placed
 from ..params import MIN_BUILDING_AREA, MIN_CLUSTER_HEIGHT, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
@@ -124,9 +125,8 @@ def segment_regions(
     height_distance = _height_distance(sampling.noise) if height_distance is None else height_distance
     monitor.resolved(density=density, plan_distance=plan_distance, height_distance=height_distance)
 
-    component = np.full(len(xyz), -1, np.int32)
-    component[used] = connect(xyz[used], plan_distance, height_distance, monitor)
-    return number_large(component, min_area * density)
+    component = connect(xyz[used], plan_distance, height_distance, monitor)
+    return number_large(placed(component, used, len(xyz), -1), min_area * density)
 
 
 def _height_distance(noise: float) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from ..cloud.asprs import NOISE
 from ..cloud.reasons import Reason
 from ..geometry.components import connect, number_large
+from ..geometry.groups import placed
 from ..neighborhoods.covariance import Nearest
 from ..params import POINT_DENSITY, POINT_SOURCE, SURFACE_NOISE
 from ..rules import rule
@@ -146,8 +147,7 @@ def segment_roofs(
     used = np.flatnonzero(is_used)
     find_patches = kind.choose(_patches_of_scan, _patches_of_images)
     found = find_patches(xyz, used, sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
-    patch = np.full(len(xyz), -1, np.int32)
-    patch[used] = found
+    patch = placed(found, used, len(xyz), -1)
 
     # 2. Those that are high and large enough, and do not go on into the ground.
     xyz = sampling.from_corner(xyz)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
+from ..geometry.groups import placed
 from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage, tunable
@@ -142,6 +143,4 @@ def segment_scan_lines(
         piece_sets.append(pieces(points, 180 * number / directions, line_width, near, min_piece, max_obstacle))
         monitor.progress(0.9 * (number + 1) / directions)
     segment = merged_pieces(piece_sets)
-    segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[used] = number_large(by_first_point(segment), min_points)
-    return segment_id
+    return placed(number_large(by_first_point(segment), min_points), used, len(xyz))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
-from ..geometry.groups import items
+from ..geometry.groups import items, placed
 from ..params import POINT_DENSITY
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, stage, tunable
@@ -184,9 +184,7 @@ def segment_surfaces(
         tolerance if planarity != "none" else None, float(np.cos(np.radians(max_angle))) if smooth_normals else None
     )
     surface = _grown(planes, is_seed, criteria, planarity, tolerance, monitor.part(0.6, 1))
-    segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[used] = number_large(surface, min_points)
-    return segment_id
+    return placed(number_large(surface, min_points), used, len(xyz))
 
 
 def _noise(sampling: CloudSampling, radius: float) -> float:

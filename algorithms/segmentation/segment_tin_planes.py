@@ -9,6 +9,7 @@ import numpy as np
 from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
+from ..geometry.groups import placed
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
@@ -159,6 +160,4 @@ def _of_points(facets: np.ndarray, group: np.ndarray, area: np.ndarray, n: int) 
     point, which = np.divmod(key, int(group.max(initial=0)) + 1)
     order = np.lexsort((which, -total, point))
     first = order[np.unique(point[order], return_index=True)[1]]
-    of_point = np.full(n, -1, np.int64)
-    of_point[point[first]] = which[first]
-    return by_first_point(of_point)
+    return by_first_point(placed(which[first], point[first], n, -1))

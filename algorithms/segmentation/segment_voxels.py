@@ -8,6 +8,7 @@ import numpy as np
 
 from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
+from ..geometry.groups import placed
 from ..geometry.sparse_voxels import (
     close_voxels,
     dilate,
@@ -180,11 +181,9 @@ def segment_voxels(
 
     where = locate_voxels(cells, occupied)
     of_point = np.where(where >= 0, component[where] if len(component) else -1, -1)[voxel]
-    segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[used] = number_large(by_first_point(of_point), min_points)
+    segment_id = placed(number_large(by_first_point(of_point), min_points), used, len(xyz))
     # Points of no component write to the last position, which no component has.
-    of_component = np.zeros(len(component) + 1, np.int32)
-    of_component[of_point] = segment_id[used]
+    of_component = placed(segment_id[used], of_point, len(component) + 1)
 
     columns = {
         "segment_id": of_component[component],
@@ -199,6 +198,4 @@ def segment_voxels(
 
 def _in_voxels(values: np.ndarray, where: np.ndarray, n_voxels: int) -> np.ndarray:
     """Return the values (n_voxels,) of voxels, of those at the positions ``where`` (k,), -1 for none; else 0."""
-    found = np.zeros(n_voxels, values.dtype)
-    found[where[where >= 0]] = values[where >= 0]
-    return found
+    return placed(values[where >= 0], where[where >= 0], n_voxels)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Optional
+
+import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
+from .cylinder_fits import explained, fit_sphere
+from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
 from .searched_points import SEARCH_IN, MeasuredPoints, SearchTunables, Shape, search_shapes
-from .sphere_search import LEAST_POINTS, FoundSphere, SphereSearch
+from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, WINDOW, level_of, levels
 from .surface_normals import NORMAL_POINTS
 
 CENTER_FIRST, _FOUR_DIMENSIONS = METHODS = ("center first", "four dimensions")
@@ -20,6 +25,202 @@ _FIELDS = (
     Field("rms", float, "root mean square distance of the points from the sphere", "m"),
     Field("seen", float, "share of the sphere that has points, 0 to 1"),
 )
+
+# Bins of radii in one level.
+_RADII = 8
+
+# Side of the bins of centers, as a share of the least radius of the level.
+_CENTER_BIN = 0.25
+
+# Distances from the sphere (times the least radius) at which a start is fitted again, before the tolerance counts.
+_FIRST_FITS = (0.25, 0.1)
+
+# Largest angle between the normal of a point on a sphere and the direction from the center (°).
+_NORMAL_ANGLE = 25.0
+
+# Largest median of these angles over a sphere (°).
+_MOST_MEDIAN_ANGLE = 10.0
+
+# Least points of a seed, and of a window in which one is looked for.
+LEAST_POINTS = 20
+
+# Least share of the variance of normals in each direction: they vary in two on a sphere, in one on a cylinder.
+_LEAST_SPREAD = 0.02
+
+# Largest deviation of the points from a sphere, in multiples of the noise.
+_MOST_ROUGH = 1.25
+
+# Largest part of that deviation that waves of another shape explain, in multiples of the noise.
+_MOST_BENT = 0.6
+
+# Distance from the center, as a share of the radius, up to which points are inside a sphere.
+_INNER = 0.9
+
+# Most points inside a sphere per point on it: it is empty.
+_MOST_INSIDE = 0.15
+
+# Radius of the surroundings of a sphere, in its radii.
+_AROUND = 1.5
+
+# Most points in the surroundings of a sphere per point on it: it lies in the air.
+_MOST_AROUND = 0.6
+
+# Most points of the fit of a seed, or of a test of roundness: more don't change it.
+_MOST_SAMPLED = 1500
+
+
+@dataclass(frozen=True)
+class FoundSphere:
+    """A sphere: center (3,) and radius (m), the points (k,) on it, their deviation (m), and the share of it seen."""
+
+    center: np.ndarray
+    radius: float
+    points: np.ndarray
+    rms: float
+    seen: float
+
+
+class SphereSearch:
+    """Spheres among points with normals.
+
+    Parameters
+    ----------
+    xyz, normals : ndarray of shape (n, 3)
+        Points (m), sorted by elevation, and their unit normals; zero if undefined.
+    noise : float
+        Standard deviation across smooth surfaces, m.
+    tolerance : float
+        Distance within which a point lies on a sphere, m.
+    min_seen : float
+        Least share of the sphere with points.
+    min_points : int
+        Points of the smallest sphere.
+    centers_first : bool
+        Whether centers are voted for before radii, or both together in four dimensions.
+    """
+
+    def __init__(
+        self,
+        xyz: np.ndarray,
+        normals: np.ndarray,
+        noise: float,
+        tolerance: float,
+        min_seen: float,
+        min_points: int,
+        centers_first: bool,
+    ) -> None:
+        self.xyz, self.normals, self.noise, self.tolerance = xyz, normals, noise, tolerance
+        self.min_seen, self.min_points, self.centers_first = min_seen, min_points, centers_first
+        self.is_free = normals.any(axis=1)
+        # Parts of a sphere that are seen or not: 48 on each half.
+        self.parts = PlaneDirections(0.5)
+
+    def find(self, min_radius: float, max_radius: float, monitor: Monitor) -> list[FoundSphere]:
+        """Return the spheres with radii (m) in a range, the smallest first."""
+        found: list[FoundSphere] = []
+        ranges = levels(min_radius, max_radius)
+        for step, (low, high) in enumerate(ranges):
+            level = level_of(self.xyz, self.is_free, low, high, LEAST_POINTS)
+            part = monitor.part(step / len(ranges), (step + 1) / len(ranges))
+            for number, window in enumerate(level.windows):
+                part.progress(number / len(level.windows))
+                rows = level.rows[window]
+                rows = rows[self.is_free[rows]]
+                seed = self._seed(rows, low, high) if self._is_curved(rows) else None
+                one = self._checked(*seed) if seed is not None else None
+                if one is not None:
+                    self.is_free[one.points] = False
+                    found.append(one)
+        monitor.progress(1.0)
+        return found
+
+    def _is_curved(self, rows: np.ndarray) -> bool:
+        """Return whether the normals of points vary in two directions."""
+        if len(rows) < LEAST_POINTS:
+            return False
+        normals = self.normals[rows]
+        return bool(np.linalg.eigvalsh(normals.T @ normals / len(rows))[0] >= _LEAST_SPREAD)
+
+    def _seed(self, rows: np.ndarray, low: float, high: float) -> Optional[tuple[np.ndarray, float]]:
+        """Return the sphere for which most points of a window vote: each along its normal, to both sides."""
+        middle = self.xyz[rows].mean(axis=0)
+        radii = np.geomspace(low, high, _RADII)
+        signed = np.concatenate([radii, -radii])
+        centers = (self.xyz[rows] - middle)[:, None] + signed[:, None] * self.normals[rows][:, None]
+        cell, reach = _CENTER_BIN * low, WINDOW * low / 2 + 1.1 * high
+        side = int(np.ceil(2 * reach / cell)) + 2
+        index = np.floor((centers + reach) / cell).astype(np.int64)
+        inside = ((index >= 0) & (index < side)).all(axis=2)
+        position = (index[..., 0] * side + index[..., 1]) * side + index[..., 2]
+        number = np.broadcast_to(np.tile(np.arange(_RADII), 2), inside.shape)
+        if self.centers_first:
+            best = int(np.argmax(np.bincount(position[inside])))
+            of_center = inside & (position == best)
+            radius = float(radii[np.argmax(np.bincount(number[of_center], minlength=_RADII))])
+        else:
+            best, k = divmod(int(np.argmax(np.bincount((position * _RADII + number)[inside]))), _RADII)
+            radius = float(radii[k])
+        center = middle + (np.array([best // side**2, best // side % side, best % side]) + 0.5) * cell - reach
+        return self._fitted(rows, center, radius, low, high)
+
+    def _fitted(
+        self, rows: np.ndarray, center: np.ndarray, radius: float, low: float, high: float
+    ) -> Optional[tuple[np.ndarray, float]]:
+        """Return the least-squares sphere of the points around a start, None where its radius is out of range."""
+        for reach in (*(share * low for share in _FIRST_FITS), 2 * self.tolerance, self.tolerance):
+            points = rows[self._is_on(rows, center, radius, max(reach, self.tolerance))]
+            if len(points) < LEAST_POINTS:
+                return None
+            center, radius = fit_sphere(self.xyz[points[:: len(points) // _MOST_SAMPLED + 1]], center, radius)
+            if not LEAST_OF_LEVEL * low <= radius <= MOST_OF_LEVEL * high:
+                return None
+        return (center, radius) if self._is_round(points, center, radius) else None
+
+    def _is_on(self, rows: np.ndarray, center: np.ndarray, radius: float, tolerance: float) -> np.ndarray:
+        """Return the mask of the points ``rows`` that lie on a sphere and face its center."""
+        offset = self.xyz[rows] - center
+        distance = np.linalg.norm(offset, axis=1)
+        facing = np.abs(np.einsum("ij,ij->i", offset, self.normals[rows]))
+        return (np.abs(distance - radius) <= tolerance) & (facing >= np.cos(np.radians(_NORMAL_ANGLE)) * distance)
+
+    def _is_round(self, points: np.ndarray, center: np.ndarray, radius: float) -> bool:
+        """Return whether points lie close to a sphere and their distances show no other shape."""
+        points = points[:: len(points) // _MOST_SAMPLED + 1]
+        offset = self.xyz[points] - center
+        away, residual = unit(offset), np.linalg.norm(offset, axis=1) - radius
+        facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))
+        if np.sqrt((residual**2).mean()) > _MOST_ROUGH * self.noise:
+            return False
+        if np.median(facing) < np.cos(np.radians(_MOST_MEDIAN_ANGLE)):
+            return False
+        x, y, z = away.T
+        # An ellipsoid, a cylinder or a torus has waves of second order, faces have higher ones.
+        waves = np.column_stack([x * y, x * z, y * z, x * x - y * y, 3 * z * z - 1, *(away**3).T, x * y * z])
+        return explained(residual - residual.mean(), waves) <= _MOST_BENT * self.noise
+
+    def _checked(self, center: np.ndarray, radius: float) -> Optional[FoundSphere]:
+        """Return the sphere with all its points if these look like one."""
+        reach = _AROUND * radius
+        first, last = np.searchsorted(self.xyz[:, 2], [center[2] - reach, center[2] + reach])
+        near = np.arange(first, last)
+        near = near[self.is_free[near] & (np.abs(self.xyz[near, :2] - center[:2]) <= reach).all(axis=1)]
+        points = near[self._is_on(near, center, radius, self.tolerance)]
+        if len(points) < max(self.min_points, LEAST_POINTS):
+            return None
+        center, radius = fit_sphere(self.xyz[points], center, radius)
+        points = near[self._is_on(near, center, radius, self.tolerance)]
+        if len(points) < self.min_points or not self._is_round(points, center, radius):
+            return None
+        distance = np.linalg.norm(self.xyz[near] - center, axis=1)
+        inside = distance < _INNER * radius - 2 * self.tolerance
+        around = (distance > radius + 2 * self.tolerance) & (distance < reach)
+        if inside.sum() > _MOST_INSIDE * len(points) or around.sum() > _MOST_AROUND * len(points):
+            return None
+        away = self.xyz[points] - center
+        part = self.parts.bin_of(away) * 2 + (away[np.arange(len(away)), np.argmax(np.abs(away), axis=1)] > 0)
+        seen = len(np.unique(part)) / (2 * len(self.parts))
+        rms = float(np.sqrt(((np.linalg.norm(away, axis=1) - radius) ** 2).mean()))
+        return FoundSphere(center, radius, points, rms, seen) if seen >= self.min_seen else None
 
 
 @stage(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.groups import components, run_starts
+from ..geometry.groups import components, placed, run_starts
 from ..geometry.sparse_voxels import close_voxels, locate_voxels, neighbor_pairs, voxelize
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
@@ -198,8 +198,7 @@ def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:
     numbers, first = np.unique(group[order], return_index=True)
     rank = np.argsort(first)
     nearest = order[first[rank]]
-    of_group = np.full(int(group.max()) + 1, -1)
-    of_group[numbers[rank]] = np.arange(len(rank))
+    of_group = placed(np.arange(len(rank)), numbers[rank], int(group.max()) + 1, -1)
     of_voxel = np.where(reached, of_group[group], -1)
     count = np.bincount(of_voxel[reached], minlength=len(rank))
     positions = np.column_stack(

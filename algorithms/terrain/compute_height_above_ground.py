@@ -6,6 +6,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, fixed_grid_over
+from ..geometry.groups import placed
 from ..geometry.tiled_tin import TiledTin
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.kinds import SCENE
@@ -84,9 +85,7 @@ def compute_height_above_ground(xyz, classification, *, sampling: CloudSampling 
     on_deck, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]])
     on_deck = np.flatnonzero(~is_deck)[on_deck]
     elevation[on_deck] = np.maximum(elevation[on_deck], level)
-    height = np.zeros(len(xyz), np.float32)
-    height[above] = xyz[above, 2] - elevation
-    return height
+    return placed((xyz[above, 2] - elevation).astype(np.float32), above, len(xyz))
 
 
 def _means(ground: np.ndarray) -> np.ndarray:

@@ -46,7 +46,7 @@ class JoinRules:
     #: the last, and points in closed facets are not tried again, which is faster.
     is_exhaustive: bool = False
     #: Returns the angles (°) of points that do not fit their facets as they lie, inf where they do not fit at all: see
-    #: :func:`.mirror_points.mirrored_angle`
+    #: :func:`.classify_ground_tin_2000.mirrored_angle`
     beyond: Optional[Callable[[Tin, np.ndarray, np.ndarray, float, int], np.ndarray]] = None
 
     def is_last(self, n_joining: int, n_nodes: int) -> bool:

@@ -9,7 +9,7 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 from ..geometry.grid import find_cells
-from ..geometry.groups import components
+from ..geometry.groups import components, placed
 from ..pipeline import Pipeline
 from ..stage import Layer, LayerFeatures, Monitor
 from .block_result import BlockResult
@@ -75,8 +75,7 @@ def join_numbers(
         used = np.concatenate([_NO_NUMBERS, *parts])
         # Numbers in the order of the blocks, as in one cloud they follow its points.
         distinct, at = np.unique(group[used[~is_feature[used]]], return_index=True)
-        final = np.zeros(len(group) + 1, np.int32)
-        final[distinct[np.argsort(at)]] = np.arange(1, len(distinct) + 1, dtype=np.int32)
+        final = placed(np.arange(1, len(at) + 1, dtype=np.int32), distinct[np.argsort(at)], len(group) + 1)
         for become, start, count in zip(joined, first, most):
             become[name] = np.concatenate([np.zeros(1, np.int32), final[group[start : start + count]]])
     return joined

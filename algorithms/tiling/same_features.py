@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, placed
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes, shared_areas
 from ..geometry.polygons import area_vector, axes_across
 from ..stage import Layer, LayerFeatures, Monitor
@@ -101,9 +101,8 @@ def _sizes(
 def _ranks(size: np.ndarray, is_own: np.ndarray, is_piece: Optional[np.ndarray] = None) -> np.ndarray:
     """Return the rank (n,) of each feature, 0 for the best: no pieces, of the own block, then the largest."""
     is_piece = np.zeros(len(size), bool) if is_piece is None else is_piece
-    rank = np.empty(len(size), np.int64)
-    rank[np.lexsort([np.arange(len(size)), -size, ~is_own, is_piece])] = np.arange(len(size))
-    return rank
+    every = np.arange(len(size))
+    return placed(every, np.lexsort([every, -size, ~is_own, is_piece]), len(size))
 
 
 def _led(one: np.ndarray, other: np.ndarray, share: np.ndarray, rank: np.ndarray) -> np.ndarray:
