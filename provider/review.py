@@ -84,6 +84,10 @@ class Review:
         at = self._index(name)
         return None if at < 0 or building[at] == NULL else building[at]
 
+    def has(self, name: str) -> bool:
+        """Whether the layer has an attribute."""
+        return self._index(name) >= 0
+
     def _index(self, name: str) -> int:
         """Return where an attribute is, -1 for none; Shapefiles cut its name."""
         fields = self.layer.fields()

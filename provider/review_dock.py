@@ -7,7 +7,7 @@ from typing import Any, Callable, Optional
 
 from qgis.core import Qgis, QgsExpression, QgsFeature, QgsFeatureRequest, QgsProject, QgsVectorLayer
 from qgis.gui import QgsMapTool, QgsRubberBand
-from qgis.PyQt.QtCore import QEvent, Qt, QTimer
+from qgis.PyQt.QtCore import QEvent, QSignalBlocker, Qt, QTimer
 from qgis.PyQt.QtGui import QColor, QKeySequence
 from qgis.PyQt.QtWidgets import (
     QAction,
@@ -24,6 +24,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..algorithms.buildings.reviewed_buildings import DELETED, KEPT, REVIEW, REVIEWED
+from ..algorithms.quality.map_changes import STATUS, UNCHANGED
 from ..algorithms.quality.report_buildings import SURE
 from .input_layers import input_layer_name
 from .inputs import INPUT
@@ -37,17 +38,21 @@ from .view3d import look_at, view_angles
 _COLUMNS = {
     "id": "Building",
     CONFIDENCE: "Confidence",
+    STATUS.name: "Change",
     REVIEW: "Review",
     "area": "Area (m²)",
     "points": "Points",
     "reason": "Reason",
 }
 
-# Which buildings are listed: expressions, in which attributes that a layer has not yet are NULL, and their names.
+# Which buildings can be listed, by name: the attribute that a layer must have, and the expression. Of a layer the first
+# that it can have is chosen, which is also counted after a run; attributes that are still to come are NULL.
 _FILTERS = {
-    f'"{CONFIDENCE}" < {SURE}': "Doubtful",
-    f'"{REVIEW}" IS NULL': "Not yet reviewed",
-    "TRUE": "All buildings",
+    "Changed": (STATUS.name, f"\"{STATUS.name}\" <> '{UNCHANGED}'"),
+    "Doubtful": (CONFIDENCE, f'"{CONFIDENCE}" < {SURE}'),
+    "Simpler models": ("check", '"check" = 2'),
+    "Not yet reviewed": (CONFIDENCE, f'"{REVIEW}" IS NULL'),
+    "All buildings": (CONFIDENCE, "TRUE"),
 }
 
 # Attributes with the elevation of the ground, and the height above it.
@@ -77,17 +82,23 @@ def show_review(iface: Any, layer: Optional[QgsVectorLayer] = None) -> ReviewDoc
     return dock
 
 
+def _filters_of(layer: QgsVectorLayer) -> dict[str, str]:
+    """Return the expressions of the filters that a layer can have, by name."""
+    return {name: which for name, (needed, which) in _FILTERS.items() if layer.fields().lookupField(needed) >= 0}
+
+
 def offer_review(iface: Any, layer: QgsVectorLayer) -> None:
     """Say how many buildings a run has found, with a button for their review."""
-    open_ones = f'{next(iter(_FILTERS))} AND "{REVIEW}" IS NULL'
-    doubtful = QgsFeatureRequest(QgsExpression(open_ones)).setFlags(Qgis.FeatureRequestFlag.NoGeometry)
-    count, name = sum(1 for _ in layer.getFeatures(doubtful)), layer.id()
+    name, which = next(iter(_filters_of(layer).items()))
+    open_ones = QgsExpression(f'({which}) AND "{REVIEW}" IS NULL')
+    request = QgsFeatureRequest(open_ones).setFlags(Qgis.FeatureRequestFlag.NoGeometry)
+    count, made = sum(1 for _ in layer.getFeatures(request)), layer.id()
     push_with_button(
         iface,
         "LiDAR Buildings",
-        f"{layer.featureCount()} buildings, {count} of them doubtful.",
+        f"{layer.featureCount()} buildings, {count} of them {name.lower()}.",
         "Review buildings…",
-        lambda: show_review(iface, QgsProject.instance().mapLayer(name)),
+        lambda: show_review(iface, QgsProject.instance().mapLayer(made)),
     )
 
 
@@ -110,7 +121,6 @@ class ReviewDock(QDockWidget):
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.fill)
         self.filter = QComboBox()
-        self.filter.addItems(_FILTERS.values())
         self.filter.currentIndexChanged.connect(self.fill)
         self.list = QTreeWidget(rootIsDecorated=False, uniformRowHeights=True)
         self.list.setHeaderLabels(_COLUMNS.values())
@@ -168,8 +178,18 @@ class ReviewDock(QDockWidget):
         if layer is not None:
             self.review = Review(layer, self._changed)
             layer.willBeDeleted.connect(self._forget)
+            self._fit_to(layer)
         self.fill()
         self._go_to_open()
+
+    def _fit_to(self, layer: QgsVectorLayer) -> None:
+        """Offer the filters and columns that a layer has attributes for."""
+        with QSignalBlocker(self.filter):
+            self.filter.clear()
+            for name, which in _filters_of(layer).items():
+                self.filter.addItem(name, which)
+        for column, name in enumerate(_COLUMNS):
+            self.list.setColumnHidden(column, name != REVIEW and not self.review.has(name))
 
     def _forget(self) -> None:
         """Forget a layer that leaves the project."""
@@ -190,8 +210,7 @@ class ReviewDock(QDockWidget):
     def fill(self, *_: Any) -> None:
         """List the buildings, and stay at the current one."""
         self._later.stop()
-        which = list(_FILTERS)[self.filter.currentIndex()]
-        self._listed = self.review.buildings(which) if self.review else []
+        self._listed = self.review.buildings(self.filter.currentData()) if self.review else []
         fids = [one.id() for one in self._listed]
         row = fids.index(self._fid) if self._fid in fids else max(0, min(self.row, len(fids) - 1))
         self.list.clear()

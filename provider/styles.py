@@ -84,7 +84,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         stack_results(context)
         if len(context.layersToLoadOnCompletion()) == 1:
             put_below(layer, context)
-        if self.stem == "footprints" and iface is not None:
+        if self.stem in ("footprints", "updated_map") and iface is not None:
             # Late: without a desktop nobody needs its widgets.
             from .review_dock import offer_review
 

@@ -352,6 +352,38 @@ def test_a_run_that_made_footprints_offers_the_review(layer, qgis_iface, context
     assert request.getfixturevalue("dock") is dock
 
 
+def test_a_map_that_was_updated_is_reviewed_by_what_changed(dock, layer, qgis_iface, context, log, monkeypatch):
+    monkeypatch.setattr(styles, "iface", qgis_iface)
+    rows = [
+        (square(0), ["unchanged", 0.5]),
+        (square(20), ["changed", 0.9]),
+        (square(40), ["new", None]),
+        (square(60), ["not seen", 0.8]),
+    ]
+    updated = vector("Polygon", rows, fields="field=status:string&field=confidence:double")
+    QgsProject.instance().addMapLayer(updated)
+    qgis_iface.messageBar().clearWidgets()
+    styles.Styler("updated_map").postProcessLayer(updated, context, log)
+    item = qgis_iface.messageBar().currentItem()
+    assert item.text() == "4 buildings, 3 of them changed."
+    item.findChild(QPushButton).click()
+    assert dock.review.layer == updated
+    shown = [number for number in range(dock.list.columnCount()) if not dock.list.isColumnHidden(number)]
+    assert [dock.list.headerItem().text(number) for number in shown] == ["Confidence", "Change", "Review"]
+    assert [dock.list.topLevelItem(row).text(shown[1]) for row in range(3)] == ["not seen", "changed", "new"]
+    dock.filter.setCurrentIndex(dock.filter.findText("Doubtful"))
+    assert [dock.list.topLevelItem(0).text(shown[1])] == ["unchanged"]
+    # Another layer has its own filters and columns.
+    dock.follow(layer)
+    assert [dock.filter.itemText(at) for at in range(dock.filter.count())] == [
+        "Doubtful",
+        "Not yet reviewed",
+        "All buildings",
+    ]
+    assert listed(dock) == ["3", "2"]
+    qgis_iface.messageBar().clearWidgets()
+
+
 def test_a_layer_that_leaves_the_project_is_forgotten(dock, layer):
     QgsProject.instance().removeMapLayer(layer)
     QCoreApplication.processEvents()
