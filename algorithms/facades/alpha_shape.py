@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.groups import components, members
-from ..geometry.rings import signed_area
+from ..geometry.rings import rings_of_edges, signed_area
 from ..packages import spatial
 
 
@@ -40,7 +40,8 @@ class Tracing:
         triangle, corner = np.nonzero((self.face[:, None] >= 0) & (across != self.face[:, None]))
         start, end = (self.triangles[triangle, (corner + step) % 3] for step in (1, 2))
         edges = members(self.face[triangle] + 1).values()
-        rings = ([self.xy[ring] for ring in _simple_rings(start[own], end[own])] for own in edges)
+        found = (rings_of_edges(zip(start[own].tolist(), end[own].tolist())) for own in edges)
+        rings = ([self.xy[[*ring, ring[0]]] for ring in of_piece] for of_piece in found)
         return [max(of_piece, key=signed_area) for of_piece in rings]
 
 
@@ -81,27 +82,3 @@ def pieces_of(value: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
     """Return the number (t,) from 0 of the piece that each triangle is in: triangles of one value that share edges."""
     rows, sides = np.nonzero((neighbors >= 0) & (value[neighbors] == value[:, None]))
     return components(rows, neighbors[rows, sides], len(value))[1]
-
-
-def _simple_rings(start: np.ndarray, end: np.ndarray) -> list[list[int]]:
-    """Return closed rings of points along edges (k,) around a piece, none of which visits a point twice."""
-    following: dict[int, list[int]] = {}
-    for one, other in zip(start.tolist(), end.tolist()):
-        following.setdefault(one, []).append(other)
-    walk = [int(start[0])]
-    position, rings = {walk[0]: 0}, []
-    while walk:
-        if not following[walk[-1]]:
-            walk = [point for point, others in following.items() if others][:1]
-            position = {point: 0 for point in walk}
-            continue
-        point = following[walk[-1]].pop()
-        if point in position:
-            rings.append([*walk[position[point] :], point])
-            for closed in walk[position[point] + 1 :]:
-                del position[closed]
-            del walk[position[point] + 1 :]
-        else:
-            position[point] = len(walk)
-            walk.append(point)
-    return rings

@@ -5,6 +5,9 @@ An outline is a list of rings: first the exterior, counterclockwise, then the ho
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterable
+
 import numpy as np
 
 from .groups import items
@@ -32,6 +35,35 @@ def perimeter(ring: np.ndarray) -> float:
 def sides_of_rings(rings: list[np.ndarray]) -> np.ndarray:
     """Return start and end (k, 2, 2) of the sides of rings, one ring after the other."""
     return np.concatenate([np.zeros((0, 2, 2)), *(np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings)])
+
+
+def rings_of_edges(edges: Iterable[tuple[int, int]]) -> list[list[int]]:
+    """Return the open rings of vertices that directed edges make; where rings touch in a vertex they are parted."""
+    following: dict[int, list[int]] = defaultdict(list)
+    for a, b in edges:
+        following[a].append(b)
+    rings = []
+    while following:
+        path = [next(iter(following))]
+        position = {path[0]: 0}
+        while True:
+            ways = following[path[-1]]
+            step = ways.pop()
+            if not ways:
+                del following[path[-1]]
+            if step in position:
+                # A loop within the path is a ring of its own.
+                at = position[step]
+                rings.append(path[at:])
+                for vertex in path[at + 1 :]:
+                    del position[vertex]
+                path = path[: at + 1]
+                if at == 0 and step not in following:
+                    break
+            else:
+                position[step] = len(path)
+                path.append(step)
+    return rings
 
 
 def sampled_rings(rings: list[np.ndarray], step: float) -> np.ndarray:

@@ -128,10 +128,11 @@ def model_building(
             else:
                 solids, why = mended(partition, base, local, limits if level >= COARSE else None, settings.percentile)
             if not why:
-                above, label = _above_model(top, partition)
+                above, label = partition.above(top.xyz)
                 why = _worse(model, level, top, above)
             if not why:
-                _enter(model, level, top, partition, solids, above, label)
+                model.level, model.solids[level] = level, solids
+                _describe(model, top, partition, above, label)
         if why:
             model.reason = f"{level}: {why}"
     for solids in model.solids.values():
@@ -236,16 +237,6 @@ def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
     return part
 
 
-def _above_model(top: _Top, partition: Partition) -> tuple[np.ndarray, np.ndarray]:
-    """Return the heights (n,), m, of the points above the model, NaN outside it, and the planes over or under them."""
-    label = np.full(len(top.xyz), -1)
-    for cell in np.flatnonzero(partition.label >= 0):
-        label[partition.cells.members[cell]] = partition.label[cell]
-    a, b, c = partition.coefficients[label].T
-    above = top.xyz[:, 2] - a * top.xyz[:, 0] - b * top.xyz[:, 1] - c
-    return np.where(label >= 0, above, np.nan), label
-
-
 def _off(top: _Top, above: np.ndarray, is_wanted: np.ndarray) -> np.ndarray:
     """Return the heights (k,), m, above the model, cut off, of the wanted points (n,), bool, that are on top."""
     wanted = above[is_wanted]
@@ -262,19 +253,10 @@ def _worse(model: BuildingModel, level: str, top: _Top, above: np.ndarray) -> st
     return "" if is_near else "it is farther from the points than a simpler model"
 
 
-def _enter(
-    model: BuildingModel,
-    level: str,
-    top: _Top,
-    partition: Partition,
-    solids: list[Solid],
-    above: np.ndarray,
-    label: np.ndarray,
-) -> None:
-    """Put a level into the model as its best one."""
+def _describe(model: BuildingModel, top: _Top, partition: Partition, above: np.ndarray, label: np.ndarray) -> None:
+    """Measure how well the best level explains the points, which lie ``above`` planes (m) of these labels."""
     over = np.isfinite(above)
     off = _off(top, above, over)
-    model.level, model.solids[level] = level, solids
     model.rms = root_mean_square(off)
     model.explained = _explained(off, top)
     model.off = share_off(off)

@@ -24,12 +24,12 @@ from .model_inputs import (
     plane_tolerance,
     require_buildings,
     require_ground,
-    rows_near,
+    rows_within,
     shows_roof,
     sound_rings,
     tell_without_area,
 )
-from .roof_partition import cells_inside, covered_share, inside_rings
+from .roof_partition import cells_inside, covered_share
 from .roof_planes import RoofPlanes, find_roof_planes
 from .roof_points import RULES
 
@@ -270,8 +270,7 @@ def _borders(outlines: list, spacing: float, monitor: Monitor) -> list[tuple[np.
 
 def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], tolerance: float) -> dict[str, Any]:
     """Measure the building on a footprint: its attributes by the names of the fields."""
-    near, are_classified = rows_near(points.xyz, rings), PointClass.BUILDING in points.roofs
-    within = near[inside_rings(points.xyz[near, :2], rings)]
+    within, are_classified = rows_within(points.xyz, rings), PointClass.BUILDING in points.roofs
     kind = points.classification[within]
     base, terrain = np.percentile(ground_beside(points.ground, points.tree, rings), (GROUND_PERCENTILE, 50)).tolist()
     building, plants = within[np.isin(kind, points.roofs)], within[np.isin(kind, VEGETATION)]

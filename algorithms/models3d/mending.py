@@ -393,13 +393,7 @@ class _Mending:
 
     def off(self) -> float:
         """Return how far the roof is off its points, the sum of their heights (m) over or under it."""
-        label, cells = self.partition.label, self.partition.cells
-        plane = np.full(len(self.xyz), -1)
-        for cell in np.flatnonzero(label >= 0):
-            plane[cells.members[cell]] = label[cell]
-        a, b, c = self.partition.coefficients[plane].T
-        off = np.abs(self.xyz[:, 2] - a * self.xyz[:, 0] - b * self.xyz[:, 1] - c)
-        return float(np.where(plane >= 0, np.minimum(off, FARTHEST), FARTHEST).sum())
+        return float(np.fmin(np.abs(self.partition.above(self.xyz)[0]), FARTHEST).sum())
 
     def _neighbors(self, part: np.ndarray) -> list[int]:
         """Return the planes of the neighbors of a part."""

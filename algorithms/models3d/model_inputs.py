@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..geometry.points_in_polygons import are_within
 from ..geometry.polylines import simplify_ring
-from ..geometry.rings import polygon_area, sampled_rings, signed_area
+from ..geometry.rings import polygon_area, sampled_rings, sides_of_rings, signed_area
 from ..stage import Monitor
 
 # Rings with less area (m²) are no footprints.
@@ -72,6 +73,17 @@ def rows_near(xyz: np.ndarray, rings: list, margin: float = 0.0) -> np.ndarray:
     (west, south), (east, north) = rings[0].min(axis=0) - margin, rings[0].max(axis=0) + margin
     rows = np.arange(np.searchsorted(xyz[:, 0], west), np.searchsorted(xyz[:, 0], east, side="right"))
     return rows[(xyz[rows, 1] >= south) & (xyz[rows, 1] <= north)]
+
+
+def rows_within(xyz: np.ndarray, rings: list) -> np.ndarray:
+    """Return the rows of points, in the order of their eastings, within a footprint."""
+    rows = rows_near(xyz, rings)
+    return rows[are_within(xyz[rows, :2], sides_of_rings(rings))]
+
+
+def by_easting(xyz: np.ndarray) -> np.ndarray:
+    """Return points (n, 3) in the order of their eastings."""
+    return xyz[np.argsort(xyz[:, 0], kind="stable")]
 
 
 def sound_rings(rings: list) -> list:

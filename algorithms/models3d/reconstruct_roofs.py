@@ -29,16 +29,17 @@ from .joined_terrain import PATCH, TERRAIN_FIELDS, on_terrain, terrain_layer, tr
 from .model_inputs import (
     GROUND_PERCENTILE,
     TOLERANCE_TEXT,
+    by_easting,
     ground_beside,
     plane_tolerance,
     require_buildings,
     require_ground,
     rows_near,
+    rows_within,
     shows_roof,
     sound_rings,
     tell_without_area,
 )
-from .roof_partition import inside_rings
 from .roof_points import RADIUS, are_low
 from .solids import ROOF, WALL
 
@@ -228,8 +229,7 @@ def _points(xyz: np.ndarray, classification: np.ndarray) -> tuple[np.ndarray, np
     """Return the points of buildings in the order of their eastings, and those of the ground."""
     require_buildings(classification)
     require_ground(classification)
-    building = xyz[classification == PointClass.BUILDING]
-    return building[np.argsort(building[:, 0], kind="stable")], xyz[classification == PointClass.GROUND]
+    return by_easting(xyz[classification == PointClass.BUILDING]), xyz[classification == PointClass.GROUND]
 
 
 def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> list[_Outline]:
@@ -259,8 +259,7 @@ def _modelled(
     tree = spatial.cKDTree(ground[:, :2])
     models, empty, failed = [], 0, []
     for number, outline in enumerate(outlines):
-        over = rows_near(building, outline.rings)
-        over = over[inside_rings(building[over, :2], outline.rings)]
+        over = rows_within(building, outline.rings)
         if not shows_roof(len(over), settings.spacing, outline.rings):
             empty += 1
         else:

@@ -58,6 +58,14 @@ class Partition:
     coefficients: np.ndarray  #: (m, 3): the planes z = a x + b y + c
     cost: np.ndarray = field(repr=False)  #: (cells, m): what each plane costs in each cell, m² that are not explained
 
+    def above(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return how far (n,), m, points (n, 3) are above the planes, NaN outside, and the planes over or under them."""
+        plane = np.full(len(xyz), -1)
+        for cell in np.flatnonzero(self.label >= 0):
+            plane[self.cells.members[cell]] = self.label[cell]
+        a, b, c = self.coefficients[plane].T
+        return np.where(plane >= 0, xyz[:, 2] - a * xyz[:, 0] - b * xyz[:, 1] - c, np.nan), plane
+
 
 def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:
     """Return the mask of positions (n, 2) in a polygon."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.line_segments import polygons_of
+from ..geometry.rings import rings_of_edges
 from .solid_levels import BASE, Levels, Position
 from .solids import GROUND, ROOF, WALL, Ring, Solid, edges_around, groups_of
 
@@ -70,10 +71,10 @@ class _Builder:
         for cell, root in part.items():
             cells_of[root].append(cell)
         for (root, plane), edges in self._roof_edges(part).items():
-            for rings in self._polygons(_rings(edges), upward=True):
+            for rings in self._polygons(rings_of_edges(edges), upward=True):
                 faces.append((ROOF, plane, rings, cells_of[root]))
         faces += [(WALL, -1, [ring], cells) for ring, cells in self._walls()]
-        for rings in self._polygons(_rings(self._ground_edges()), upward=False):
+        for rings in self._polygons(rings_of_edges(self._ground_edges()), upward=False):
             faces.append((GROUND, -1, rings, []))
         return _compact(self.levels.positions, faces), [cells for *_, cells in faces]
 
@@ -150,7 +151,7 @@ class _Builder:
     def _around(walls: list[_Wall]) -> list[Ring]:
         """Return the rings around walls."""
         edges = {edge for wall in walls for edge in edges_around(wall.ring)}
-        return _rings([(a, b) for a, b in edges if (b, a) not in edges])
+        return rings_of_edges([(a, b) for a, b in edges if (b, a) not in edges])
 
     def _are_in_line(self, one: _Wall, other: _Wall) -> bool:
         """Return whether two walls face the same way in one line."""
@@ -172,35 +173,6 @@ class _Builder:
         """Return the polygons that rings make, each exterior first; exteriors are clockwise unless ``upward``."""
         closed = [self.plan[[*ring, ring[0]]][:: 1 if upward else -1] for ring in rings]
         return [[rings[i] for i in part] for part in polygons_of(closed)]
-
-
-def _rings(edges: list[tuple[int, int]]) -> list[Ring]:
-    """Return the rings that directed edges make; where rings touch in a vertex they are parted."""
-    following: dict[int, list[int]] = defaultdict(list)
-    for a, b in edges:
-        following[a].append(b)
-    rings = []
-    while following:
-        path, position = [next(iter(following))], {}
-        position[path[0]] = 0
-        while True:
-            ways = following[path[-1]]
-            step = ways.pop()
-            if not ways:
-                del following[path[-1]]
-            if step in position:
-                # A loop within the path is a ring of its own.
-                at = position[step]
-                rings.append(path[at:])
-                for vertex in path[at + 1 :]:
-                    del position[vertex]
-                path = path[: at + 1]
-                if at == 0 and step not in following:
-                    break
-            else:
-                position[step] = len(path)
-                path.append(step)
-    return rings
 
 
 def _compact(positions: list[Position], faces: list[_Built]) -> Solid:

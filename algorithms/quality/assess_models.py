@@ -11,8 +11,14 @@ from ..cloud.asprs import PointClass
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import connected_cells, grid_over
 from ..geometry.rings import signed_area
-from ..models3d.model_inputs import TOLERANCE_TEXT, plane_tolerance, require_buildings
-from ..models3d.roof_partition import inside_rings
+from ..models3d.model_inputs import (
+    TOLERANCE_TEXT,
+    by_easting,
+    plane_tolerance,
+    require_buildings,
+    rows_near,
+    rows_within,
+)
 from ..models3d.roof_planes import find_roof_planes
 from ..models3d.roof_points import RULES, are_low, are_on_roof, distances, root_mean_square
 from ..report.charts import BLUE, Mark, Series, draw_histogram
@@ -272,28 +278,18 @@ class _RoofPoints:
     """The building points ``xyz`` (n, 3) by easting, which are low (n,), and the lowest of buildings and ground."""
 
     def __init__(self, xyz: np.ndarray, classification: np.ndarray, spacing: float) -> None:
-        building = xyz[classification == PointClass.BUILDING]
-        order = np.argsort(building[:, 0], kind="stable")
-        self.spacing = spacing
-        self.xyz = building[order]
-        self.is_low = are_low(building, spacing)[order]
-        low = xyz[np.isin(classification, (PointClass.BUILDING, PointClass.GROUND))]
-        self._low = low[np.argsort(low[:, 0], kind="stable")]
+        self.spacing, self.xyz = spacing, by_easting(xyz[classification == PointClass.BUILDING])
+        self.is_low = are_low(self.xyz, spacing)
+        self._low = by_easting(xyz[np.isin(classification, (PointClass.BUILDING, PointClass.GROUND))])
 
     def over(self, rings: list) -> np.ndarray:
         """Return the building points (k,), rows of ``xyz``, that lie within rings in plan."""
-        (west, south), (east, north) = rings[0][:, :2].min(axis=0), rings[0][:, :2].max(axis=0)
-        x, y = self.xyz[:, 0], self.xyz[:, 1]
-        rows = np.arange(np.searchsorted(x, west), np.searchsorted(x, east, side="right"))
-        rows = rows[(y[rows] >= south) & (y[rows] <= north)]
-        return rows[inside_rings(self.xyz[rows, :2], [ring[:, :2] for ring in rings])]
+        return rows_within(self.xyz, [ring[:, :2] for ring in rings])
 
-    def lowest(self, low: np.ndarray, high: np.ndarray) -> float:
-        """Return the lowest height (m) in a box, NaN where there are no points."""
-        x = self._low[:, 0]
-        some = self._low[np.searchsorted(x, low[0]) : np.searchsorted(x, high[0], side="right")]
-        inside = (some[:, 1] >= low[1]) & (some[:, 1] <= high[1])
-        return float(some[inside, 2].min()) if inside.any() else np.nan
+    def lowest(self, plan: np.ndarray) -> float:
+        """Return the lowest height (m) in the box around positions (n, 2), NaN where there are no points."""
+        z = self._low[rows_near(self._low, [plan]), 2]
+        return float(z.min()) if len(z) else np.nan
 
 
 def _compared(
@@ -330,7 +326,7 @@ def _missing(xyz: np.ndarray, on_model: np.ndarray, tolerance: float, min_points
 def _volume(faces: list[_Face], points: _RoofPoints) -> float:
     """Return the volume (m³) of the prisms under faces, whichever way their rings run."""
     corners = np.concatenate([ring for face in faces for ring in face.rings])
-    base = points.lowest(corners[:, :2].min(axis=0), corners[:, :2].max(axis=0))
+    base = points.lowest(corners[:, :2])
     total = 0.0
     for face in faces:
         for number, ring in enumerate(face.rings):
@@ -369,18 +365,13 @@ def _values(buildings: list[_Building]) -> dict[str, float]:
 
 def _face_layer(buildings: list[_Building], points: _RoofPoints) -> LayerFeatures:
     """Return the faces, and the cells of missing planes at their mean height."""
-    geometries: list = []
-    rows: list[dict[str, Any]] = []
+    features: list[tuple[list, dict[str, Any]]] = []
     for building in buildings:
-        for face in building.faces:
-            geometries.append(face.rings)
-            rows.append(_attributes(building.name, face.status, face.off))
+        features += [(face.rings, _attributes(building.name, face.status, face.off)) for face in building.faces]
         for xyz in building.missing:
-            outlines = _outlines(xyz, RULES.cell_size(points.spacing))
-            geometries += outlines
-            rows += [_attributes(building.name, MISSING, np.zeros(0), len(xyz))] * len(outlines)
-    columns = {field.name: [row[field.name] for row in rows] for field in _FACES.fields if field.name != "id"}
-    return LayerFeatures(geometries, {"id": list(range(1, len(rows) + 1)), **columns})
+            facts = _attributes(building.name, MISSING, np.zeros(0), len(xyz))
+            features += [(rings, facts) for rings in _outlines(xyz, RULES.cell_size(points.spacing))]
+    return LayerFeatures.numbered(features, _FACES.fields)
 
 
 def _attributes(building: str, status: str, off: np.ndarray, n_points: int = 0) -> dict[str, Any]:
@@ -402,19 +393,20 @@ def _outlines(xyz: np.ndarray, size: float) -> list:
 
 def _building_layer(buildings: list[_Building]) -> LayerFeatures:
     """Return a point per building."""
-    positions = [np.concatenate([face.rings[0][:-1] for face in building.faces]).mean(axis=0) for building in buildings]
-    columns = {
-        "id": list(range(1, len(buildings) + 1)),
-        "building": [building.name for building in buildings],
-        "points": [len(building.off) for building in buildings],
-        "rms": [root_mean_square(building.off) for building in buildings],
-        "p95": [_p95(building.off) for building in buildings],
-        "faces": [len(building.faces) for building in buildings],
-        "missing": [len(building.missing) for building in buildings],
-        "invented": [building.n_invented for building in buildings],
-        "volume": [building.volume for building in buildings],
-    }
-    return LayerFeatures(positions, columns)
+    features = []
+    for building in buildings:
+        facts = {
+            "building": building.name,
+            "points": len(building.off),
+            "rms": root_mean_square(building.off),
+            "p95": _p95(building.off),
+            "faces": len(building.faces),
+            "missing": len(building.missing),
+            "invented": building.n_invented,
+            "volume": building.volume,
+        }
+        features.append((np.concatenate([face.rings[0][:-1] for face in building.faces]).mean(axis=0), facts))
+    return LayerFeatures.numbered(features, _BUILDINGS.fields)
 
 
 def _page(buildings: list[_Building], values: dict[str, float], tolerance: float) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.groups import components, split_groups
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes
+from ..models3d.model_inputs import by_easting
 from ..packages import spatial
 from ..report.charts import BLUE, GRAY, RED, YELLOW
 from ..sampling.cloud_sampling import CloudSampling
@@ -144,5 +145,4 @@ def roof_points(xyz: np.ndarray, classification: Optional[np.ndarray], fit: MapF
     """Return the points (k, 3), m, that may be of roofs in the order of their eastings, in the frame of the map."""
     kinds = np.zeros(len(xyz)) if classification is None else classification
     is_roof = kinds == PointClass.BUILDING
-    own = xyz[is_roof if is_roof.any() else ~np.isin(kinds, NOISE)]
-    return own[np.argsort(own[:, 0], kind="stable")] - np.append(fit.shift, 0.0)
+    return by_easting(xyz[is_roof if is_roof.any() else ~np.isin(kinds, NOISE)]) - np.append(fit.shift, 0.0)
