@@ -7,6 +7,7 @@ from typing import Optional, Union
 
 import numpy as np
 
+from ..geometry.groups import placed
 from ..geometry.scattered import scattered
 from ..neighborhoods.covariance import Nearest, neighborhood_eigenvalues, shannon_entropy_lps
 from ..neighborhoods.wide_in_plan import Wide
@@ -29,9 +30,7 @@ class ClusterEntropies:
 
     def groups(self, n_points: int) -> np.ndarray:
         """Return the cluster of each of the cloud's points (n_points,), as an index into ``ids``; -1 for none."""
-        group = np.full(n_points, -1)
-        group[self.rows] = self.position
-        return group
+        return placed(self.position, self.rows, n_points, -1)
 
     def share_of(self, mask: np.ndarray) -> np.ndarray:
         """Return the share (m,) of each cluster's points that a mask (n_points,) has."""

@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
+from ..geometry.groups import placed
 from ..sampling.kinds import SCENE
 from ..segmentation.cluster_measures import (
     adjacent_groups,
@@ -77,9 +78,7 @@ class ClusterEvidence:
 
     def _by_number(self, mask: np.ndarray) -> np.ndarray:
         """Return a mask of the clusters as one of all numbers, False for numbers without points."""
-        every = np.zeros(int(self.numbers[-1]) + 1, bool)
-        every[self.numbers] = mask
-        return every
+        return placed(mask, self.numbers, int(self.numbers[-1]) + 1)
 
 
 def with_penetration(

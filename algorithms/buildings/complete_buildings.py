@@ -10,7 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.reasons import Reason
 from ..geometry.grid import raster_cells, refuse_sparse
-from ..geometry.groups import least_of
+from ..geometry.groups import placed, ranked_by_least
 from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE
 from ..rules import rule
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
@@ -257,13 +257,7 @@ def _coverage_in_images(roofs: _Roofs, limits: _Limits) -> Coverage:
 def _in_order(owner: np.ndarray, cell: np.ndarray) -> np.ndarray:
     """Return the numbers (n,), int32, of buildings with points, from 1 without gaps, in the order of their cells."""
     rows = np.flatnonzero(owner)
-    found, which = np.unique(owner[rows], return_inverse=True)
-    least = least_of(cell[rows], which, len(found))
-    rank = np.empty(len(found), np.int32)
-    rank[np.argsort(least, kind="stable")] = np.arange(1, len(found) + 1, dtype=np.int32)
-    final = np.zeros(len(owner), np.int32)
-    final[rows] = rank[which]
-    return final
+    return placed(ranked_by_least(cell[rows], owner[rows]), rows, len(owner))
 
 
 def _explained(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.groups import least_of
+from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 from ..sampling.kinds import LASER
 from ..sampling.surface_noise import ON_PLANE
@@ -53,8 +54,7 @@ def deck_cells(
         deck[around] |= is_inside & (_rise(street[around], ground[around], is_inside, cell_size) > LASER.lowest_roof)
     patch, count = ndimage.label(deck)
     is_large = np.bincount(patch.ravel(), minlength=count + 1) * cell_size**2 >= min_area
-    nearest = ndimage.distance_transform_edt(building == 0, return_distances=False, return_indices=True)
-    return np.where(deck & is_large[patch], building[tuple(nearest)], 0)
+    return np.where(deck & is_large[patch], nearest_known(building, building == 0), 0)
 
 
 def _rise(street: np.ndarray, ground: np.ndarray, is_court: np.ndarray, cell_size: float) -> np.ndarray:

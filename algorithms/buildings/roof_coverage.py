@@ -8,7 +8,8 @@ import numpy as np
 
 from ..cloud.reasons import Reason
 from ..geometry.grid import EIGHT
-from ..geometry.groups import least_of
+from ..geometry.groups import least_of, mask_of
+from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 
 # Row and column (n,) of the cell of a raster that each point is in.
@@ -69,9 +70,7 @@ def covered_cells(cell: Cell, is_roof: np.ndarray, is_low: np.ndarray, gap: floa
 def cells_with(cell: Cell, points: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """Return the mask of cells of a raster that hold one of the chosen points (n,)."""
     row, column = cell
-    cells = np.zeros(shape, bool)
-    cells[row[points], column[points]] = True
-    return cells
+    return mask_of(shape, (row[points], column[points]))
 
 
 def _small(mask: np.ndarray, most: float) -> np.ndarray:
@@ -140,8 +139,7 @@ def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, shape: tupl
     row, column = cell
     number = row[is_roof] * shape[1] + column[is_roof]
     top = -least_of(-elevation[is_roof], number, shape[0] * shape[1]).reshape(shape)
-    nearest = ndimage.distance_transform_edt(~np.isfinite(top), return_distances=False, return_indices=True)
-    return top[tuple(nearest)]
+    return nearest_known(top, ~np.isfinite(top))
 
 
 def disk(radius: int) -> np.ndarray:

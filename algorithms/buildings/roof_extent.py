@@ -8,6 +8,7 @@ import numpy as np
 
 from ..cloud.reasons import Reason
 from ..geometry.grid import EIGHT
+from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.kinds import IMAGES, MATCHING
@@ -92,9 +93,8 @@ class RoofExtent:
         """
         if not core.any():
             return core
-        nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)
         # A step is smeared evenly to both sides.
-        is_edge = self.surface.height >= 0.5 * self.surface.height[tuple(nearest)]
+        is_edge = self.surface.height >= 0.5 * nearest_known(self.surface.height, ~core)
         steps = max(1, round(MATCHING.rounded / self.surface.size))
         cross = ndimage.generate_binary_structure(2, 1)
         grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)

@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..geometry.groups import components, members
+from ..geometry.groups import components, mask_of, members, placed
 from ..geometry.rings import rings_of_edges, signed_area
 from ..packages import spatial
 
@@ -70,12 +70,10 @@ def trace_outlines(xy: np.ndarray, max_edge: float, triangulation: Any) -> Optio
     if not is_kept.any():
         return None
     piece = pieces_of(is_kept, neighbors)
-    reaches_rim = np.zeros(piece.max() + 1, bool)
-    reaches_rim[piece[(neighbors < 0).any(axis=1)]] = True
+    reaches_rim = mask_of(piece.max() + 1, piece[(neighbors < 0).any(axis=1)])
     is_kept |= ~reaches_rim[piece]
-    face = np.full(len(triangles), -1)
-    face[is_kept] = np.unique(pieces_of(is_kept, neighbors)[is_kept], return_inverse=True)[1]
-    return Tracing(xy, triangles, neighbors, face)
+    piece = np.unique(pieces_of(is_kept, neighbors)[is_kept], return_inverse=True)[1]
+    return Tracing(xy, triangles, neighbors, placed(piece, is_kept, len(triangles), -1))
 
 
 def pieces_of(value: np.ndarray, neighbors: np.ndarray) -> np.ndarray:

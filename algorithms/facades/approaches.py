@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.groups import least_of
+
 # Distance (m) before a wall from which points are of ground, landings and stairs: sills and cornices jut out less.
 FROM_WALL = 0.2
 
@@ -74,8 +76,6 @@ def _highest(positions: np.ndarray, box: np.ndarray, limit: float) -> np.ndarray
     """Return the greatest height (m) up to a limit in each column of a box, -inf where there are no points."""
     left, right = box[:, 0]
     count = max(1, int((right - left) / _RULES.column))
-    top = np.full(count, -np.inf)
     low = positions[positions[:, 1] <= limit]
     column = np.minimum(((low[:, 0] - left) / (right - left) * count).astype(np.int64), count - 1)
-    np.maximum.at(top, column, low[:, 1])
-    return top
+    return -least_of(-low[:, 1], column, count)

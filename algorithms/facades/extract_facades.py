@@ -8,7 +8,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
-from ..geometry.groups import members
+from ..geometry.groups import least_of, members
 from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT, SEED
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.least_squares_planes import Planes, off_planes, planes_of
@@ -214,9 +214,7 @@ def extract_facades(
 def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:
     """Return the mask of points (n,) that share a cell in plan with points far above or below, as walls have them."""
     cells, cell = distinct(grid_over(xyz, _PLAN_CELL).number(xyz))
-    low, high = np.full(len(cells), np.inf), np.full(len(cells), -np.inf)
-    np.minimum.at(low, cell, xyz[:, 2])
-    np.maximum.at(high, cell, xyz[:, 2])
+    low, high = least_of(xyz[:, 2], cell, len(cells)), -least_of(-xyz[:, 2], cell, len(cells))
     return (high - low >= min_height / 2)[cell]
 
 

@@ -7,6 +7,8 @@ from typing import Optional
 
 import numpy as np
 
+from ..geometry.polygons import line_of_planes
+
 # Planes that meet at a smaller angle (sine: 5°) have no intersection line that noise leaves in place.
 _LEAST_SINE = np.sin(np.radians(5.0))
 
@@ -52,12 +54,6 @@ def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np
 
     The point is the one nearest to the middle between the origins of both.
     """
-    direction = np.cross(one.normal, other.normal)
-    sine = float(np.linalg.norm(direction))
-    if sine < _LEAST_SINE:
+    if np.linalg.norm(np.cross(one.normal, other.normal)) < _LEAST_SINE:
         return None
-    direction = direction / sine
-    middle = (one.origin + other.origin) / 2
-    offsets = [plane.normal @ (plane.origin - middle) for plane in (one, other)]
-    point = middle + np.linalg.solve(np.array([one.normal, other.normal, direction]), [*offsets, 0.0])
-    return point, direction
+    return line_of_planes((one.origin, other.origin), (one.normal, other.normal))

@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.groups import components, members
+from ..geometry.groups import components, least_of, mask_of, members
 from ..geometry.polylines import simplify_ring
 from ..packages import ndimage, spatial
 from .approaches import BEFORE, FROM_WALL, Approach
@@ -110,9 +110,7 @@ class Raster:
 
     def mask(self, positions: np.ndarray) -> np.ndarray:
         """Return the mask of cells that hold positions (n, 2)."""
-        mask = np.zeros(self.shape, bool)
-        mask[self.cell(positions)] = True
-        return mask
+        return mask_of(self.shape, self.cell(positions))
 
     def groups(self) -> tuple[np.ndarray, int]:
         """Return the group from 1 of each cell with points behind the wall, 0 for others, and the number of groups.
@@ -223,8 +221,7 @@ def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> 
         near &= (wall[:, other] >= box[0, other]) & (wall[:, other] <= box[1, other])
         lines = max(1, int(np.ceil((box[1, other] - box[0, other]) / cell)))
         line = np.minimum(((wall[near, other] - box[0, other]) / cell).astype(np.int64), lines - 1)
-        nearest = np.full(lines, np.inf)
-        np.minimum.at(nearest, line, outward[near])
+        nearest = least_of(outward[near], line, lines)
         has_wall = np.abs(nearest) <= _REACH
         shares[2 * axis + end] = has_wall.mean()
         if has_wall.any():

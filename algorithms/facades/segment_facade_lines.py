@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.groups import least_of, run_starts
+from ..geometry.groups import least_of, placed, run_starts
 from ..geometry.polylines import simplify
 from ..neighborhoods.covariance import full_matrices
 from ..segmentation.least_squares_planes import planes_of
@@ -242,10 +242,8 @@ def _described(
     first = run_starts(piece)
     last = first + count - 1
     kept = np.flatnonzero(count >= min_points)
-    number = np.zeros(len(count), np.int32)
-    number[kept] = np.arange(1, len(kept) + 1)
-    segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[order] = number[piece]
+    number = placed(np.arange(1, len(kept) + 1, dtype=np.int32), kept, len(count))
+    segment_id = placed(number[piece], order, len(xyz))
     start, end = xyz[order[first[kept]]], xyz[order[last[kept]]]
     middle, of_line = (start + end) / 2, line[first[kept]]
     slope = _slopes(xyz[order], piece, kept)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..geometry.cell_polygons import cell_polygons, connected_cells
 from ..geometry.cheapest_labels import cheapest_labels
+from ..geometry.groups import mask_of
 from ..geometry.ring_directions import along_two_directions
 from ..geometry.ring_drawing import Edge, Prices, aligned, draw_ring
 from ..geometry.rings import sides_of_rings
@@ -243,8 +244,7 @@ def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.n
     for is_ground, least in ((True, how.min_hole_area), (False, how.min_area)):
         piece = connected_cells(cells, label)
         size = np.bincount(piece, cells.areas())
-        is_open = np.zeros(len(size), bool)
-        is_open[piece[cells.is_on_rim()]] = True
+        is_open = mask_of(len(size), piece[cells.is_on_rim()])
         pairs, sides = cells.edges()
         vertices = np.array(cells.vertices)
         length = np.hypot(*(vertices[pairs[:, 1]] - vertices[pairs[:, 0]]).T)

@@ -345,6 +345,4 @@ def _features(geometries: list, attributes: list[dict[str, Any]], min_area: floa
     """Return the footprints that are large enough in the order of their clusters, from the south-west, numbered."""
     keys = [(of_one["cluster_id"], *map(float, rings[0].min(axis=0))) for rings, of_one in zip(geometries, attributes)]
     kept = sorted((i for i, of_one in enumerate(attributes) if of_one["area"] >= min_area), key=keys.__getitem__)
-    names = [field.name for field in FIELDS if field.name != "id"]
-    columns = {name: [attributes[i][name] for i in kept] for name in names}
-    return LayerFeatures([geometries[i] for i in kept], {"id": list(range(1, len(kept) + 1)), **columns})
+    return LayerFeatures.numbered([(geometries[i], attributes[i]) for i in kept], FIELDS)

@@ -10,6 +10,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 
 # Nodes of the lattice per point spacing: at two, linear interpolation between nodes adds nothing to the smoothing.
@@ -228,5 +229,4 @@ def smoothed(field: np.ndarray, width: float) -> np.ndarray:
 
 def spread_out(label: np.ndarray) -> np.ndarray:
     """Return labels (rows, columns) in which each node without one, 0, has the nearest node's."""
-    nearest = ndimage.distance_transform_edt(label == 0, return_distances=False, return_indices=True)
-    return label[tuple(nearest)]
+    return nearest_known(label, label == 0)

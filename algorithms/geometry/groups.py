@@ -93,6 +93,13 @@ def least_of(values: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
     return least
 
 
+def ranked_by_least(values: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """Return the rank (n,), int32, from 1, of the group of each item: groups ascend by their least values."""
+    groups, which = np.unique(group, return_inverse=True)
+    order = np.argsort(least_of(values, which, len(groups)), kind="stable")
+    return placed(np.arange(1, len(groups) + 1, dtype=np.int32), order, len(groups))[which]
+
+
 def items(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the items of groups, one group after the other.
 

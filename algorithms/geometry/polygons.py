@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 
@@ -18,6 +20,15 @@ def _cross(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the cross products (..., 3) of vectors, in half of the time that numpy takes for few of them."""
     (x, y, z), (u, v, w) = one.T, other.T
     return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+
+
+def line_of_planes(origins: Sequence[np.ndarray], normals: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return a point (3,) on the line that two planes share, amid a point (3,) of each, and its unit direction (3,)."""
+    direction = np.cross(*normals)
+    direction /= np.linalg.norm(direction)
+    middle = (origins[0] + origins[1]) / 2
+    offsets = [normal @ (origin - middle) for normal, origin in zip(normals, origins)]
+    return middle + np.linalg.solve(np.array([*normals, direction]), [*offsets, 0.0]), direction
 
 
 def axes_across(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

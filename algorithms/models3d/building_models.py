@@ -8,7 +8,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, placed
 from ..geometry.line_segments import nearest_edge_distances
 from .mending import LARGE, mended
 from .roof_partition import FARTHEST, Partition, covered_share, divide_footprint, empty_partition
@@ -231,10 +231,8 @@ def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
         step = step + np.abs((difference[:, :2] * xy).sum(axis=1) + difference[:, 2]) / 2
     rows &= (one == other) | (step < min_step)
     _, group = components(beside[rows, 0], beside[rows, 1], len(roof.cells))
-    part = np.full(len(roof.cells), -1)
     inside = roof.label >= 0
-    part[inside] = np.unique(group[inside], return_inverse=True)[1]
-    return part
+    return placed(np.unique(group[inside], return_inverse=True)[1], inside, len(roof.cells), -1)
 
 
 def _off(top: _Top, above: np.ndarray, is_wanted: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, mask_of
 from .roof_partition import FARTHEST, Partition
 from .roof_planes import planes_through
 from .roof_points import RADIUS, HeightsAround
@@ -379,8 +379,7 @@ class _Mending:
         """Give the smallest cell at the border of a large part the plane of a neighbor; return whether one was left."""
         if not self.spared or self.areas[part].sum() <= LARGE:
             return False
-        is_part = np.zeros(len(self.areas), bool)
-        is_part[part] = True
+        is_part = mask_of(len(self.areas), part)
         edges = self.beside[is_part[self.beside].sum(axis=1) == 1]
         inner, outer = np.where(is_part[edges], edges, 0).sum(axis=1), np.where(is_part[edges], 0, edges).sum(axis=1)
         cells = set(inner[self.partition.label[outer] >= 0].tolist()) - self.changed
@@ -398,8 +397,7 @@ class _Mending:
     def _neighbors(self, part: np.ndarray) -> list[int]:
         """Return the planes of the neighbors of a part."""
         label = self.partition.label
-        is_part = np.zeros(len(label), bool)
-        is_part[part] = True
+        is_part = mask_of(len(label), part)
         around = label[self.beside[is_part[self.beside].sum(axis=1) == 1]].ravel()
         return sorted(set(around[(around >= 0) & (around != label[part[0]])].tolist()))
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.groups import members
-from ..geometry.polygons import area_vector
+from ..geometry.polygons import area_vector, line_of_planes
 from ..packages import spatial
 from ..segmentation.least_squares_planes import Planes, planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
@@ -225,12 +225,7 @@ def _are_opposite(planes: Planes, a: int, b: int) -> bool:
 
 def _ridge(planes: Planes, a: int, b: int) -> tuple[np.ndarray, np.ndarray]:
     """Return a point (3,), m, of the ridge, and its level unit direction (3,)."""
-    one, other = planes.normal[a], planes.normal[b]
-    direction = np.cross(one, other)
-    direction /= np.linalg.norm(direction)
-    middle = (planes.center[a] + planes.center[b]) / 2
-    offsets = [one @ (planes.center[a] - middle), other @ (planes.center[b] - middle), 0.0]
-    point = middle + np.linalg.solve(np.array([one, other, direction]), offsets)
+    point, direction = line_of_planes(planes.center[[a, b]], planes.normal[[a, b]])
     level = np.array([direction[0], direction[1], 0.0])
     return point, level / np.linalg.norm(level)
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..geometry.cheapest_labels import cheapest_labels
+from ..geometry.groups import placed
 from ..geometry.points_in_polygons import are_within
 from ..geometry.rings import sides_of_rings
 from ..geometry.subdivision import SNAP, Subdivision
@@ -59,7 +60,7 @@ class Partition:
     cost: np.ndarray = field(repr=False)  #: (cells, m): what each plane costs in each cell, m² that are not explained
 
     def above(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return how far (n,), m, points (n, 3) are above the planes, NaN outside, and the planes over or under them."""
+        """Return how far (n,), m, points (n, 3) are above planes, NaN outside, and the planes over or under them."""
         plane = np.full(len(xyz), -1)
         for cell in np.flatnonzero(self.label >= 0):
             plane[self.cells.members[cell]] = self.label[cell]
@@ -164,15 +165,13 @@ def divide_footprint(
     cost = np.zeros((len(cells), len(planes)))
     cost[used] = _costs(xyz, is_top, planes, cells, used, spacing, tolerance)
     cost[used] += _forbidden(planes, cells, used, xyz, base)
-    label = np.full(len(cells), -1)
-    label[used] = _labels(planes, cells, used, cost[used])
+    label = placed(_labels(planes, cells, used, cost[used]), used, len(cells), -1)
     return Partition(cells, label, planes.coefficients, cost)
 
 
 def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.ndarray) -> np.ndarray:
     """Return the plane of each of the cells ``used``."""
-    number = np.full(len(cells), -1)
-    number[used] = np.arange(len(used))
+    number = placed(np.arange(len(used)), used, len(cells), -1)
     ends, beside = cells.edges()
     beside = number[beside]
     between = (beside >= 0).all(axis=1)

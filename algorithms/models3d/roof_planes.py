@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, placed
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..packages import spatial
 from ..segmentation.least_squares_planes import planes_of
@@ -215,10 +215,8 @@ def _large(label: np.ndarray, min_points: int) -> np.ndarray:
         return label
     size = np.bincount(label[label >= 0])
     order = np.argsort(-size, kind="stable")
-    number = np.full(len(size) + 1, -1)
     kept = order[size[order] >= min_points]
-    number[kept] = np.arange(len(kept))
-    return number[label]
+    return placed(np.arange(len(kept)), kept, len(size) + 1, -1)[label]
 
 
 def planes_through(xyz: np.ndarray, label: np.ndarray) -> RoofPlanes:
@@ -231,6 +229,4 @@ def planes_through(xyz: np.ndarray, label: np.ndarray) -> RoofPlanes:
     normal = np.where(np.abs(planes.normal[:, 2:]) > 1e-6, planes.normal, [0.0, 0.0, 1.0])
     slope = -normal[:, :2] / normal[:, 2:]
     constant = planes.center[:, 2] - np.einsum("ij,ij->i", slope, planes.center[:, :2])
-    compact = np.full(len(label), -1)
-    compact[member] = group
-    return RoofPlanes(np.column_stack([slope, constant]), compact)
+    return RoofPlanes(np.column_stack([slope, constant]), placed(group, member, len(label), -1))

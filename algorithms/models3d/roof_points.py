@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.grid import find_cells, grid_over
+from ..geometry.groups import least_of
 from ..packages import spatial
 
 # Distance (m) in plan within which points limit the height of a corner: ridges and eaves are sampled that closely.
@@ -44,8 +45,7 @@ def are_low(xyz: np.ndarray, spacing: float) -> np.ndarray:
     grid = grid_over(xyz, RULES.cell_size(spacing))
     number = grid.number(xyz)
     cells, inverse = np.unique(number, return_inverse=True)
-    top = np.full(len(cells), -np.inf)
-    np.maximum.at(top, inverse, xyz[:, 2])
+    top = -least_of(-xyz[:, 2], inverse, len(cells))
     highest = top.copy()
     for step in grid.around:
         position, is_used = find_cells(cells, cells + step)

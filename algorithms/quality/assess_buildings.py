@@ -10,7 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass, parse_classes
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import Grid, connected_cells, find_cells, grid_over
-from ..geometry.groups import topmost
+from ..geometry.groups import placed, topmost
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
 from ..params import IGNORED_CLASSES, MIN_BUILDING_AREA
@@ -283,9 +283,7 @@ def _parts(grid: Grid, side: _Side, min_area: float) -> np.ndarray:
     inner = np.logical_and.reduce([find_cells(cells, cells + step)[1] for step in grid.around])
     wide = np.bincount(group, inner, count) > 0
     large = np.bincount(group, minlength=count) * grid.size**2 >= min_area
-    chosen = np.zeros(len(side.cells), bool)
-    chosen[rows] = (wide & large)[group]
-    return chosen
+    return placed((wide & large)[group], rows, len(side.cells))
 
 
 def _add(layer: LayerFeatures, kind: str, grid: Grid, side: _Side, chosen: np.ndarray, point_cells: np.ndarray) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes
+from ..geometry.groups import mask_of
 from ..params import IGNORED_CLASSES
 from ..report.charts import draw_matrix
 from ..report.page import FALSE, HIT, MISS, REST, build_page, draw_map, draw_table, percent, rows_of
@@ -181,8 +182,7 @@ def _of_kinds(matrix: np.ndarray) -> dict[str, float]:
     """Return F and intersection over union (percent) of the kinds of classes that are outputs."""
     found = {}
     for kind, members in _KINDS.items():
-        inside = np.zeros(len(matrix), bool)
-        inside[list(members)] = True
+        inside = mask_of(len(matrix), list(members))
         hits, true, called = matrix[np.ix_(inside, inside)].sum(), matrix[inside].sum(), matrix[:, inside].sum()
         # The second class is everything else; its correct points don't count.
         rates = class_rates(np.array([[hits, true - hits], [called - hits, 0]]))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.groups import mask_of
 from ..report.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, percent
 from ..stage import Measure, Report, stage, tunable
 from .point_matching import match_points
@@ -148,8 +149,7 @@ def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> M
     is_over = _made_up(g[parts], shared[parts], size_true, min_overlap)
     pieces = holds & is_open[g] & is_free[m]
     is_whole = _made_up(m[pieces], shared[pieces], size_found, min_overlap)
-    is_under = np.zeros(n_true, bool)
-    is_under[g[pieces & is_whole[m]]] = True
+    is_under = mask_of(n_true, g[pieces & is_whole[m]])
     is_used[m[parts & is_over[g]]] = True
     is_used |= is_whole
     is_missed = is_open & ~is_over & ~is_under

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..footprints.soft_shares import Lattice
 from ..geometry.grid import plan_box
-from ..geometry.groups import components
+from ..geometry.groups import components, mask_of
 from ..geometry.points_in_polygons import are_within
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes
 from ..geometry.rings import polygon_area, sides_of_rings
@@ -54,8 +54,7 @@ class ChangedBlock:
 
     def _around(self, xyz: np.ndarray, reach: float) -> np.ndarray:
         """Return the nodes (rows, columns), bool, within a distance (m) of points (n, 3)."""
-        hit = np.zeros(self.lattice.shape, bool)
-        hit[self.lattice.nearest(xyz[:, :2])] = True
+        hit = mask_of(self.lattice.shape, self.lattice.nearest(xyz[:, :2]))
         return _within(hit, reach / RULES.step)
 
     def decide(self, roofs: list[np.ndarray]) -> None:

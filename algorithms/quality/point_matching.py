@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.groups import placed
 from ..packages import spatial
 
 # Files keep millimeters or centimeters, so equal points agree far better than this (m).
@@ -117,9 +118,7 @@ def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
     rank = np.arange(n) - np.searchsorted(group_of_mine, group_of_mine)
     position = np.searchsorted(group_of_theirs, group_of_mine) + rank
     there = position < np.searchsorted(group_of_theirs, group_of_mine, side="right")
-    found = np.full(n, -1)
-    found[mine[there]] = theirs[position[there]]
-    return found
+    return placed(theirs[position[there]], mine[there], n, -1)
 
 
 def _match_nearest(xyz: np.ndarray, reference_xyz: np.ndarray, found: np.ndarray) -> None:

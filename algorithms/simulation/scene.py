@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..geometry.groups import mask_of
 from ..stage import LayerFeatures
 from .pairs import in_boxes
 from .relief import CHANNEL, Relief
@@ -83,9 +84,7 @@ class Scene:
         center = np.column_stack([parts.x, parts.y])
         position, part = in_boxes(positions, center - reach[:, None], center + reach[:, None])
         rows = Rect(*(getattr(parts, field.name)[part] for field in fields(Rect)))
-        found = np.zeros(len(positions), bool)
-        found[position[rows.contains(positions[position, 0], positions[position, 1], margin)]] = True
-        return found
+        return mask_of(len(positions), position[rows.contains(positions[position, 0], positions[position, 1], margin)])
 
     def near_water(self, x, y) -> np.ndarray:
         """Which points (m) lie in the channel of the river or on its banks."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..geometry.groups import placed
 from ..packages import spatial
 from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
@@ -199,8 +200,7 @@ def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarr
         nearest[cell] = distance
         is_first &= distance <= nearest[cell] + _SAME * width * distance / np.maximum(facing, 0.1)
     lit = np.flatnonzero(is_first & (facing > np.sin(np.radians(_LEAST_INCIDENCE))))
-    chosen = np.full(len(nearest), -1, np.int64)
-    chosen[cell[lit]] = near[lit]
+    chosen = placed(near[lit], cell[lit], len(nearest), -1)
     return chosen[chosen >= 0]
 
 

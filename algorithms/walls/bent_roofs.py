@@ -6,6 +6,7 @@ import numpy as np
 
 from ..buildings.roof_extent import amid_rough
 from ..cloud.asprs import NOISE
+from ..geometry.groups import mask_of
 from ..packages import ndimage, spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.cluster_measures import plan_areas
@@ -67,11 +68,9 @@ def bent_roofs(
 def _beside_roofs(surface: TopSurface, is_roof: np.ndarray) -> np.ndarray:
     """Return the mask of cells in or near raised objects with a roof; ``is_roof`` (n,) are the points of roofs."""
     row, column = surface.cell
-    has_roof = np.zeros(surface.height.shape, bool)
-    has_roof[row[is_roof], column[is_roof]] = True
+    has_roof = mask_of(surface.height.shape, (row[is_roof], column[is_roof]))
     label = ndimage.label(has_roof | (surface.height >= _RAISED), np.ones((3, 3), bool))[0]
-    is_object = np.zeros(int(label.max()) + 1, bool)
-    is_object[label[has_roof]] = True
+    is_object = mask_of(int(label.max()) + 1, label[has_roof])
     return ndimage.distance_transform_edt(~is_object[label]) * surface.size <= _AROUND
 
 

@@ -7,13 +7,14 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..geometry.groups import ranked_by_least
 from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..stage import Monitor, stage, tunable
 from .bent_roofs import bent_roofs, with_bent_roofs
-from .party_walls import from_west_to_east, split_blocks
+from .party_walls import split_blocks
 from .stacked_roofs import join_stacked
 
 # Least distance (m) within which surfaces are of one roof: roofs of two buildings are seldom as close.
@@ -150,5 +151,5 @@ def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, moni
     if len(member):
         member = member[(plan_areas(xyz[member], cluster[member], density) >= min_area)[cluster[member]]]
     if len(member):
-        number[member] = from_west_to_east(xyz[member, 0], cluster[member])
+        number[member] = ranked_by_least(xyz[member, 0], cluster[member])
     return number

@@ -7,6 +7,7 @@ import numpy as np
 from ..footprints.outline_pieces import pieces_alone
 from ..footprints.row_houses import split_row
 from ..footprints.soft_shares import spread_out
+from ..geometry.groups import ranked_by_least
 from ..segmentation.top_surface import highest_of_cells
 from ..stage import Monitor
 
@@ -57,7 +58,7 @@ def split_blocks(
         count += int(part.max()) - 1
         monitor.progress((done + 1) / len(buildings))
     result = np.zeros_like(cluster_id)
-    result[own] = from_west_to_east(xyz[own, 0], house)
+    result[own] = ranked_by_least(xyz[own, 0], house)
     return result
 
 
@@ -71,13 +72,3 @@ def _houses_at(plan: np.ndarray, height: np.ndarray, positions: np.ndarray, spac
         return np.ones(len(positions), np.int64)
     houses = split_row(shares.lattice, shares.share > shares.rest, plan, height, directions, spacing)
     return spread_out(houses.house)[shares.lattice.nearest(positions)]
-
-
-def from_west_to_east(x: np.ndarray, building: np.ndarray) -> np.ndarray:
-    """Return buildings (n,) with numbers from 1 in the order of their westernmost points."""
-    which = np.unique(building, return_inverse=True)[1]
-    west = np.full(int(which.max()) + 1, np.inf)
-    np.minimum.at(west, which, x)
-    number = np.empty(len(west), np.int32)
-    number[np.argsort(west, kind="stable")] = np.arange(1, len(west) + 1)
-    return number[which]

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
-from ..geometry.groups import run_starts
+from ..geometry.groups import mask_of, run_starts
 from ..geometry.points_in_polygons import are_within
 from ..geometry.rings import along_sides, sides_of_rings, signed_area
 from ..packages import ndimage
@@ -89,8 +89,7 @@ class Surroundings:
         cell = np.floor((roof[:, :2] - self.grid.origin) / self.grid.size).astype(np.int64)
         low = cell.min(axis=0) - room
         column, row = (cell - low).T
-        is_roof = np.zeros((row.max() + room + 1, column.max() + room + 1), bool)
-        is_roof[row, column] = True
+        is_roof = mask_of((row.max() + room + 1, column.max() + room + 1), (row, column))
         rows, columns = np.indices(is_roof.shape).reshape(2, -1)
         centers = (np.column_stack([columns, rows]) + low + 0.5) * self.grid.size + self.grid.origin
         lowest = self._at(centers)[0].reshape(is_roof.shape)
