@@ -43,6 +43,9 @@ RANGE_NOISE = tunable(0.02, "Standard deviation of the measured distances.", wit
 # Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.
 MAX_PULSES = 5e7
 
+# Largest number of points of matched images: at about 200 bytes each they fit into the memory of an office computer.
+MAX_POINTS = 3e7
+
 # Height of a survey flight over the ground (m).
 _HEIGHT = 600.0
 
@@ -130,12 +133,20 @@ class Survey:
     seed: int = 1  #: The same seed makes the same points
 
 
-def refuse_many_pulses(count: float, what: str, remedy: str) -> None:
-    """Refuse to simulate more pulses than fit into memory, with a sentence of what has them and what to do."""
-    if count > MAX_PULSES:
-        raise ValueError(
-            f"{what} has {count / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} million; {remedy}."
-        )
+def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses", most: float = MAX_PULSES) -> None:
+    """Refuse to simulate more pulses or points than fit into memory: ``what`` has them, and a remedy."""
+    if count > most:
+        raise ValueError(f"{what} has {count / 1e6:.0f} million {unit}, more than {most / 1e6:.0f} million; {remedy}.")
+
+
+def refuse_large(
+    what: str, size: float, density: float, remedy: str, unit: str = "pulses", most: float = MAX_PULSES
+) -> None:
+    """Refuse a square site with a side (m) and a density (1/m²) that give more pulses or points than fit into memory.
+
+    The other arguments are those of :func:`refuse_many`.
+    """
+    refuse_many(density * size**2, f"{what} of {size:g} m with {density:g} {unit} per m²", remedy, unit, most)
 
 
 def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> dict[str, np.ndarray]:

@@ -10,11 +10,9 @@ from ..stage import Field, Layer, stage, tunable
 from .drone_site import build_site
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
+from .scanner import MAX_POINTS, refuse_large
 from .scene import footprint_layer
 from .town_layout import MAX_BUILDINGS, TownPlan
-
-# Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
-_MAX_POINTS = 3e7
 
 # Height above the ground (m) from which points of cells of ground are of an adjacent object, whose edge is smeared.
 _SMEARED = 0.3
@@ -118,11 +116,7 @@ def simulate_drone_site(
     >>> bool((classification == 6).any()), len(footprints) > 0
     (True, True)
     """
-    if density * size**2 > _MAX_POINTS:
-        raise ValueError(
-            f"A site of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "
-            f"more than {_MAX_POINTS / 1e6:.0f} million; lower size or density."
-        )
+    refuse_large("A site", size, density, "lower size or density", "points", MAX_POINTS)
     plan = TownPlan(size, slope, _RELIEF, terrace_height, buildings, trees, forest=0.0, river=False, seed=seed)
     scene = build_site(plan, halls)
     rng = np.random.default_rng([seed, _STREAM])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..params import SEED
 from ..stage import stage, tunable
 from .drone import ANGULAR_STEP, LINE_RATE, SCANNERS, LineScan, plan_flight, pulses_per_line
-from .scanner import RANGE_NOISE, RECORDED, refuse_many_pulses
+from .scanner import RANGE_NOISE, RECORDED, refuse_many
 from .street_site import build_site
 
 
@@ -94,7 +94,7 @@ def simulate_flight(
     wanted = tuple(SCANNERS) if scanners == "both" else (scanners,)
     pulses = len(wanted) * duration * line_rate * pulses_per_line(angular_step)
     remedy = "lower the duration or the line rate, or take a larger angular step"
-    refuse_many_pulses(pulses, f"A flight of {duration:g} s", remedy)
+    refuse_many(pulses, f"A flight of {duration:g} s", remedy)
     scene, settings = build_site(trees, slope, seed), LineScan(line_rate, angular_step, max_range, range_noise, seed)
     made = plan_flight(scene, height, duration, seed).scanned(scene, wanted, settings, monitor)
     if not len(made["xyz"]):

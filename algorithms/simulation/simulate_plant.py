@@ -13,7 +13,6 @@ from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from ..threads import n_threads
 from .plant_layout import Plant, build_plant
-from .plant_parts import Part
 
 # Most candidates for a point: at 44 bytes each they take 1.8 GB, which fits into the memory of an office computer.
 _MAX_POINTS = 4e7
@@ -240,27 +239,18 @@ def _dimensions(xyz: np.ndarray, part: np.ndarray, plant: Plant) -> tuple:
     count = np.bincount(part, minlength=len(parts))
     classes = np.where(np.array([one.kind == "floor" for one in parts]), PointClass.GROUND, PointClass.UNCLASSIFIED)
     shape = np.array([one.shape for one in parts], np.uint8)
-    axes = [n for n, one in enumerate(parts) if one.kind in {"pipe", "tank"} and count[n]]
-    centers = [n for n, one in enumerate(parts) if one.kind == "sphere" and count[n]]
-    return (
-        xyz,
-        classes.astype(np.uint8)[part],
-        ids[part],
-        shape[part],
-        LayerFeatures([parts[n].axis for n in axes], _columns(parts, ids, count, axes, _AXIS_FIELDS)),
-        LayerFeatures([parts[n].middle for n in centers], _columns(parts, ids, count, centers, _CENTER_FIELDS)),
-    )
 
+    def layer(kinds: set[str], position: str, fields: tuple[Field, ...]) -> LayerFeatures:
+        chosen = [n for n, one in enumerate(parts) if one.kind in kinds and count[n]]
+        columns = {
+            "id": [int(ids[n]) for n in chosen],
+            "kind": [parts[n].kind for n in chosen],
+            "radius": [parts[n].radius for n in chosen],
+            "length": [float(np.linalg.norm(np.diff(parts[n].axis, axis=0))) for n in chosen],
+            "points": [int(count[n]) for n in chosen],
+        }
+        positions = [getattr(parts[n], position) for n in chosen]
+        return LayerFeatures(positions, {field.name: columns[field.name] for field in fields})
 
-def _columns(
-    parts: list[Part], ids: np.ndarray, count: np.ndarray, chosen: list[int], fields: tuple[Field, ...]
-) -> dict[str, list]:
-    """Return the columns of a layer of the parts ``chosen``."""
-    columns: dict[str, list] = {
-        "id": [int(ids[n]) for n in chosen],
-        "kind": [parts[n].kind for n in chosen],
-        "radius": [parts[n].radius for n in chosen],
-        "length": [float(np.linalg.norm(np.diff(parts[n].axis, axis=0))) for n in chosen],
-        "points": [int(count[n]) for n in chosen],
-    }
-    return {field.name: columns[field.name] for field in fields}
+    layers = layer({"pipe", "tank"}, "axis", _AXIS_FIELDS), layer({"sphere"}, "middle", _CENTER_FIELDS)
+    return xyz, classes.astype(np.uint8)[part], ids[part], shape[part], *layers

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..params import SEED
 from ..stage import stage, tunable
 from .line_site import build_line_site
-from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_many_pulses, scan
+from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_large, scan
 
 
 @stage(
@@ -59,8 +59,7 @@ def simulate_power_line(
     >>> bool((classification == 14).any() and (classification == 15).any())
     True
     """
-    site = f"The site of {size:g} m with {density:g} pulses per m²"
-    refuse_many_pulses(density * size**2, site, "lower the density or the size")
+    refuse_large("The site", size, density, "lower the density or the size")
     scene = build_line_site(size, span, angle, trees, forest, seed)
     made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
     return tuple(made[name] for name in RECORDED)

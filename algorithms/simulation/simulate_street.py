@@ -7,7 +7,7 @@ import numpy as np
 from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .drone import ANGULAR_STEP, LINE_RATE, LineScan
-from .scanner import RANGE_NOISE, RECORDED, Survey, refuse_many_pulses, scan
+from .scanner import RANGE_NOISE, RECORDED, Survey, refuse_large, refuse_many, scan
 from .scene import Scene
 from .solids import Rect
 from .street_fronts import Truth
@@ -154,12 +154,11 @@ def simulate_street(
     settings = LineScan(line_rate, angular_step, max_range, range_noise, seed)
     if view == "vehicle":
         remedy = "shorten it, lower the line rate, or take a larger speed or angular step"
-        refuse_many_pulses(pulses_of(length, speed, settings), f"A street of {length:g} m", remedy)
+        refuse_many(pulses_of(length, speed, settings), f"A street of {length:g} m", remedy)
     plan = StreetPlan(length, width, slope, clutter, stoops, unevenness, houses, seed)
     scene, truth, street = build_street(plan)
     if view == "airplane":
-        site = f"The site of {scene.size:g} m with {density:g} pulses per m²"
-        refuse_many_pulses(density * scene.size**2, site, "shorten the street or lower the pulse density")
+        refuse_large("The site", scene.size, density, "shorten the street or lower the pulse density")
         made = scan(scene, Survey(density, range_noise=range_noise, seed=seed), monitor)
     else:
         made = _drive(scene, street, speed).scanned(scene, settings, monitor)
@@ -208,23 +207,12 @@ def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> di
 def _layers(truth: Truth) -> tuple[LayerFeatures, ...]:
     """Return the true facades, openings, corners and houses."""
     walls = truth.facades
-    numbers = list(range(1, len(walls) + 1))
-    facades = LayerFeatures([[ring] for ring in walls], {"id": numbers, "kind": truth.kinds})
-    rings = truth.openings
-    openings = LayerFeatures(
-        [[ring] for ring in rings],
-        {
-            "id": list(range(1, len(rings) + 1)),
-            "facade": truth.opening_facades,
-            "kind": truth.opening_kinds,
-            "width": [float(np.hypot(*(ring[1] - ring[0])[:2])) for ring in rings],
-            "height": [float(ring[2, 2] - ring[1, 2]) for ring in rings],
-        },
-    )
-    outlines = LayerFeatures(
-        [[ring] for ring in truth.houses],
-        {"id": list(range(1, len(truth.houses) + 1)), "eave": truth.eaves, "ridge": truth.ridges},
-    )
+    facades = [([ring], {"kind": kind}) for ring, kind in zip(walls, truth.kinds)]
     corners = [corner for ring in walls for corner in ring[:-1]]
-    owner = np.repeat(numbers, [len(ring) - 1 for ring in walls]).tolist()
-    return facades, openings, LayerFeatures(corners, {"facade": owner}), outlines
+    owner = np.repeat(np.arange(1, len(walls) + 1), [len(ring) - 1 for ring in walls]).tolist()
+    return (
+        LayerFeatures.numbered(facades, _FACADE_FIELDS),
+        LayerFeatures.numbered(truth.openings, _OPENING_FIELDS),
+        LayerFeatures(corners, {"facade": owner}),
+        LayerFeatures.numbered(truth.houses, _HOUSE_FIELDS),
+    )

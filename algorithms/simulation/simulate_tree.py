@@ -68,6 +68,10 @@ class _Limb:
     def length(self) -> float:
         return float(np.linalg.norm(np.diff(self.line, axis=0), axis=1).sum())
 
+    @property
+    def facts(self) -> dict[str, float]:
+        return {"branch_order": self.order, "length": self.length, "radius": float(self.radius[0])}
+
 
 @stage(
     "Simulation",
@@ -130,15 +134,7 @@ def simulate_tree(
         np.concatenate([*points, foliage, ground]),
         classes.astype(np.uint8),
         np.concatenate([ids, np.zeros(n_other)]).astype(np.int32),
-        LayerFeatures(
-            [limb.line for limb in limbs],
-            {
-                "id": list(range(1, len(limbs) + 1)),
-                "branch_order": [limb.order for limb in limbs],
-                "length": [limb.length for limb in limbs],
-                "radius": [float(limb.radius[0]) for limb in limbs],
-            },
-        ),
+        LayerFeatures.numbered([(limb.line, limb.facts) for limb in limbs], _FIELDS),
     )
 
 

@@ -11,11 +11,9 @@ from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .beams import Echoes, is_vegetation
 from .camera import photograph
 from .relief import Relief
+from .scanner import MAX_POINTS, refuse_large
 from .scene import footprint_layer
 from .village_layout import MAX_HOMES, Village, VillagePlan, build_village
-
-# Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
-_MAX_POINTS = 3e7
 
 # Radius (m) of the holes where matching fails; their centers are drawn from the points in cells of that size.
 _HOLE = 0.5
@@ -145,11 +143,7 @@ def simulate_village(
     >>> bool((classification == 6).any()), len(footprints) > 0
     (True, True)
     """
-    if density * size**2 > _MAX_POINTS:
-        raise ValueError(
-            f"A village of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "
-            f"more than {_MAX_POINTS / 1e6:.0f} million; lower size or density."
-        )
+    refuse_large("A village", size, density, "lower size or density", "points", MAX_POINTS)
     village = build_village(VillagePlan(size, slope, buildings, trees, overhang, clutter, seed))
     if buildings and not village.scene.buildings:
         monitor.warn(
@@ -246,12 +240,6 @@ def _old_map(village: Village, shift: float, noise: float, changes: float, rng: 
     gone = [plot.part(0.0, 0.0, *rng.uniform(6.0, 10.0, 2), rng.uniform(0.0, np.pi)) for plot in plots]
     known += [(house.corners(), 0) for house in gone]
     rings = [ring + shift + noise * rng.standard_normal(ring.shape) for ring, _ in known]
-    numbers = [number for _, number in known]
-    return LayerFeatures(
-        [[np.concatenate([ring, ring[:1]])] for ring in rings],
-        {
-            "id": list(range(1, len(rings) + 1)),
-            "building": numbers,
-            "state": ["kept" if number else "demolished" for number in numbers],
-        },
-    )
+    facts = [{"building": number, "state": "kept" if number else "demolished"} for _, number in known]
+    closed = [[np.concatenate([ring, ring[:1]])] for ring in rings]
+    return LayerFeatures.numbered(list(zip(closed, facts)), _MAP_FIELDS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -112,15 +113,13 @@ class Truth:
     #: Walls of each facade: feet at both ends, (3,) each, and elevation of the top (m)
     walls: list[list[tuple[np.ndarray, np.ndarray, float]]] = field(default_factory=list)
     kinds: list[str] = field(default_factory=list)  #: Kind of each facade, one of :data:`KINDS`
-    openings: list[np.ndarray] = field(default_factory=list)  #: Closed ring (5, 3) of each opening (m)
-    opening_kinds: list[str] = field(default_factory=list)  #: "window" or "door" of each opening
-    opening_facades: list[int] = field(default_factory=list)  #: Facade of each opening
+    #: Closed ring (5, 3) of each opening, m, and its attributes
+    openings: list[tuple[list[np.ndarray], dict[str, Any]]] = field(default_factory=list)
     facade_of: dict[int, int] = field(default_factory=dict)  #: Facade by object id of its walls
     opening_of: dict[int, int] = field(default_factory=dict)  #: Opening by object id of its pane and frame
     glass: set[int] = field(default_factory=set)  #: Object ids of panes of glass
-    houses: list[np.ndarray] = field(default_factory=list)  #: Closed ring (k, 3) of each house on the ground (m)
-    eaves: list[float] = field(default_factory=list)  #: Elevation of the eaves of each house (m)
-    ridges: list[float] = field(default_factory=list)  #: Elevation of the ridge of each house (m)
+    #: Closed ring (k, 3) of each house on the ground, m, and its attributes
+    houses: list[tuple[list[np.ndarray], dict[str, Any]]] = field(default_factory=list)
 
     @property
     def facades(self) -> list[np.ndarray]:
@@ -214,9 +213,8 @@ class Front:
             off = _RECESS if kind == "recess" else -_RECESS
             front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]
         corners = [*front, (line.length, 0.0), (line.length, _DEPTH), (0.0, _DEPTH), (0.0, 0.0)]
-        truth.houses.append(np.array([(*line.at(*corner), ground) for corner in corners]))
-        truth.eaves.append(top)
-        truth.ridges.append(float(np.min(tops @ [rect.x, rect.y, 1.0])))
+        ring = np.array([(*line.at(*corner), ground) for corner in corners])
+        truth.houses.append(([ring], {"eave": top, "ridge": float(np.min(tops @ [rect.x, rect.y, 1.0]))}))
 
 
 def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
@@ -322,9 +320,9 @@ class _Wall:
             self.put(along, inward, *bar, frame)
         ground = max(low, min(float(self.scene.relief.plane(*self.line.at(position))) for position in along))
         corners = [(start, ground), (end, ground), (end, high), (start, high), (start, ground)]
-        truth.openings.append(np.array([(*self.line.at(a), z) for a, z in corners]))
-        truth.opening_kinds.append(kind)
-        truth.opening_facades.append(facade)
+        ring = np.array([(*self.line.at(a), z) for a, z in corners])
+        facts = {"width": float(np.hypot(*(ring[1] - ring[0])[:2])), "height": float(ring[2, 2] - ring[1, 2])}
+        truth.openings.append(([ring], {"facade": facade, "kind": kind, **facts}))
 
     def hang_balconies(self, top: float, height: float) -> None:
         """Put a balcony before the middle axis of each upper storey."""
