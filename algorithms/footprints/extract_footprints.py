@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import Any, Optional
 
@@ -12,6 +13,7 @@ from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED, Reason
 from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
+from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..params import MIN_BUILDING_AREA
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
@@ -20,7 +22,6 @@ from ..threads import made_ahead
 from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces, shared_directions
-from .reviewed_outlines import with_reviewed
 from .roof_points import edge_weights, find_non_building_points, find_roof_points
 from .row_houses import ROWS, Houses, split_row
 from .soft_shares import APART, LEAST_SPACING, Shares, even_weights, find_shares
@@ -346,3 +347,40 @@ def _features(geometries: list, attributes: list[dict[str, Any]], min_area: floa
     keys = [(of_one["cluster_id"], *map(float, rings[0].min(axis=0))) for rings, of_one in zip(geometries, attributes)]
     kept = sorted((i for i, of_one in enumerate(attributes) if of_one["area"] >= min_area), key=keys.__getitem__)
     return LayerFeatures.numbered([(geometries[i], attributes[i]) for i in kept], FIELDS)
+
+
+def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> LayerFeatures:
+    """Return the outlines that stay as they were reviewed, with their attributes, before the others that were found.
+
+    Those that are mostly where others were decided on are left out. Buildings keep their numbers of the reviewed layer.
+    """
+    if review is None:
+        return found
+    layer, staying = review.layer, review.rows[: review.stay]
+    own, given = as_polygons(found.geometries), as_polygons(layer.geometries)
+    # Ascending by what they share, so that of several the one that shares most counts.
+    one, other, shared = overlaps(own, given, Monitor())
+    order = np.argsort(shared)
+    one, other, shared = one[order], other[order], shared[order]
+    is_decided = np.isin(other, review.rows)
+    covered = np.bincount(one[is_decided], shared[is_decided], len(found))
+    others = np.flatnonzero(2 * covered <= own.area).tolist()
+    ids = np.asarray(layer.columns.get("id", ""))
+    is_numbered = ids.dtype.kind in "if"
+    # "fid" is the number that a GeoPackage gives its rows.
+    kept = {key: of for key, of in layer.kept(staying, () if is_numbered else FIELDS[:1]).items() if key != "map_fid"}
+    cluster = dict(zip(other.tolist(), one.tolist()))
+    kept["cluster_id"] = [found.columns["cluster_id"][cluster[row]] if row in cluster else 0 for row in staying]
+    new = {name: [values[row] for row in others] for name, values in found.columns.items()}
+    is_same = ~is_decided & is_numbered & (2 * shared > np.maximum(own.area[one], given.area[other]))
+    before = dict(zip(one[is_same].tolist(), ids[other[is_same]].tolist() if is_numbered else ()))
+    new["id"] = [before.get(row) for row in others]
+    columns = {
+        name: [*kept.get(name, [None] * len(staying)), *new.get(name, [None] * len(others))]
+        for name in dict.fromkeys([*new, *kept])
+    }
+    free = itertools.count(1 + int(np.nanmax(ids, initial=0)) if is_numbered else 1)
+    columns["id"] = [next(free) if number is None or np.isnan(number) else int(number) for number in columns["id"]]
+    sources = [*(layer.sources[row] if layer.sources else None for row in staying), *[None] * len(others)]
+    outlines = [[np.asarray(ring, float)[:, :2] for ring in layer.geometries[row]] for row in staying]
+    return LayerFeatures([*outlines, *(found.geometries[row] for row in others)], columns, sources)

@@ -2,10 +2,56 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..cloud.asprs import PointClass
 from ..params import SEED
-from ..stage import stage, tunable
-from .line_site import build_line_site
+from ..stage import Monitor, stage, tunable
+from .plants import plant_trees
+from .relief import Relief
 from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_large, scan
+from .scene import Scene
+from .solids import Rect, Solid, gable
+
+# Height of a tower (m).
+_TOWER = 30.0
+
+# Heights of its three pairs of arms (m).
+_ARMS = (29.0, 25.0, 21.0)
+
+# Length of an arm on each side (m).
+_ARM = 5.0
+
+# Half of the distance between the legs of a tower (m).
+_LEG = 1.6
+
+# Sag of conductors, as a share of their span: usual at 20 °C.
+_SAG = 0.03
+
+# Height of poles (m).
+_POLE = 9.0
+
+# Distance between neighboring poles (m).
+_POLES = 40.0
+
+# Sag of the wires of poles (m).
+_POLE_SAG = 0.8
+
+# Wires of poles: distance from the line of the poles, and from their top (m). Three phases on a cross-arm, a rack of
+# four wires one above the other below it, and a cable of a telephone company.
+_WIRES = ((-0.8, 0.2), (0.0, 0.2), (0.8, 0.2), (0.2, 1.4), (0.2, 1.7), (0.2, 2.0), (0.2, 2.3), (-0.2, 3.2))
+
+# Half of the distance between the two conductors of a bundle (m).
+_BUNDLE = 0.2
+
+# Distance of houses from the line of the poles (m).
+_HOUSE = 16.0
+
+# Sag of the wire from a pole to a house (m).
+_DROP_SAG = 0.3
+
+# Straight pieces that a wire is made of.
+_PIECES = 24
 
 
 @stage(
@@ -63,3 +109,105 @@ def simulate_power_line(
     scene = build_line_site(size, span, angle, trees, forest, seed)
     made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
     return tuple(made[name] for name in RECORDED)
+
+
+def build_line_site(size: float, span: float, angle: float, trees: float, forest: float, seed: int) -> Scene:
+    """Return a square site with a high-voltage line, a low-voltage line with houses, and trees.
+
+    Parameters
+    ----------
+    size, span : float
+        Side of the square, and distance between towers, m.
+    angle : float
+        Direction of the lines from east, °.
+    trees, forest : float
+        Trees per hectare, and share that is forest.
+    seed : int
+        The same seed makes the same site.
+    """
+    rng = np.random.default_rng([seed, 7])
+    scene = Scene(Relief(size, gradient=0.04, angle=np.deg2rad(90.0)))
+    direction = np.deg2rad(angle)
+    _low_voltage(scene, direction, rng)
+    _high_voltage(scene, direction, span)
+    plant_trees(scene, trees, forest, rng, Monitor())
+    return scene
+
+
+def _line(scene: Scene, direction: float, aside: float, distance: float) -> np.ndarray:
+    """Return the feet (n, 3) of the masts of a line that passes the middle of the site at ``aside`` (m)."""
+    along = np.arange(-scene.size, scene.size, distance)
+    x, y = Rect(scene.size / 2, scene.size / 2, 0.0, 0.0, direction).at(along, aside)
+    return np.column_stack([x, y, scene.relief.ground(x, y)])
+
+
+def _inside(scene: Scene, xy: np.ndarray) -> np.ndarray:
+    """Return the mask of positions (n, 2 or 3) that lie in the site, a meter from its edge."""
+    return ((xy[:, :2] > 1.0) & (xy[:, :2] < scene.size - 1.0)).all(axis=1)
+
+
+def _high_voltage(scene: Scene, direction: float, span: float) -> None:
+    """Put towers with six bundles of two and a guard wire; those beyond the site carry the wires that reach into it."""
+    feet = _line(scene, direction, 0.22 * scene.size, span)
+    across = np.array([-np.sin(direction), np.cos(direction), 0.0])
+    for foot in feet[_inside(scene, feet)]:
+        _tower(scene, foot, direction)
+    sides = [side * _ARM + apart for side in (-1, 1) for apart in (-_BUNDLE, _BUNDLE)]
+    arms = [(side, height - 1.0) for height in _ARMS for side in sides]
+    hangs = [*arms, (0.0, _TOWER)]
+    for aside, height in hangs:
+        _string(scene, feet + (aside * across + [0.0, 0.0, height]), _SAG * span)
+
+
+def _tower(scene: Scene, foot: np.ndarray, direction: float) -> None:
+    """Put four legs, a body and three arms."""
+    number, (x, y, ground) = scene.new_id(), (float(value) for value in foot)
+    frame = Rect(x, y, 1.0, 1.0, direction)
+    for along in (-_LEG, _LEG):
+        for across in (-_LEG, _LEG):
+            _add_tower(scene, frame.part(along, across, 0.3, 0.3), ground - 1.0, ground + 0.5 * _TOWER, number)
+    _add_tower(scene, frame.part(0.0, 0.0, 0.8, 0.8), ground + 0.5 * _TOWER, ground + _TOWER, number)
+    for height in _ARMS:
+        _add_tower(scene, frame.part(0.0, 0.0, 0.5, 2 * _ARM), ground + height - 0.4, ground + height, number)
+
+
+def _add_tower(scene: Scene, rect: Rect, bottom: float, top: float, number: int) -> None:
+    scene.add_box(rect, bottom, top, PointClass.TRANSMISSION_TOWER, number)
+
+
+def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> None:
+    """Put poles with their wires, and to every second pole a house with a wire of its own."""
+    feet = _line(scene, direction, -0.22 * scene.size, _POLES)
+    across = np.array([-np.sin(direction), np.cos(direction), 0.0])
+    for i, foot in enumerate(feet):
+        if not _inside(scene, foot[None])[0]:
+            continue
+        x, y, ground = (float(value) for value in foot)
+        _add_tower(scene, Rect(x, y, 0.3, 0.3, direction), ground - 1.0, ground + _POLE, scene.new_id())
+        middle = foot - _HOUSE * across
+        if i % 2 == 0 and _inside(scene, np.array([middle - 10.0, middle + 10.0])).all():
+            eave = _house(scene, middle, direction, rng)
+            wall = middle + 4.0 * across
+            drop = np.append(wall[:2], eave - 0.2)
+            _string(scene, np.array([foot + [0.0, 0.0, _POLE - 1.7], drop]), _DROP_SAG)
+    for aside, below in _WIRES:
+        _string(scene, feet + (aside * across + [0.0, 0.0, _POLE - below]), _POLE_SAG)
+
+
+def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Generator) -> float:
+    """Put a gable house; return the elevation (m) of its eaves."""
+    rect = Rect(float(middle[0]), float(middle[1]), float(rng.uniform(9, 13)), 8.0, direction)
+    ground = scene.relief.ground(*rect.corners().T)
+    eave = float(ground.max()) + float(rng.uniform(3.5, 5.5))
+    solid = Solid(rect, gable(rect, eave, 0.7), float(ground.min()) - 1.0, PointClass.BUILDING, scene.new_id())
+    scene.add_building("gable", rect.corners(), [solid])
+    return eave
+
+
+def _string(scene: Scene, points: np.ndarray, sag: float) -> None:
+    """Hang a wire from point to point (n, 3), m, with a sag (m) in the middle between them."""
+    number, share = scene.new_id(), np.linspace(0.0, 1.0, _PIECES + 1)[:, None]
+    for start, end in zip(points, points[1:]):
+        line = start + share * (end - start) - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]
+        inside = _inside(scene, line)
+        scene.wires += [(*line[k], *line[k + 1], number) for k in np.flatnonzero(inside[1:] & inside[:-1])]
