@@ -134,7 +134,21 @@ class Survey:
 
 
 def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses", most: float = MAX_PULSES) -> None:
-    """Refuse to simulate more pulses or points than fit into memory: ``what`` has them, and a remedy."""
+    """Refuse to simulate more pulses or points than fit into memory.
+
+    Parameters
+    ----------
+    count : float
+        How many there would be.
+    what : str
+        What would have them, for the sentence.
+    remedy : str
+        What to do.
+    unit : str
+        Pulses or points.
+    most : float
+        How many of them fit.
+    """
     if count > most:
         raise ValueError(f"{what} has {count / 1e6:.0f} million {unit}, more than {most / 1e6:.0f} million; {remedy}.")
 
@@ -142,9 +156,22 @@ def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses", most
 def refuse_large(
     what: str, size: float, density: float, remedy: str, unit: str = "pulses", most: float = MAX_PULSES
 ) -> None:
-    """Refuse a square site with a side (m) and a density (1/m²) that give more pulses or points than fit into memory.
+    """Refuse a square site with more pulses or points than fit into memory.
 
-    The other arguments are those of :func:`refuse_many`.
+    Parameters
+    ----------
+    what : str
+        What it is called, for the sentence.
+    size : float
+        Its side, m.
+    density : float
+        Pulses or points per m².
+    remedy : str
+        What to do.
+    unit : str
+        Pulses or points.
+    most : float
+        How many of them fit.
     """
     refuse_many(density * size**2, f"{what} of {size:g} m with {density:g} {unit} per m²", remedy, unit, most)
 
