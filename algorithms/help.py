@@ -33,7 +33,7 @@ def stage_help(stage: Stage) -> str:
 def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
     """Return what a pipeline does, step by step, with the parameters of its steps.
 
-    ``made`` are texts of the outputs, where they differ from those of a run on one cloud.
+    ``made`` are texts of the outputs, where they differ from a run on one cloud.
     """
     steps = [
         f"<b>{step_title(step)}</b> ({html.escape(step.stage.title)}): {inline(step.stage.summary)}"
@@ -80,7 +80,7 @@ def written_by(pipeline: Pipeline) -> str:
 
 
 def _written(step: Step) -> tuple[str, ...]:
-    """Return the dimensions that a step writes with nothing set, where the user chooses among those of its stage."""
+    """Return the dimensions that a step writes with nothing set, where the user chooses among its stage's."""
     chosen = _chosen(step.stage)
     return step.stage.writes if chosen is None else step.tunables.get(chosen.name, chosen.default)
 

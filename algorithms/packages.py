@@ -38,7 +38,7 @@ class _Lazy(ModuleType):
 
 
 def missing(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:
-    """Return those of the needed packages that are not installed or too old, by the names to install them."""
+    """Return the needed packages that are not installed or too old, by the names to install them."""
     wanted = {module: name for module, name in REQUIRED.items() if name in needed}
     gone = [name for module, name in wanted.items() if importlib.util.find_spec(module) is None or too_old(name)]
     return [*gone, *([_LAZ] if too_old(_LAZ) else [])]
@@ -61,7 +61,7 @@ def pyogrio() -> Any:
 
 
 def absent(needed: Collection[str] = tuple(REQUIRED.values())) -> list[str]:
-    """Return all packages to install: those of the needed ones that are missing, and the one for LAZ."""
+    """Return all packages to install: the needed ones that are missing, and the one for LAZ."""
     return [*missing(needed), *([] if has_laz() else [_LAZ])]
 
 

@@ -65,7 +65,7 @@ class Pipeline:
     an output of its own. So are the clouds of the steps that ``kept`` names. ``shared`` gives, for each tunable that is
     one parameter of the composite, the names of the steps it goes to, which declare it alike and with one default.
     ``shown`` are the parameters that users meet first, in this order; all others are folded away. ``switched_off`` are
-    layers that are loaded switched off: those of steps that another step has taken further. The seconds of the steps of
+    layers that are loaded switched off, as another step has taken them further. The seconds of the steps of
     one that is ``timed`` are among its numbers.
     """
 
@@ -97,7 +97,7 @@ class Pipeline:
         return {name: found[name] for name in (*self.shown, *(name for name in found if name not in self.shown))}
 
     def by_step(self, tunables: dict[str, Any]) -> list[tuple[Step, dict[str, Any]]]:
-        """Return each step with its tunables: those of the composite that are given, over the step's own defaults.
+        """Return each step with its tunables: the composite's that are given, over the step's own defaults.
 
         Raises
         ------
@@ -164,7 +164,7 @@ class Pipeline:
 
     @property
     def outputs(self) -> tuple[Output, ...]:
-        """All outputs in the order of steps; where several have one name, that of the step is put before it.
+        """All outputs in the order of steps; where several have one name, the step's is put before it.
 
         The last cloud keeps its plain name, and so does the last report but that on a reference.
         """

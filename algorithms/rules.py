@@ -22,7 +22,7 @@ def rule(value: Any, unit: str, why: str) -> Any:
 
 
 def rules_of(module: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:
-    """Yield name, value and field of each rule of a module, those of a dataclass that it names in capitals."""
+    """Yield name, value and field of each rule of a module: the fields of a dataclass that it names in capitals."""
     for name, value in vars(module).items():
         is_own = dataclasses.is_dataclass(value) and type(value).__module__ == module.__name__
         if is_own and not isinstance(value, type):

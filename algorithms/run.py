@@ -127,7 +127,7 @@ def run_stage(
 def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampling:
     """Return how those points of a cloud were sampled that are now neither withheld nor noise.
 
-    Cells begin at the ``corner`` (2,), m; None is that of the cloud.
+    Cells begin at the ``corner`` (2,), m; None is the cloud's.
     """
     used = counted(cloud)
     corner = _corner(cloud) if corner is None else corner
@@ -164,7 +164,7 @@ class _RunSampling:
     Parameters
     ----------
     given : mapping of str to CloudSampling
-        The sampling of ``cloud`` by the name "", and those of clouds that steps make by the names of the steps. Each
+        The sampling of ``cloud`` by the name "", and of clouds that steps make by the names of the steps. Each
         applies until the next one, or until a step makes a cloud of other points.
     cloud : Cloud or several, optional
         The input of the pipeline.
@@ -364,7 +364,7 @@ def run_pipeline(
 
     How the cloud was sampled is measured once for all steps, and again where a step has changed the points that it is
     measured on: those that are neither withheld nor noise. ``samplings`` are measured before, on the survey that the
-    cloud is a part of: those of the given cloud by the name "", those of clouds that steps make by the steps' names.
+    cloud is a part of: of the given cloud by the name "", of clouds that steps make by the steps' names.
     ``reference`` is the second cloud of a pipeline with a step that reads one.
 
     Parameters

@@ -31,7 +31,7 @@ class Constant(NamedTuple):
 
 
 def constants_page(pipeline: Pipeline) -> str:
-    """Return the page of the constants of a composite: by step, those of modules that no earlier step has."""
+    """Return the page of the constants of a composite: by step, for modules that no earlier step has."""
     return _page(pipeline.title, _parts(pipeline))
 
 
@@ -41,7 +41,7 @@ def tiling_page() -> str:
 
 
 def _page(title: str, parts: list[tuple[str, list[str]]], rooms: tuple[str, ...] = ()) -> str:
-    """Return a page of constants by part; only those of some rooms, if these are given."""
+    """Return a page of constants by part; only of some rooms, if these are given."""
     rows = ["---", "orphan: true", "---", f"# Constants of {title}", ""]
     rows += ["Numbers that follow from the cloud, and those that can be set, are on the pages of the algorithms.", ""]
     seen: set[str] = set()
@@ -143,7 +143,7 @@ def _of_class(lines: list[str], node: ast.ClassDef, instance: str) -> Iterator[t
 
 
 def _instance(tree: ast.Module, name: str) -> str:
-    """Return the name of the instance of a class that a module makes, or that of the class."""
+    """Return the name of the instance of a class that a module makes, or of the class."""
     for node in tree.body:
         value = node.value if isinstance(node, ast.Assign) else None
         if isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id == name:

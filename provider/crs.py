@@ -104,7 +104,7 @@ def to_degrees(
 
 
 def is_main_thread() -> bool:
-    """Whether this is the thread of the application, and not that of a run."""
+    """Whether this is the thread of the application, and not of a run."""
     return QThread.currentThread() == QgsApplication.instance().thread()
 
 

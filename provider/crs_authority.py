@@ -122,7 +122,7 @@ def _same(system: osr.SpatialReference) -> list[osr.SpatialReference]:
 
 
 def _code(system: osr.SpatialReference) -> str:
-    """Return the code of a system, that of the EPSG registry before others; "" where it has none."""
+    """Return the code of a system, of the EPSG registry before others; "" where it has none."""
     names = [f"{one.GetAuthorityName(None)}:{one.GetAuthorityCode(None)}" for one in _same(system)]
     known = [name for name in names if "None" not in name]
     return next((name for name in known if name.startswith("EPSG:")), known[0] if known else "")

@@ -99,7 +99,7 @@ class DeclaredAlgorithm:
         return GroupedDialog(self, parent=parent)
 
     def name_pages(self) -> None:
-        """Name the algorithm with its pages: QGIS lists those of all runs by the names of outputs alone."""
+        """Name the algorithm with its pages: QGIS lists the pages of all runs by the names of outputs alone."""
         for output in self.outputDefinitions():  # type: ignore[attr-defined]
             if isinstance(output, QgsProcessingOutputHtml):
                 output.setDescription(f"{output.description()} ({self.displayName()})")

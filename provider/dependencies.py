@@ -17,7 +17,7 @@ from ..algorithms.tiling.processes import own_python
 # pip must not resolve dependencies (it would put a second numpy before QGIS's own), so those that are
 # not part of numpy's family are named here.
 _WITH = {"scikit-learn": ("scikit-learn", "joblib", "threadpoolctl")}
-# Packages that Debian's system has to install, by the names that it gives them, and that of pip.
+# Packages that Debian's system has to install, by the names that it and pip give them.
 _DEBIAN = {"scipy": "python3-scipy", "scikit-learn": "python3-sklearn"}
 _DEBIAN_PIP = "python3-pip"
 

@@ -267,6 +267,6 @@ def announce(title: str, feedback: QgsProcessingFeedback) -> None:
 
 
 def is_step(feedback: QgsProcessingFeedback) -> bool:
-    """Whether a feedback is that of a step of a chain."""
+    """Whether a feedback belongs to a step of a chain."""
     # By its Qt class: QGIS hands it to Python as a plain feedback.
     return feedback.inherits("QgsProcessingMultiStepFeedback")

@@ -184,7 +184,7 @@ def _brought_to(
     if box.isEmpty():
         return None
     try:
-        # The box of the cloud is transformed: that of a layer may exceed the area that the cloud's system is made for.
+        # The box of the cloud is transformed: a layer's may exceed the area that the cloud's system is made for.
         transform = _transform(input_layer, layer, crs, context, Monitor())
         return transform.transformBoundingBox(box, Qgis.TransformDirection.Reverse)
     except QgsCsException:

@@ -7,7 +7,7 @@ import os
 from ..algorithms.stage import Monitor
 from ..algorithms.stages import less_memory
 
-# Bytes that stages take per point at most, those of the points themselves among them.
+# Bytes that stages take per point at most, the points themselves included.
 _PER_POINT = 400
 
 # Bytes of the unit of the message.

@@ -187,7 +187,7 @@ def _add_parameters(
 
 
 def _add_step(model: QgsProcessingModelAlgorithm, pipeline: Pipeline, step: Step, layout: _Layout) -> None:
-    """Add the child algorithm of a step, its parameters wired to those of the model and to earlier steps."""
+    """Add the child algorithm of a step, its parameters wired to the model's and to earlier steps."""
     child = QgsProcessingModelChildAlgorithm(f"{PROVIDER_ID}:{step.stage.id}")
     child.setChildId(step.name)
     child.setDescription(step.stage.title)

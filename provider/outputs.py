@@ -186,7 +186,7 @@ def _check_file(path: Path) -> None:
 class Run:
     """The outputs of a run while it is writing them: in working folders, each next to its target.
 
-    ``parameters`` are those of the run, with outputs in the working folders. Tables of databases and layers in memory
+    ``parameters`` are the run's, with outputs in the working folders. Tables of databases and layers in memory
     stay.
     """
 
@@ -212,7 +212,7 @@ class Run:
                 check_copc_beside(path, ())
 
     def final(self, value: Any) -> Any:
-        """Return results with each path in a working folder replaced by that of its target."""
+        """Return results with each path in a working folder replaced by its target's."""
         if isinstance(value, dict):
             return {self.final(key): self.final(one) for key, one in value.items()}
         if isinstance(value, list):
@@ -282,7 +282,7 @@ def through_memory(
     """Let a layer that is to be a file be made in memory, and write the file when the block ends well.
 
     ``name`` is the layer's parameter; layers in memory and tables of databases are made where they are to be. Yields
-    the parameters for the block, and a function that turns a path in memory into that of the file.
+    the parameters for the block, and a function that turns a path in memory into the file's.
 
     Raises
     ------

@@ -132,7 +132,7 @@ def tunable_values(
 ) -> dict[str, Any]:
     """Return the values of a stage's tunables, checked.
 
-    ``named`` gives other parameters' names; ``defaults`` are those of a step, which take the place of the stage's own.
+    ``named`` gives other parameters' names; ``defaults`` are a step's, which take the place of the stage's own.
 
     Raises
     ------

@@ -34,7 +34,7 @@ _OPTIONS = (
 
 
 def check_raster(path: Path) -> None:
-    """Refuse a file name that is not that of a GeoTIFF.
+    """Refuse a file name that is not a GeoTIFF's.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def check_raster(path: Path) -> None:
 def write_mosaic(raster: Raster, mosaic: RasterMosaic, place: Place, path: Path, monitor: Monitor) -> None:
     """Write a raster of any size, part by part; memory does not grow with it.
 
-    ``mosaic`` has the values in parts; the other parameters and the errors are those of :func:`write_raster`.
+    ``mosaic`` has the values in parts; the other parameters and the errors are as of :func:`write_raster`.
     """
     check_raster(path)
     progress = _Progress(monitor)

@@ -58,7 +58,7 @@ _FILTERS = {
 # Attributes with the elevation of the ground, and the height above it.
 _HEIGHTS = ("ground_elevation", "height")
 
-# Width of the map, in those of the building.
+# Width of the map, in widths of the building.
 _AROUND = 4.0
 
 # Color and width (pixels) of the outline of the current building on the map.

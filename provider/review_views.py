@@ -104,7 +104,7 @@ def sections_of(file: Path, ring: np.ndarray, around: float) -> list[str]:
 
 
 def _colors() -> np.ndarray:
-    """Return the color of the background and those of the classes, as on the map."""
+    """Return the colors of the background and of the classes, as on the map."""
     colors = np.full((1 + _CLASSES, 3), 128)
     colors[0] = 255
     for number, color in _CATEGORY.findall(Styler.file("classification").read_text(encoding="utf-8")):
@@ -132,7 +132,7 @@ def _cloud_around(layer: QgsVectorLayer, outline: QgsGeometry) -> tuple[Path, np
 
 
 def clouds_for(layer: QgsVectorLayer) -> list[QgsPointCloudLayer]:
-    """Return the clouds of the project, those of the group of a layer first."""
+    """Return the clouds of the project, first from the group of a layer."""
     root = QgsProject.instance().layerTreeRoot()
     node = root.findLayer(layer.id())
     nodes = [*(node.parent().findLayers() if node else ()), *root.findLayers()]

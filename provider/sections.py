@@ -1,4 +1,4 @@
-"""How the parameters of a composite are grouped in its dialog: those of a step together, under its name."""
+"""How the parameters of a composite are grouped in its dialog: each step's together, under its name."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, if there is one, and say so in the log when it can't be."""
-        # The system that QGIS takes for a virtual point cloud is that of the catalog entry, not of the points.
+        # The system that QGIS takes for a virtual point cloud is the catalog entry's, not the points'.
         if self.crs and (not layer.crs().isValid() or layer.providerType() == "vpc"):
             layer.setCrs(crs_of(self.crs))
         message = self.apply(layer)
@@ -181,7 +181,7 @@ def show_in_3d(layer: QgsPointCloudLayer) -> None:
 
 
 def cloud_style(stage: Stage, cloud: Cloud) -> Optional[str]:
-    """Return the style of a stage's cloud: that of the first dimension it wrote that has one."""
+    """Return the style of a stage's cloud: of the first dimension it wrote that has one."""
     return style_of(name for name in (*stage.writes, *stage.creates) if cloud.has(name))
 
 
@@ -191,7 +191,7 @@ def style_of(names: Iterable[str]) -> Optional[str]:
 
 
 def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:
-    """Return the style of a layer or raster: the declared one, or that of its name."""
+    """Return the style of a layer or raster: the declared one, or its name's."""
     stem = layer.style or layer.name
     return stem if (STYLES / f"{stem}.qml").is_file() else None
 
@@ -312,7 +312,7 @@ _SUBJECTS: dict[str, str] = {}
 
 
 def subject_of_file(path: Path) -> str:
-    """Return the subject of a file: that of the run that made it, else its own name."""
+    """Return the subject of a file: of the run that made it, else its own name."""
     return _SUBJECTS.get(str(path)) or path.name.split(".")[0]
 
 

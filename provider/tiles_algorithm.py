@@ -193,7 +193,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         return self.paths[0].name.split(".")[0] if is_temporary else folder.name
 
     def _cloud_style(self) -> Optional[str]:
-        """Return the style of the tiles: that of the last step that makes a cloud and has one."""
+        """Return the style of the tiles: of the last step that makes a cloud and has one."""
         makers = [step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud]
         found = (style_of(stage.writes) for stage in reversed(makers))
         return next((style for style in found if style), None)

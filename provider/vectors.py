@@ -56,7 +56,7 @@ def check_layer(path: Path, kind: Qgis.ProcessingSourceType) -> None:
     Raises
     ------
     ValueError
-        If it has no extension, or that of a format without such geometries or without attributes.
+        If it has no extension, or the extension of a format without such geometries or without attributes.
     """
     extension = path.suffix.lower().lstrip(".")
     if extension not in QgsVectorFileWriter.supportedFormatExtensions() or not _holds(extension, kind):
@@ -88,7 +88,7 @@ def _holds(extension: str, kind: Qgis.ProcessingSourceType) -> bool:
 
 
 def fields_of(layer: Layer, features: LayerFeatures) -> QgsFields:
-    """Return the fields of a layer, and those of other columns that its features have: attributes of a map."""
+    """Return the fields of a layer, and of other columns that its features have: attributes of a map."""
     fields = QgsFields()
     for declared in all_fields(layer, features):
         fields.append(QgsField(declared.name, _type_in_qgis(declared, features.columns[declared.name])))

@@ -57,7 +57,7 @@ def _finished(reply: QNetworkReply, loop: QEventLoop, most: int, is_stopped: Cal
     """Wait for the end of a reply, which is ended where it has more bytes than asked for; return it."""
     timer, kept = QTimer(), b""
     timer.start(_LOOK)
-    # No signals: Python keeps what is connected to them, and takes it for that of a later reply at the same address.
+    # No signals: Python keeps what is connected to them, and takes it for the one of a later reply at the same address.
     while not reply.isFinished():
         loop.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
         if reply.bytesAvailable() >= most:

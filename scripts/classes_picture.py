@@ -3,7 +3,7 @@
 
 scripts/offscreen.sh .venv/bin/python scripts/classes_picture.py TILE.laz [SIDE]
 
-SIDE (m) is that of the square that is shown; README's shows 180 m of ahn3-delft (AHN3, Dutch open data).
+SIDE (m) is the side of the square that is shown; README's shows 180 m of ahn3-delft (AHN3, Dutch open data).
 """
 
 from __future__ import annotations

@@ -352,7 +352,7 @@ def with_heights(line: np.ndarray, xyz: np.ndarray) -> np.ndarray:
 
 
 def main() -> None:
-    """Draw all pictures, or those of the ids given."""
+    """Draw all pictures, or the pictures of the ids given."""
     application = QGuiApplication([])
     PICTURES.mkdir(exist_ok=True)
     by_id = {stage.id: stage for stage in STAGES.values()}

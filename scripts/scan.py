@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Run what QGIS's plugin repository scans a zip with; end with exit code 1 on any finding.
 
-Its tools are those of requirements-dev.txt: bandit, detect-secrets, and flake8 with lines of 120 characters.
+Its tools are listed in requirements-dev.txt: bandit, detect-secrets, and flake8 with lines of 120 characters.
 """
 
 from __future__ import annotations

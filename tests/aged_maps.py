@@ -9,7 +9,7 @@ import numpy as np
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.stage import LayerFeatures
 
-# Distance (m) from the old wall to that of an annex that was added since.
+# Distance (m) from the old wall to the wall of an annex that was added since.
 ANNEX = 4.5
 
 # A vertex that turns by less (°) may be no corner any more on a map with noise.

@@ -13,7 +13,7 @@ def wall(
     length, spacing = float(np.hypot(*step)), 1 / np.sqrt(density)
     along, up = (np.linspace(0, 1, round(size / spacing) + 1) for size in (length, high - low))
     along, up = (grid.ravel() for grid in np.meshgrid(along, up))
-    # The outermost points stay on the edge, so that the corners of the wall are those of its points.
+    # The outermost points stay on the edge, so that the corners of the wall are its points'.
     jitter = rng.uniform(-0.3, 0.3, (2, len(along))) * spacing
     along = np.clip(along + jitter[0] / length, 0, 1)
     up = np.clip(up + jitter[1] / (high - low), 0, 1)

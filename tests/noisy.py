@@ -135,7 +135,7 @@ class _Maker:
 def noisy_town(density: float = 8.0, size: float = 0.0, seed: int = 1, **differs) -> NoisyTown:
     """Return a town with noise, points in random order.
 
-    ``size`` is its width (m); 0 takes that of some 60,000 pulses. ``differs`` are other tunables of the town.
+    ``size`` is its width (m); 0 takes the width of some 60,000 pulses. ``differs`` are other tunables of the town.
     """
     size = size or float(np.clip(np.sqrt(60_000 / density), 60, 200))
     xyz, classification, *_ = simulate_town(size=size, density=density, noise_points=0.0, seed=seed, **differs)

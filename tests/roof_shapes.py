@@ -56,7 +56,7 @@ def _box(w, d):
 
 
 def _over(outline, top, more, kind):
-    """Return a shape whose corners are those of its outline and ``more`` places (x, y) or (x, y, z)."""
+    """Return a shape whose corners are the outline's and ``more`` places (x, y) or (x, y, z)."""
     corners = [(x, y, float(top(np.array(x), np.array(y)))) for x, y in outline]
     corners += [place if len(place) == 3 else (*place, float(top(*map(np.array, place)))) for place in more]
     return RoofShape(outline, top, np.array(corners, float), kind)

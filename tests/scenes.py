@@ -1,7 +1,7 @@
 """Small scenes made by hand, seen from straight above, whose truth is a formula.
 
 Each function returns a :class:`Scene`: coordinates in meters around (50, 50), true classes and return numbers, in
-random order. ``SCENES`` names them all. The larger scenes, with oblique beams, are those of ``simulate_town``.
+random order. ``SCENES`` names them all. The larger scenes, with oblique beams, are by ``simulate_town``.
 """
 
 from __future__ import annotations

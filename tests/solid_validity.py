@@ -59,7 +59,7 @@ def sectors_of(vertices, rings):
     """Return for each vertex of a face the ends of the edges that bound it there, counterclockwise from the next one.
 
     Where two rings touch in a vertex, or a ring comes twice, the face has two sectors there; each goes from the next
-    vertex of one passage counterclockwise to the nearest vertex before, which may be that of the other passage.
+    vertex of one passage counterclockwise to the nearest vertex before, which may be of the other passage.
     """
     passages = {}
     for ring in rings:

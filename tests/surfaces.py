@@ -6,7 +6,7 @@ from typing import Callable
 
 import numpy as np
 
-# Height (m) over places (x, y), and where it is that of the thing itself.
+# Height (m) over places (x, y), and where it is the thing's own.
 Part = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 

@@ -138,7 +138,7 @@ def test_the_simulation_of_a_survey_agrees_with_what_is_known_without_it():
     assert simulate(alike, 8, 1.0) == (50.0, 0.0)
     # The last of 41 jobs has seven cores idle.
     assert simulate([*alike, alike[0]], 8, 1.0)[0] == 60.0
-    # One core waits for each of its bytes; many wait for those of all.
+    # One core waits for each of its bytes; many wait for all bytes.
     moving = [Job(read=30.0, seconds=1.0, written=20.0)] * 40
     assert simulate(moving, 1, 10.0) == (pytest.approx(40 * (1 + 5)), pytest.approx(5 / 6))
     seconds, busy = simulate(moving, 200, 10.0)

@@ -111,7 +111,7 @@ USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
 }
 # Estimated again in each round: the log has the value of the last, and one value for all rounds is another surface.
 ESTIMATED_IN_ROUNDS = {("classify_ground_tin_2000", "iteration_distance")}
-# Read layers whose geometries have heights (m): those of roofs.
+# Read layers whose geometries have heights (m): roofs.
 READS_HEIGHTS = {"assess_models": 6.0, "export_models": 6.0}
 
 # Input layers with upright polygons: part of the southern wall of a house, by shares of its length, and heights (m).
@@ -701,7 +701,7 @@ def test_sampling_is_documented_and_no_tunable(stage):
 
 @pytest.mark.parametrize("stage", SAMPLERS, ids=lambda stage: stage.name)
 def test_a_sampling_that_is_given_is_the_one_that_counts(stage, monkeypatch):
-    """That of the same points changes nothing, and the stage measures none of its own besides."""
+    """A sampling of the same points changes nothing, and the stage measures none of its own besides."""
     settings = [more for (owner, _), more in USED_WITH.items() if owner == stage.name]
     extra = settings[0] if settings else {}
     expected = made_by(stage, **extra)[0]

@@ -1,4 +1,4 @@
-"""Tables of measured figures in the documentation are those of the files that benchmarks wrote."""
+"""Tables of measured figures in the documentation match the files that benchmarks wrote."""
 
 from __future__ import annotations
 

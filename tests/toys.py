@@ -182,7 +182,7 @@ def toy_mask(xyz, areas=None, *, monitor=None):
     measures=(Measure("longest", "Longest", "m"),),
 )
 def toy_arrows(old, new, extra=None, *, monitor=None):
-    """Draw an arrow from the middle of each old polygon to that of the new one in the same row."""
+    """Draw an arrow from the middle of each old polygon to the new one's in the same row."""
     arrows = [
         np.array([rings[0][:-1, :2].mean(axis=0) for rings in pair]) for pair in zip(old.geometries, new.geometries)
     ]

@@ -116,7 +116,7 @@ def _without_buildings(classification: np.ndarray, reason: Optional[np.ndarray])
 
 
 def _at_points(values: np.ndarray, rows: np.ndarray, n_points: int) -> np.ndarray:
-    """Return values (n_points,), float32, of which those of some ``rows`` are known, NaN elsewhere."""
+    """Return values (n_points,), float32: known at some ``rows``, NaN elsewhere."""
     whole = np.full(n_points, np.nan, np.float32)
     whole[rows] = values
     return whole

@@ -22,7 +22,7 @@ from .space_cells import SpaceCells
 class _Rules:
     """How a scene is learned; fitted on seven real airborne clouds, where a gain is of F, in percent."""
 
-    half: float = rule(10.0, "m", "physics: side of the squares of the two halves, that of a small house")
+    half: float = rule(10.0, "m", "physics: side of the squares of the two halves, as of a small house")
     surface_share: float = rule(0.3, "", "fitted: what points of a roof surface take from its mean; 0 gains 0.13 less")
 
 
@@ -104,7 +104,7 @@ def predict(learned: tuple[float, ...], features: CellFeatures, half: np.ndarray
 
 
 def shared_by_surfaces(likely: np.ndarray, segment_id: Optional[np.ndarray]) -> np.ndarray:
-    """Return probabilities (n,) of points, those of roof surfaces drawn toward the mean of the surface."""
+    """Return probabilities (n,) of points, on roof surfaces drawn toward the mean of the surface."""
     if segment_id is None:
         return likely
     on_surface = segment_id > 0

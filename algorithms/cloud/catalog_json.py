@@ -9,7 +9,7 @@ from typing import Any
 # Memory that the content of a virtual point cloud may take (bytes): enough for 4,000 tiles with the statistics of all
 # their dimensions, of 20 kB each.
 _MOST_MEMORY = 450_000_000
-# Memory that one value of JSON takes at most in addition to its characters (bytes): that of a text beyond ASCII. The
+# Memory that one value of JSON takes at most in addition to its characters (bytes): a text beyond ASCII does. The
 # values are bounded by the number of the four signs that may precede one, some of which may be characters of texts.
 _BYTES_PER_VALUE = 90
 

@@ -178,7 +178,7 @@ class Cloud:
     def take(self, index: np.ndarray) -> Cloud:
         """Return a cloud of the points at ``index``, int (m,), m >= 1, in that order, with all their dimensions.
 
-        Header, CRS, origin and files are those of this cloud, which is not changed.
+        Header, CRS, origin and files are taken from this cloud, which is not changed.
         """
         # Many times as fast as points[index], which goes through the fields of every record.
         points = self.points.take(index)
@@ -324,7 +324,7 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     Returns
     -------
     Cloud
-        Its origin is 0, so that its local meters are those of ``xyz``.
+        Its origin is 0, so that its local meters are ``xyz``.
 
     Raises
     ------

@@ -20,7 +20,7 @@ _PAGE = -1
 
 
 def has_index(header: Header) -> bool:
-    """Whether a header is that of a COPC file: its first record is the one with the position of the octree."""
+    """Whether a header is of a COPC file: its first record is the one with the position of the octree."""
     first = header.vlrs[0] if header.vlrs else None
     return bool(
         first
@@ -48,7 +48,7 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
     Raises
     ------
     ValueError
-        If a page lies outside of the file or comes twice, or the nodes are not those of the chunks.
+        If a page lies outside of the file or comes twice, or the nodes do not match the chunks.
     """
     x, y, _, half, spacing, at, size, *_ = INFO.unpack(header.vlrs[0].data or b"")
     if not (np.isfinite([x, y, half]).all() and half > 0):

@@ -252,7 +252,7 @@ def common_crs(systems: Sequence[Crs], names: Sequence[str], monitor: Monitor, w
     Parameters
     ----------
     systems : sequence of Crs
-        That of each cloud.
+        Of each cloud.
     names : sequence of str
         What each cloud is called in sentences.
     monitor : Monitor
@@ -271,7 +271,9 @@ def common_crs(systems: Sequence[Crs], names: Sequence[str], monitor: Monitor, w
     leader = systems[first]
     for crs, name in zip(systems, names):
         if not crs.identity:
-            monitor.warn(f"{name} names no coordinate reference system; it is taken to be in that of {names[first]}.")
+            monitor.warn(
+                f"{name} names no coordinate reference system; it is taken to be in the system of {names[first]}."
+            )
             continue
         differs = crs.identity != leader.identity
         if differs or (whole and not np.isclose(crs.vertical, leader.vertical, rtol=1e-7)):

@@ -79,7 +79,7 @@ class Ept:
             raise truncated(path, "it is no description of Entwine point tiles")
         if self.kind not in _ENDINGS:
             raise ValueError(
-                f"{path.name} has points of the type {shown(self.kind)}, and those of the types laszip, binary and "
+                f"{path.name} has points of the type {shown(self.kind)}; only the types laszip, binary and "
                 "zstandard can be read; convert it to one of these, or to COPC."
             )
         if self.kind == "zstandard" and packages.zstandard() is None:
@@ -111,7 +111,7 @@ class Ept:
         return np.dtype([(name, dtype) for name, dtype, _, _ in self.fields])
 
     def header(self, of_file: Callable[[Path], Header]) -> Header:
-        """Return the header that a LAS file with all these points would have; ``of_file`` reads that of a node."""
+        """Return the header that a LAS file with all these points would have; ``of_file`` reads a node's."""
         if self.is_laz:
             root = self.data("0-0-0-0")
             fetch_files([root], Monitor(), self.version)
@@ -209,7 +209,7 @@ class EptOctree:
     header : Header
         From :meth:`Ept.header`; with its reach.
     read_laz : callable
-        Returns the records of a node in a LAZ file, as those of the header; given its number of points, too.
+        Returns the records of a node in a LAZ file, in the header's format; given its number of points, too.
     """
 
     def __init__(self, path: Path, header: Header, read_laz: Callable[[Path, int, Header], np.ndarray]) -> None:

@@ -73,7 +73,7 @@ def read_cloud(
     Returns
     -------
     Cloud
-        All points, or those of the box and the spacing, with all dimensions.
+        All points, or all in the box at the spacing, with all dimensions.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def read_extent(
 ) -> tuple[np.ndarray, np.ndarray, Crs]:
     """Return the lowest and the highest coordinates (3,) and the CRS of a file or of all its tiles.
 
-    Coordinates are those of the file, as in its headers. With a ``box`` (2, 2) tiles on the web count only if they may
+    Coordinates are as in the file's headers. With a ``box`` (2, 2) tiles on the web count only if they may
     have points in it.
 
     Raises
@@ -172,7 +172,7 @@ def read_extent(
 def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None, spacing: Optional[np.ndarray] = None) -> int:
     """Return the number of points of a file or of all its tiles, by the headers.
 
-    In a ``box`` (2, 2), coordinates of the file, it is that of points spread evenly over each tile. With a ``spacing``
+    In a ``box`` (2, 2), coordinates of the file, points count as spread evenly over each tile. With a ``spacing``
     (3,) octrees count as far as they are read.
 
     Raises

@@ -109,7 +109,7 @@ class Header:
     system: bytes = b"OTHER"
     software: str = SOFTWARE
     date: bytes = bytes(4)
-    user_bytes: bytes = b""  #: Bytes of the header beyond those of its version
+    user_bytes: bytes = b""  #: Bytes of the header beyond its version's
     gap: bytes = b""  #: Bytes between the VLRs and the points
     layout: Layout = Layout(6)
     is_compressed: bool = False

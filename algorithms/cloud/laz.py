@@ -36,7 +36,7 @@ _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 # Versions of the items of points in layers, and of all others; lazrs lacks the newest.
 _LAYERED_VERSIONS, _PLAIN_VERSIONS = (3, 4), (1, 2)
 _NOT_IN_LAZRS = 4
-# Types of the items of each point format, and of extra bytes behind those of formats 0 to 5 and 6 to 10.
+# Types of the items of each point format, and of extra bytes behind formats 0 to 5 and 6 to 10.
 _TYPES = {
     0: (6,), 1: (6, 7), 2: (6, 8), 3: (6, 7, 8), 4: (6, 7, 9), 5: (6, 7, 8, 9),
     6: (10,), 7: (10, 11), 8: (10, 12), 9: (10, 13), 10: (10, 12, 13),
@@ -136,7 +136,7 @@ class _Laz:
             raise truncated(self.path, "its LASzip record describes layered points without chunks")
 
     def check_layers(self, chunks: np.ndarray, record: bytes, stream: BinaryIO, origin: int = 0) -> None:
-        """Hold the sizes of the layers, which are allocated before they are read, against those of their chunks.
+        """Hold the sizes of the layers, which are allocated before they are read, against the sizes of their chunks.
 
         The stream begins at position ``origin`` of the file.
         """
@@ -229,7 +229,7 @@ def _items(record: bytes) -> list[tuple]:
 
 
 def _fit(items: list[tuple], point_format: int, size: int) -> bool:
-    """Whether items are those of records of ``size`` bytes of a point format; lazrs may allocate GBs for others."""
+    """Whether items fit records of ``size`` bytes of a point format; lazrs may allocate GBs for others."""
     is_old = point_format < _FIRST_LAYERED_FORMAT
     types = list(_TYPES[point_format])
     extra = size - sum(_SIZES[kind] for kind in types)

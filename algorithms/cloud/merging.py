@@ -61,7 +61,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
 def in_one_crs(clouds: list[Cloud], monitor: Monitor) -> list[Cloud]:
     """Return clouds that are worked on together, all with the meters of one coordinate reference system.
 
-    Clouds without any are taken to be in that of the others; of all others the heights may have another unit.
+    Clouds without any are taken to be in the others'; of all others the heights may have another unit.
 
     Raises
     ------

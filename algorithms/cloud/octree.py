@@ -67,7 +67,7 @@ def nodes_of(
     Raises
     ------
     ValueError
-        If a key is that of no node.
+        If no node has a key.
     """
     level, position = keys[:, 0], keys[:, 1:3]
     is_odd = (level < 0) | (level > _DEEPEST)

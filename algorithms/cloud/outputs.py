@@ -1,4 +1,4 @@
-"""Files that appear complete or not at all, and those of one run together."""
+"""Files that appear complete or not at all, and all files of one run together."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _PREFIX, _SUFFIX = ".lb-", ".part"
 _NAME = re.compile(r"\.lb-([0-9a-f]{8})-.+\.part")
 LOCK = "lock"
 _OLD = "old"
-# What the system says of a lock that another program holds; any other error is that of a disk without locks.
+# What the system says of a lock that another program holds; any other error comes of a disk without locks.
 _IS_HELD = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES, errno.EDEADLK)
 # A working folder younger than this (s) may belong to a run that has not locked it yet, which takes far less.
 _UNLOCKED = 2.0
@@ -322,7 +322,7 @@ def _is_abandoned(folder: Path) -> bool:
 def working_folder(parent: Path) -> Iterator[Path]:
     """Give a new hidden folder in another one, for files needed until the block ends.
 
-    That of a killed run is removed when something is written into the same folder again.
+    A killed run's folder is removed when something is written into the same folder again.
 
     Raises
     ------

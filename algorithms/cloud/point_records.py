@@ -91,7 +91,7 @@ class PointRecords:
 
 
 def _needed_format(layout: Layout, standard: dict[str, np.ndarray]) -> int:
-    """Return the point format that holds the classes: 5 bits in formats 0-5, 8 in those of LAS 1.4."""
+    """Return the point format that holds the classes: 5 bits in formats 0-5, 8 in LAS 1.4's."""
     classes = standard.get("classification")
     if layout.is_old and classes is not None and len(classes) and classes.max() > _LARGEST_OLD_CLASS:
         return UPGRADED[layout.point_format]

@@ -52,7 +52,7 @@ _LEAST_SHARE = 0.01
 def open_header(path: Path) -> Header:
     """Return the header of a file that has points, after its number of points was compared with the size of the file.
 
-    Bounds that can't be, as they are no numbers or points lie outside, are replaced by those of the points.
+    Bounds that can't be, as they are no numbers or points lie outside, are replaced by the points' bounds.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def open_headers(paths: list[Path], monitor: Optional[Monitor] = None) -> tuple[
     measured = [path for path, header in zip(paths, headers) if header.is_measured]
     if measured and monitor:
         monitor.warn(
-            f"The bounds in the header of {_names(measured)} can't be those of the points; they were measured instead."
+            f"The bounds in the header of {_names(measured)} don't fit the points; they were measured instead."
         )
     found = [(path, header) for path, header in zip(paths, headers) if header.count]
     return [path for path, _ in found], [header for _, header in found]
@@ -136,7 +136,7 @@ def _measured(path: Path, size: int, changed: int) -> Optional[tuple[np.ndarray,
 
 
 def _can_be(header: Header, low: np.ndarray, high: np.ndarray) -> bool:
-    """Whether the bounds in a header can be those of a file whose points reach from ``low`` to ``high`` (3,)."""
+    """Whether the bounds in a header fit a file whose points reach from ``low`` to ``high`` (3,)."""
     if not np.isfinite([header.low, header.high]).all():
         return False
     # The bounds of some files are rounded.

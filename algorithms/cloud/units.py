@@ -37,7 +37,7 @@ _LONGEST_UNIT = 1e6
 # code and by method.
 MODEL, _GEOGRAPHIC, PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
 _CONVERSION, _METHOD = 3074, 3075
-# GeoKeys: code and size of the unit in plan, code of that of heights.
+# GeoKeys: code and size of the unit in plan, code of the unit of heights.
 _LINEAR_UNITS, _LINEAR_UNIT_SIZE, _VERTICAL_UNITS = 3076, 3077, 4099
 # Values of the kind of the coordinates.
 _MODEL_GEOGRAPHIC, _MODEL_GEOCENTRIC = 2, 3
@@ -222,7 +222,7 @@ def code_of_keys(keys: dict[int, Any]) -> int:
 
 
 def text_of_keys(keys: dict[int, Any]) -> str:
-    """Return the codes in GeoKeys as a text, with that of the heights: "EPSG:26915+5703"."""
+    """Return the codes in GeoKeys as a text, with the heights' code: "EPSG:26915+5703"."""
     height = keys.get(_VERTICAL, 0)
     return f"EPSG:{code_of_keys(keys)}" + (f"+{height}" if 0 < height < USER_DEFINED else "")
 
@@ -254,6 +254,6 @@ def units_of_geokeys(keys: dict[int, Any], known: Optional[Units]) -> tuple[Opti
     horizontal = own or (known.horizontal if known else 1.0)
     vertical = _LENGTHS.get(keys.get(_VERTICAL_UNITS, 0))
     if vertical is None:
-        # Heights without a unit of their own have that of the plane.
+        # Heights without a unit of their own have the plane's.
         vertical = known.vertical if known and (_VERTICAL in keys or not own) else horizontal
     return (Units(horizontal, vertical) if own or known else None), warnings

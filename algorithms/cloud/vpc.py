@@ -82,7 +82,7 @@ def tiles_of(path: Path) -> dict[Path, Named]:
         seen.update(waiting)
         if len(seen) > _MOST_PAGES or n_items > _MOST_ITEMS:
             raise ValueError(
-                f"{path.name} leads to more than {_MOST_PAGES} pages or {_MOST_ITEMS:,} items; ask for those of an "
+                f"{path.name} leads to more than {_MOST_PAGES} pages or {_MOST_ITEMS:,} items; ask for the items of an "
                 "extent (bbox=…)."
             )
     if not tiles:

@@ -23,7 +23,7 @@ _folder = [os.environ.get(_VARIABLE, "")]
 
 
 def keep_in(folder: str) -> None:
-    """Keep ranges in a folder from now on; with "" in that of the environment variable, if there is one."""
+    """Keep ranges in a folder from now on; with "" in the folder of the environment variable, if there is one."""
     _folder[0] = folder or os.environ.get(_VARIABLE, "")
 
 

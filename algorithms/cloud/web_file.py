@@ -383,7 +383,7 @@ class WebStream(io.RawIOBase):
 
 
 def fetch_files(files: Iterable[Path], monitor: Monitor, version: str = "") -> None:
-    """Fetch those of some files that are on the web, several at once, and as a whole where they are small.
+    """Fetch the files that are on the web, several at once, and as a whole where they are small.
 
     Servers without ranges answer this, too. A ``version`` is of the description that names the files: they are kept in
     the folder of the user, and are not asked for while that does not change.

@@ -54,7 +54,7 @@ class _StandardLibrary:
 
     def __init__(self) -> None:
         self._opener = OpenerDirector()
-        # Without the handlers that follow redirections, and those of files and FTP.
+        # Without the handlers of redirections, files and FTP.
         for handler in (ProxyHandler(), HTTPHandler(), HTTPSHandler(context=ssl.create_default_context())):
             self._opener.add_handler(handler)
 

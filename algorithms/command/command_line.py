@@ -36,7 +36,7 @@ _NO_HEIGHT = -9999.0
 
 
 def main(words: Optional[Sequence[str]] = None) -> int:
-    """Run the command with the words after its name, those of the process by default; return its exit code."""
+    """Run the command with the words after its name, the process's by default; return its exit code."""
     words = sys.argv[1:] if words is None else list(words)
     if not words or words[0] in ("-h", "--help"):
         _say(overview())
@@ -161,7 +161,7 @@ def _check(algorithm: Pipeline, targets: list[tuple[Output, Path]], sources: Seq
 def _layers(
     files: dict[InputLayer, Path], cloud: Optional[Cloud], monitor: Monitor
 ) -> tuple[dict[str, Optional[LayerFeatures]], Optional[_Place]]:
-    """Return the layers of files in local meters: those of the cloud, else from a corner of the first layer."""
+    """Return the layers of files in local meters: from the cloud's origin, else from a corner of the first layer."""
     place = _Place(cloud.to_map, cloud.from_map, *_codes(cloud)) if cloud is not None else None
     layers: dict[str, Optional[LayerFeatures]] = {}
     for wanted, path in files.items():

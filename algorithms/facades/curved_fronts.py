@@ -33,7 +33,7 @@ _ROUNDS = 5
 
 
 def as_strips(xyz: np.ndarray, wall: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return wall numbers (n,) from 1, those of curved fronts as upright strips side by side; 0 stays 0.
+    """Return wall numbers (n,) from 1, curved fronts as upright strips side by side; 0 stays 0.
 
     On a curved front the planes of walls overlap. A plane is left out if the points of each of its columns lie off
     another one by at most ``tolerance`` (root mean square, m).

@@ -115,7 +115,7 @@ def extract_openings(
     other with no wall between are one opening. It must have wall within 0.15 m along half of its outline, where the
     sill of a door does not count, and points in a tenth of its area. Its sides are the edges of the wall
     where these lie within 0.3 m of the points. It is a rectangle unless the convex hull of its points fills less than
-    three quarters of it, as that of a triangular window. Panes with at most 0.15 m between them are one window.
+    three quarters of it, as of a triangular window. Panes with at most 0.15 m between them are one window.
 
     A door is 1.8 m high at least, and ground, a landing or steps up to ``BEFORE`` m before the wall rise to within 0.4
     m of its sill, with no wall seen further down. Where nothing is seen before the wall, its foot is taken for the

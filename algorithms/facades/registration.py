@@ -92,7 +92,7 @@ def register(
     A wall and an outline that run the same way give the shift across them, but for the overhang of the eaves. That is
     one unknown for all: walls of both sides of a street separate it from the shift. Ends of walls and corners of
     outlines give the shift along, but for the overhang of gables, another unknown. The weight of an end is the length
-    of the outline's edge across it, that of a wall the square root of its own length. A search on a grid finds which
+    of the outline's edge across it, a wall by the square root of its own length. A search on a grid finds which
     are common, least squares in narrowing rounds their shift. The ground then gives the shift in height.
     """
     long = walls.length >= _RULES.shortest

@@ -200,8 +200,8 @@ def compute_features(
 
     Notes
     -----
-    The covariance is that of the point together with its neighbors, with their number as divisor; its eigenvalues are
-    l1, the largest, to l3, and those of its part in plan m1 and m2. L, P and S are linearity, planarity and scattering.
+    The covariance is taken over the point and its neighbors, with their number as divisor; its eigenvalues are l1, the
+    largest, to l3, and of its part in plan m1 and m2. L, P and S are linearity, planarity and scattering.
     Coordinates are taken relative to each point, so that large ones lose nothing. Surface variation is what other
     programs call curvature; verticality is as by Demantké et al.
 

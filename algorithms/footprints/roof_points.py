@@ -82,7 +82,7 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
 
 
 def _numbers(grid: Grid, xyz: np.ndarray, cluster: np.ndarray) -> np.ndarray:
-    """Return one number (n,) for cell and cluster; those of two clusters are as far apart as the grid is large."""
+    """Return one number (n,) for cell and cluster; numbers of two clusters are as far apart as the grid is large."""
     return grid.number(xyz) + distinct(cluster)[1].astype(np.int64) * (grid.rows * grid.columns)
 
 

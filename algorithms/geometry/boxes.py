@@ -36,8 +36,8 @@ class Boxes:
     side : float or ndarray of shape (3,)
         Sides of a box, m.
     from_zero : bool
-        Whether boxes are at multiples of their sides, so that a part of a cloud has those of the whole; else they begin
-        at the least coordinates of the points.
+        Whether boxes are at multiples of their sides, so that a part of a cloud has the boxes of the whole; else they
+        begin at the least coordinates of the points.
 
     Attributes
     ----------
@@ -208,7 +208,7 @@ def _compared(
 
 
 def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """Return the components after joining those of the boxes ``here`` and ``there``."""
+    """Return the components after joining the components of the boxes ``here`` and ``there``."""
     if not len(here):
         return component
     return components(component[here], component[there], int(component.max()) + 1)[1][component]

@@ -33,7 +33,7 @@ _FEW = 12_000
 # Surroundings of a tile, in distances between positions: nearly all circles on its border end there.
 _MARGIN = 3.0
 
-# Positions on a circle, as those of regular grids are, count as inside: triangles with one circle stay or go together.
+# Positions on a circle, as in regular grids, count as inside: triangles with one circle stay or go together.
 _ROUNDING = 1e-9
 
 
@@ -84,7 +84,7 @@ def triangulate(plan: np.ndarray, monitor: Optional[Monitor] = None) -> Triangul
 
 
 def _by_tiles(plan: np.ndarray, monitor: Monitor) -> Optional[Triangulation]:
-    """Return the triangulation of positions made of those of tiles, None where these don't fit together."""
+    """Return the triangulation of positions made of the tiles' triangulations, None where these don't fit together."""
     different = np.unique(np.ascontiguousarray(plan, float).view(complex), return_index=True)[1]
     tiles = list(_tiles(plan, different))
     parts: list[Triangulation] = [None] * len(tiles)  # type: ignore[list-item]

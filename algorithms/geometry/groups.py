@@ -43,7 +43,7 @@ def placed(values: np.ndarray, rows: np.ndarray, length: int, otherwise: float =
 
 
 def ordered(key: np.ndarray, *ties: np.ndarray) -> np.ndarray:
-    """Return the positions (n,) in ascending order of ``key`` (n,); of equal ones in that of ``ties``, the first first.
+    """Return the positions (n,) in ascending order of ``key`` (n,); of equal ones in the order of ``ties``.
 
     Where few keys are equal, it takes little longer than sorting the keys alone.
     """

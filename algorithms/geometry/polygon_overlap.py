@@ -16,7 +16,7 @@ _PAIRS_AT_ONCE = 1_000_000
 
 @dataclass(frozen=True)
 class Polygons:
-    """Polygons as edges: ``edges`` (m, 2, 2) from vertex to vertex, those of polygon i from ``first[i]`` on.
+    """Polygons as edges: ``edges`` (m, 2, 2) from vertex to vertex, polygon i's from ``first[i]`` on.
 
     Exteriors run counterclockwise and holes clockwise. ``box`` (n, 2, 2) holds the least and the greatest coordinates.
     """

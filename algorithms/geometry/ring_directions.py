@@ -17,7 +17,7 @@ _POWER = 1.5
 # Least standard deviation of a direction (°).
 _LEAST_WIDTH = 1.0
 
-# Standard deviation of the direction of a piece of one sample (°), half a sample across: that of longer pieces is
+# Standard deviation of the direction of a piece of one sample (°), half a sample across: longer pieces'
 # inverse to their length.
 _WIDTH_OF_ONE = 28.6
 
@@ -62,7 +62,7 @@ class RingPieces:
 
     def __init__(self, samples: np.ndarray) -> None:
         step = float(np.hypot(*(samples[1] - samples[0])))
-        #: By the length of pieces: step of the directions (n,) below that of each, share (n,) of the one above, weight.
+        #: By the length of pieces: step of the directions (n,) below each one's, share (n,) of the one above, weight.
         self._of_length: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         for length in _LENGTHS:
             if 2 * length <= len(samples):
@@ -124,7 +124,7 @@ def main_directions(weights: np.ndarray, own: np.ndarray, n_samples: int) -> np.
     Parameters
     ----------
     weights, own : ndarray of shape (180,)
-        Weights of directions with those of its neighbors, and its own.
+        Weights of directions with its neighbors', and its own.
     n_samples : int
         Samples of its rings. A round building has no direction.
     """

@@ -49,7 +49,7 @@ _FARTHEST = 6.0
 class Prices:
     """What corners and directions cost: all but ``corner`` are multiples of it."""
 
-    corner: float  #: Price of a right-angled corner, m³: that of leaving out a bay of two spacings by four
+    corner: float  #: Price of a right-angled corner, m³: as of leaving out a bay of two spacings by four
     flat: float = 1.5  #: Corner that turns by less than 20°, which noise makes more easily than a sharper one
     #: Corner that turns by 20° to 70°. With 1.0, a corner of a house that is cut off over 7 m is drawn as a notch at
     #: 2 points per m² in 36 of 40 draws, with 0.8 in 11.

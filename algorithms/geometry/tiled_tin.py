@@ -41,7 +41,7 @@ _INTRUDERS = 8
 # Nodes whose width in plan is a smaller share of their length than this lie on a line, and no point lies between them.
 _LEAST_WIDTH = 1e-9
 
-# Nodes on a circle, as those of regular grids are, lie inside it by rounding.
+# Nodes on a circle, as in regular grids, lie inside it by rounding.
 _ROUNDING = 1e-9
 
 
@@ -106,7 +106,7 @@ class TiledTin:
     def _fill(
         self, rows: np.ndarray, left: np.ndarray, positions: np.ndarray, found: np.ndarray, is_start: bool
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Write the elevations at those of the positions ``left`` whose triangles between the nodes ``rows`` are right.
+        """Write the elevations at positions among ``left`` whose triangles between the nodes ``rows`` are right.
 
         Returns the nodes that the other positions need, with those around them if it ``is_start``, and these positions.
         """
@@ -128,7 +128,7 @@ class TiledTin:
         return intruders, left
 
     def _fill_edge(self, left: np.ndarray, positions: np.ndarray, found: np.ndarray) -> None:
-        """Write the elevations at those of the positions ``left`` that lie in the hull of all nodes to ``found``.
+        """Write the elevations at positions among ``left`` that lie in the hull of all nodes to ``found``.
 
         The far corners of a :class:`Tin` take away the flat triangles along its hull: these have such large circles
         that a corner lies inside.
@@ -207,7 +207,7 @@ def _cell_size(nodes: np.ndarray, rows: np.ndarray) -> float:
 
 
 def _close(nodes: np.ndarray, rows: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Return those of the ``rows`` of nodes that lie in a cell with positions, or next to such a cell."""
+    """Return the ``rows`` of nodes that lie in a cell with positions, or next to such a cell."""
     size = _cell_size(nodes, rows)
     if not size:
         return rows

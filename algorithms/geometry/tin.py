@@ -46,7 +46,7 @@ class Tin:
     nodes : ndarray of shape (m, 3), float64
         Nodes (m), m >= 1; of nodes at one position in plan, one counts.
     box : ndarray of shape (2, 2), float64, optional
-        Least and greatest easting and northing (m) that the far corners surround; those of the nodes when absent.
+        Least and greatest easting and northing (m) that the far corners surround; the nodes' when absent.
     monitor : Monitor, optional
         Receives progress.
 

@@ -247,7 +247,7 @@ def _groups(
 
 
 def _extent(group: np.ndarray, xyz: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Return the longest extent in plan (m) of each group (m,): that of evenly spread points of the same deviation."""
+    """Return the longest extent in plan (m) of each group (m,), as of evenly spread points of the same deviation."""
     x, y = (xyz[:, :2] - xyz[:, :2].mean(axis=0)).T if len(xyz) else np.zeros((2, 0))
     count = np.maximum(size, 1)
     x, y = (values - (np.bincount(group, values, len(size)) / count)[group] for values in (x, y))

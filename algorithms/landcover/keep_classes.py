@@ -10,7 +10,7 @@ from ..stage import stage, tunable
 # The choice by default.
 _NONE = "none"
 
-# Classes that are kept of a classified cloud, or None for all but those of points that nobody has classified.
+# Classes that are kept of a classified cloud, or None for all but the ones that mean unclassified.
 _KEPT = {
     _NONE: (),
     "ground": (PointClass.GROUND,),

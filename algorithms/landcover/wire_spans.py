@@ -82,7 +82,7 @@ class Span:
 
 
 class Surroundings:
-    """All points that are high enough to be of a wire, and those of buildings, to examine the surroundings of a span.
+    """All points that are high enough to be of a wire, and points of buildings, to examine the surroundings of a span.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ _MANSARD = 12.0
 class Checks:
     """Which models are to be looked at."""
 
-    #: doubtful, poor: Shares of roof points off the model: twice and five times those of the median building on maps
+    #: doubtful, poor: Shares of roof points off the model: twice and five times the median building's on maps
     doubtful: float = 0.1
     poor: float = 0.25
     #: Share of the area with points: walls hide a strip of narrow courts, water and glass all of a roof
@@ -58,7 +58,7 @@ BUILDING_FIELDS = (
     Field("level", str, "level of detail that it has: 1.2, 1.3, 2.0 or 2.2"),
     Field("reason", str, "why it has a simpler level than was asked for, empty where it has that one"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other"),
-    Field("ground", float, "elevation of its base, near that of the lowest ground next to it", "m"),
+    Field("ground", float, "elevation of its base, near the lowest ground next to it", "m"),
     Field("eave_height", float, "lower quartile of the heights above the terrain at which its roof ends outside", "m"),
     Field("ridge_height", float, "98th percentile of the heights of its roof points above the terrain", "m"),
     Field("roof_area", float, "area of its roof, in its slopes", "m²"),
@@ -318,7 +318,7 @@ def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
         # A mansard roof has two slopes each way.
         steep = max(np.ptp(slope[sloping][_near(azimuth[sloping], way)]) for way in ways)
         return "mansard" if steep > _MANSARD and sloping.sum() >= 4 else "gable"
-    # A hipped roof has one face each way, unless all ways have large ones: not those of dormers.
+    # A hipped roof has one face each way, unless all ways have large ones: not dormers'.
     largely = [area[sloping][_near(azimuth[sloping], way)].sum() >= _ANNEX * area.sum() for way in ways]
     is_hip = opposite and len(ways) in (3, 4) and (sloping.sum() == len(ways) or all(largely))
     return "hip" if is_hip else "other"

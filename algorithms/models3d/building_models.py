@@ -59,7 +59,7 @@ class Settings:
 class BuildingModel:
     """A building's solids by level of detail, and the facts about its best level."""
 
-    base: float  #: Height of the ground (m): that of the base of the solids
+    base: float  #: Height of the ground (m), at which solids have their base
     level: str = ""  #: Best level of the building, "" without any
     reason: str = ""  #: Why ``level`` is not the level asked for, "" where it is
     #: Solids by level; parts of the footprint that only touch in a point are separate solids

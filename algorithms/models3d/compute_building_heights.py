@@ -72,7 +72,7 @@ _FIELDS = (
         f"{SEEN}; {PARTLY}: points of the building on less than {CHECKS.covered:.0%} of the footprint; {TREES}: so, "
         f"with vegetation over most of the rest; {ABSENT}: only other points; {EMPTY}: none at all",
     ),
-    Field("h_ground", float, "elevation of the ground, near that of the lowest next to the building", "m"),
+    Field("h_ground", float, "elevation of the ground, near the lowest next to the building", "m"),
     Field("h_roof_min", float, "least elevation of its roof, the 1st percentile", "m"),
     Field("h_roof_50p", float, "median elevation of its roof", "m"),
     Field("h_roof_70p", float, "70th percentile of the elevations of its roof, the top at level of detail 1.2", "m"),

@@ -64,7 +64,7 @@ def _turned(triangles: list[list[int]], rings: list[list[int]], positions: dict)
 
 
 def _is_better(a, b, c, d) -> bool:
-    """Return whether the side from c to d is that of Delaunay triangles where a to b is now, c to the left of it."""
+    """Return whether Delaunay triangles have the side from c to d where a to b is now, c to the left of it."""
     if _turn(c, a, d) <= _FLAT or _turn(d, b, c) <= _FLAT:
         return False
     (ax, ay), (bx, by), (cx, cy) = ((x - d[0], y - d[1]) for x, y in (a, b, c))

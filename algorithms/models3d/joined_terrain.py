@@ -21,7 +21,7 @@ from .face_triangles import triangulate_face
 from .solid_faults import fault_of
 from .solids import DECIMALS, GROUND, ROOF, TERRAIN, Solid, edges_around
 
-# Side (m) of the patches in which terrain is triangulated. Their lattice is that of the coordinates, and each depends
+# Side (m) of the patches in which terrain is triangulated. Their lattice is the coordinates', and each depends
 # on what lies in it alone: all blocks of a survey make the same ones.
 PATCH = 50.0
 
@@ -38,7 +38,7 @@ _BESIDE = 0.3
 # Rounding (m) of positions in line.
 _EXACT = 1e-6
 
-# Pieces of outlines that are shorter (m) are not divided: those of footprints that overlap cross without a node.
+# Pieces of outlines that are shorter (m) are not divided: outlines of footprints that overlap cross without a node.
 _SHORTEST = 0.05
 
 # Triangulations of a patch, at most; 10 to 20 are enough for nearly all.
@@ -264,7 +264,7 @@ class _Foot:
         return self.nodes[self.tree.query(plan[:, :2])[1], 2]
 
     def _on_terrain(self, solid: Solid) -> Solid:
-        """Return a solid whose lower edges are those of the terrain, or a level ground under it where it has faults."""
+        """Return a solid whose lower edges are the terrain's, or a level ground under it where it has faults."""
         grounds = [ring for rings, kind in zip(solid.faces, solid.kinds) if kind == GROUND for ring in rings]
         on_roof = {v for rings, kind in zip(solid.faces, solid.kinds) if kind == ROOF for ring in rings for v in ring}
         base = sorted({v for ring in grounds for v in ring} - on_roof)

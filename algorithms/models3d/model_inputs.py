@@ -100,5 +100,5 @@ def shows_roof(count: int, spacing: float, rings: list) -> bool:
 
 
 def ground_beside(ground: np.ndarray, tree: Any, rings: list) -> np.ndarray:
-    """Return the elevations (m) of the ground along a footprint; ``tree`` is that of the ground in plan."""
+    """Return the elevations (m) of the ground along a footprint; ``tree`` is the search tree of the ground in plan."""
     return ground[tree.query(sampled_rings(rings[:1], _GROUND_STEP))[1], 2]

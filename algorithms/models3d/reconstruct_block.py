@@ -101,7 +101,7 @@ def reconstruct_block(
     xyz : ndarray of shape (n, 3)
         Coordinates (m) of the airborne cloud.
     classification : ndarray of shape (n,)
-        Its classes; points of class 6 are modelled, those of class 2 are the ground.
+        Its classes; points of class 6 are modelled, points of class 2 are the ground.
     footprints : LayerFeatures
         Outlines of the buildings.
     facades, openings : LayerFeatures
@@ -159,7 +159,7 @@ def reconstruct_block(
     )
     pierced, done = _pierced(models, _openings(openings))
     if not len(segments):
-        monitor.warn("No facade is an upright polygon with heights, so all walls are those of footprints.")
+        monitor.warn("No facade is an upright polygon with heights, so all walls are taken from footprints.")
     _inform(int((seen > 0).sum()), len(footprints), len(done), len(openings), monitor)
     return buildings, _walls(pierced, segments), roofs, _opening_layer(done), pierced
 

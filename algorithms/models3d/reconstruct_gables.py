@@ -82,7 +82,7 @@ def reconstruct_gables(
     ),
     monitor=None,
 ):
-    """Reconstruct gable houses: ten vertices from two roof planes, the height of the eaves and that of the ground.
+    """Reconstruct gable houses: ten vertices from two roof planes and the heights of eaves and ground.
 
     Two roof planes that rise toward each other are a gable. Their intersection line, made level, is the ridge; the
     outer edges of their points are the eaves, which get one height; walls are upright below the edges of the
@@ -107,7 +107,7 @@ def reconstruct_gables(
 
     Notes
     -----
-    Vertices are numbered as in the paper's figure 8: 1 and 2 are the ends of the ridge, 3 to 6 those of the eaves,
+    Vertices are numbered as in the paper's figure 8: 1 and 2 are the ends of the ridge, 3 to 6 of the eaves,
     7 to 10 lie below these on the ground. The fifteen parameters are x and y of 1 to 6, z1, z3 and z7. The paper offers
     two ways to a level ridge; here the ridge is the intersection line, turned level at its middle. Both eaves get the
     mean of their elevations and stay in their planes, so that all faces are planar; walls below them are upright, and
@@ -168,7 +168,7 @@ class _Ground:
         self.tree = spatial.cKDTree(self.points[:, :2])
 
     def near(self, corners: np.ndarray) -> Optional[float]:
-        """Return the elevation (m) around corners (m, 2): the median of the ground, or that of the lowest points."""
+        """Return the elevation (m) around corners (m, 2): the median of the ground, or of the lowest points."""
         near = np.unique(np.concatenate(self.tree.query_ball_point(corners, 2.0)).astype(np.int64))
         if not len(near):
             extent = float(np.ptp(corners, axis=0).max())

@@ -56,7 +56,7 @@ _NAMED = 5
             "footprints",
             "Footprints",
             "Polygon",
-            "Outlines of the buildings: those of 'Extract footprints', or any other map of roofs or walls.",
+            "Outlines of the buildings: from 'Extract footprints', or any other map of roofs or walls.",
         ),
     ),
     layers=(
@@ -136,7 +136,7 @@ def reconstruct_roofs(
     xyz : ndarray of shape (n, 3)
         Coordinates (m).
     classification : ndarray of shape (n,)
-        Classes; points of class 6 are modelled, those of class 2 are the ground.
+        Classes; points of class 6 are modelled, points of class 2 are the ground.
     footprints : LayerFeatures
         Outlines of the buildings.
 
@@ -226,7 +226,7 @@ class _Outline:
 
 
 def _points(xyz: np.ndarray, classification: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points of buildings in the order of their eastings, and those of the ground."""
+    """Return the points of buildings in the order of their eastings, and the points of the ground."""
     require_buildings(classification)
     require_ground(classification)
     return by_easting(xyz[classification == PointClass.BUILDING]), xyz[classification == PointClass.GROUND]
@@ -254,7 +254,7 @@ def _modelled(
 ) -> list[NamedModel]:
     """Return the models of all footprints that can be modelled; log their levels, and why the others have no model.
 
-    The points are those of buildings in the order of their eastings.
+    The points are of buildings, in the order of their eastings.
     """
     tree = spatial.cKDTree(ground[:, :2])
     models, empty, failed = [], 0, []

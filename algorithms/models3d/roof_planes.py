@@ -14,7 +14,7 @@ from ..segmentation.least_squares_planes import planes_of
 # Points of the neighborhood whose plane shows which way a roof faces: two rings around a point.
 _NEIGHBORS = 12
 
-# Largest angle (°) between the normal of a point and that of its plane; normals of a dozen points with 3 cm of noise
+# Largest angle (°) between the normals of a point and of its plane; normals of a dozen points with 3 cm of noise
 # vary by less than half.
 _FACING = 25.0
 
@@ -30,7 +30,7 @@ _CHOICES = 3
 
 @dataclass(frozen=True)
 class RoofPlanes:
-    """Planes z = a x + b y + c of a roof, ``coefficients`` (m, 3), and that of each point: ``label`` (n,), -1 none."""
+    """Planes z = a x + b y + c of a roof, ``coefficients`` (m, 3), and each point's: ``label`` (n,), -1 none."""
 
     coefficients: np.ndarray
     label: np.ndarray

@@ -242,7 +242,7 @@ def _sectors(face: _Face) -> dict[int, dict[int, int]]:
     """Return the sectors of a face by their corner: the corner after it and, for each of these, the one before it.
 
     Where two rings touch in a corner the face has two sectors there. Each reaches from the next corner of one ring
-    counterclockwise to the nearest corner before, which may be that of the other ring.
+    counterclockwise to the nearest corner before, which may be of the other ring.
     """
     ends: dict[int, dict[int, int]] = defaultdict(dict)
     for ring in face.rings:

@@ -41,7 +41,7 @@ class Levels:
 
     Vertices move in plan, by centimeters, to where the planes next to them intersect: faces stay plane.
 
-    ``label`` (cells,) is the plane of each cell, -1 outside; ``coefficients`` (m, 3) are those of z = a x + b y + c;
+    ``label`` (cells,) is the plane of each cell, -1 outside; ``coefficients`` (m, 3) are of z = a x + b y + c;
     ``base`` (m) is the height of the ground.
     """
 

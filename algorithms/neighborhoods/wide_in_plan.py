@@ -29,7 +29,7 @@ class Wide:
     """The ``count`` nearest points, or as many more, up to 60, as are 0.45 times as wide as long in plan.
 
     Scanners put points close together along a line and leave gaps between the lines. The nearest points of one are
-    those of its own line then: they have no plane, and a line through a crown is no crown. It is the plan that
+    points of its own line then: they have no plane, and a line through a crown is no crown. It is the plan that
     counts, for a line that is bent upward, over a wall or through a crown, is still one.
     """
 

@@ -86,7 +86,7 @@ def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor
 
 
 def _by_cell_and_height(which: np.ndarray, xyz: np.ndarray) -> np.ndarray:
-    """Return the rows (n,) in the order of cells, those of a cell from the lowest up, of equal ones from the west."""
+    """Return the rows (n,) by cells, from the lowest point of a cell up, of equally high ones from the west."""
     x, y, z = xyz.T
     # One number for both sorts three times as fast; heights count to a part in two thousand million of their range.
     key = which.astype(np.int64) << 32

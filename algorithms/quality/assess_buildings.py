@@ -124,7 +124,7 @@ def assess_buildings(
     Returns
     -------
     objects : LayerFeatures
-        Polygons of the buildings of the reference, found or missed; of those of the input that are not true; and of
+        Polygons of the buildings of the reference, found or missed; of the input's that are not true; and of
         what buildings that were found lack or have too much.
     report : Report
         Percentages and counts, and a page with a map. A percentage of nothing is NaN.

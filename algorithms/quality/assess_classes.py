@@ -98,7 +98,7 @@ def assess_classes(
     -----
     Points of a class in both are TP, in the reference only FN and in the input only FP. Completeness is TP / (TP + FN),
     correctness TP / (TP + FP), F their harmonic mean and intersection over union TP / (TP + FN + FP). The mean of the
-    latter is that of the classes, as merged, that the reference has. Figures of ground (2), vegetation (3-5), building
+    latter is over the classes, as merged, that the reference has. Figures of ground (2), vegetation (3-5), building
     (6), water (9), wires and masts (13-16), bridges (17) and noise (7, 18) are outputs, too, however classes are
     merged. Classes of a reference that mean "everything else" (1) are best ignored.
 
@@ -161,7 +161,7 @@ def parse_groups(text: str) -> list[np.ndarray]:
 
 
 def merged(occurring: np.ndarray, groups: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the classes that occur (m,), those of a group together, in ascending order of the first of each."""
+    """Return the classes that occur (m,), each group together, in ascending order of the first of each."""
     in_groups = np.concatenate([*groups, np.zeros(0, np.int64)])
     parts = [np.intersect1d(group, occurring) for group in groups]
     parts += [np.array([single]) for single in np.setdiff1d(occurring, in_groups)]

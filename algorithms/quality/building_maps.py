@@ -54,7 +54,7 @@ class BuildingMap:
         return BuildingMap([self.rings[row] for row in rows], [self.names[row] for row in rows], self.rows[rows])
 
     def __add__(self, other: BuildingMap) -> BuildingMap:
-        """Return the polygons of both maps, those of the other one last."""
+        """Return the polygons of both maps, the other map's last."""
         return BuildingMap(self.rings + other.rings, self.names + other.names, np.append(self.rows, other.rows))
 
 

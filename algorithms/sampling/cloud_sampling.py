@@ -28,7 +28,7 @@ _MEASURES = {
     "seen_through": ("share seen through", ""),
 }
 
-# Largest share of a closed surface that is seen through: between those of matched images and of laser clouds without
+# Largest share of a closed surface that is seen through: between matched images and laser clouds without
 # second returns, see :func:`.closed_surface.seen_through_share`.
 _MOST_SEEN_THROUGH = 0.02
 
@@ -41,7 +41,7 @@ _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
 # Name of the noise of the ground among what parts of a cloud take of the whole.
 GROUND_NOISE = "ground_noise"
 
-# The default of a stage's argument ``sampling``: where it is called alone, it is given that of its own points.
+# The default of a stage's argument ``sampling``: where it is called alone, it is given its own points' sampling.
 MEASURED: Any = None
 
 # Returns the numbers that a table shows.
@@ -53,7 +53,7 @@ class CloudSampling:
 
     It is measured on the points that are neither withheld nor noise (classes 7 and 18), so that it is the same before
     and after every stage that leaves these as they are. Each measure is taken when it is first asked for, and kept.
-    One survey has one sampling: stages take the one that they are given, also that of other tiles of the survey.
+    One survey has one sampling: stages take the one that they are given, also of other tiles of the survey.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class CloudSampling:
     single_returns : bool
         Whether no pulse is known to have more than one return. Clouds matched from images never have.
     corner : ndarray of shape (2,), optional
-        Least easting and northing of the whole, m, where cells begin; that of ``points``, unless given.
+        Least easting and northing of the whole, m, where cells begin; of ``points``, unless given.
 
     Attributes
     ----------
@@ -160,7 +160,7 @@ class CloudSampling:
         return self._surfaces.noise(self.height_resolution)
 
     def noise_with_ground(self, xyz: np.ndarray, classification: np.ndarray) -> float:
-        """Return the noise, m, and where ground is known no more than that of its points.
+        """Return the noise, m, and where ground is known no more than its points'.
 
         In a forest nearly all points are of crowns, whose smoothest parts are rougher than any surface. Stages that ask
         for it declare ``GROUND_NOISE``.

@@ -52,7 +52,7 @@ def point_density(xyz: np.ndarray) -> float:
 
     Notes
     -----
-    The area is that of the occupied cells of a grid whose cells hold five points on average;
+    The area is covered by the occupied cells of a grid whose cells hold five points on average;
     that size depends on the density in turn, so it is found by repetition. Cells are a centimeter wide at least.
     """
     low, high = plan_box(xyz)
@@ -83,12 +83,12 @@ def effective_density(xyz: np.ndarray, density: Optional[float] = None) -> float
     xyz : ndarray of shape (n, 2 or 3)
         Coordinates (m), n >= 1.
     density : float, optional
-        That of :func:`point_density`, where it is known already.
+        As by :func:`point_density`, where it is known already.
 
     Returns
     -------
     float
-        That of :func:`point_density` where points are spread evenly. It is down to a quarter of that where they lie on
+        As by :func:`point_density` where points are spread evenly. It is down to a quarter of it where they lie on
         lines with gaps in between, in pairs, or far more densely in some parts than in others.
 
     Raises
@@ -110,7 +110,7 @@ def effective_density(xyz: np.ndarray, density: Optional[float] = None) -> float
 
 
 def _filled(xyz: np.ndarray, size: float) -> float:
-    """Return the share of occupied cells of ``size`` (m) in those of twice the size."""
+    """Return the share of occupied cells of ``size`` (m) in cells of twice the size."""
     small, large = (len(distinct(grid_over(xyz, cell).number(xyz))[0]) for cell in (size, 2 * size))
     return small / (4 * large)
 

@@ -14,8 +14,8 @@ class HeightRules:
     """How coarsely heights are rounded."""
 
     least: float = rule(0.01, "m", "files keep a centimeter; smaller deviations can not be distinguished from zero")
-    levels: int = rule(10, "levels", "fewer are those of flat roofs, not of rounded heights")
-    most_step: float = rule(0.5, "m", "physics: larger steps between levels are those of storeys")
+    levels: int = rule(10, "levels", "fewer come of flat roofs, not of rounded heights")
+    most_step: float = rule(0.5, "m", "physics: larger steps between levels come of storeys")
     even: float = rule(0.01, "share", "of the median step; at least half of all steps differ from it by no more")
 
 
@@ -35,7 +35,7 @@ def rounding_deviation(elevation: np.ndarray) -> float:
     -------
     float
         The step between the levels on which all heights lie, over the square root of 12 (m). It is 0 where levels are
-        uneven, as those of finely measured heights are, few, or as far from one another as storeys.
+        uneven, as of finely measured heights, few, or as far from one another as storeys.
     """
     steps = np.diff(np.unique(elevation))
     if len(steps) < HEIGHTS.levels:

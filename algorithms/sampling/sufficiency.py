@@ -60,7 +60,7 @@ def doubted(confidence: np.ndarray) -> np.ndarray:
 def _faults_of_whole(xyz: np.ndarray, classification: np.ndarray, density: float) -> list[str]:
     """Return what is wrong with the extent of a whole cloud."""
     counted = without_noise(classification)
-    # Cells twice as wide as those of the density: few are empty where the cloud has no gaps.
+    # Cells twice as wide as the density's: few are empty where the cloud has no gaps.
     grid = grid_over(xyz[counted], 2 * float(np.sqrt(DENSITY.points_per_cell / density)))
     cell = grid.number(xyz[counted])
     occupied = distinct(cell)[0]

@@ -95,7 +95,7 @@ class MeasuredSurfaces:
 
 
 class SurfaceSample:
-    """Squares spread over a cloud with all points in them: neighborhoods there represent those of the whole cloud.
+    """Squares spread over a cloud with all points in them: neighborhoods there represent the whole cloud's.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ class SurfaceSample:
         Parameters
         ----------
         density : float
-            Points per square meter of the cloud. That of the surfaces counts where it is over twice as large.
+            Points per square meter of the cloud. The surfaces' counts where it is over twice as large.
         deviation : float
             Standard deviation of points across the surface, m.
 

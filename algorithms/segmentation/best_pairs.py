@@ -44,7 +44,7 @@ def merge_best_pairs(
 
     Notes
     -----
-    In a round every pair is merged that both of its planes prefer to all their others. The partition is that of a queue
+    In a round every pair is merged that both of its planes prefer to all their others. The partition is as by a queue
     from which the most similar pair of all is taken each time. This holds if no merged plane is more similar to a third
     one than both of its parts were. Of equal costs the pair with the lowest numbers is first.
     """

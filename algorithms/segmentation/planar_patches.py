@@ -51,7 +51,7 @@ def segment_patches(
     monitor: Monitor,
     corner: Union[np.ndarray, float] = 0.0,
 ) -> np.ndarray:
-    """Group those of some points that lie on smooth surfaces.
+    """Group the points that lie on smooth surfaces.
 
     Each point takes the smoothest plane among its neighbors' planes that hold it, so that points at edges and ridges
     belong to the nearest surface and not to a plane across the edge. Points whose planes agree then make one patch.

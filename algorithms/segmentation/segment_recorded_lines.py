@@ -130,10 +130,10 @@ def segment_recorded_lines(
     Notes
     -----
     The paper works on range images. Here adjacent lines are found by their points: the nearest one to the side of a
-    piece, and the nearest one on the opposite side, also of another flight line. The ends of a piece are those of the
-    straight line through its points by least squares, so that noise of single points does not count. Points that are
-    on no piece, such as those at bends and first returns, join the region of one of the
-    ``_NEAREST`` nearest points that have one if they lie on its plane. The published method merges planes only.
+    piece, and the nearest one on the opposite side, also of another flight line. A piece ends where the
+    straight line through its points by least squares does, so that noise of single points does not count. Points on no
+    piece, such as at bends and first returns, join the region of one of the ``_NEAREST`` nearest points that have one
+    if they lie on its plane. The published method merges planes only.
 
     References
     ----------

@@ -21,7 +21,7 @@ from .least_squares_planes import Planes
 # edge in a thousand is longer.
 _EDGE_SPACINGS = 4.0
 
-# Distance of the two parts from their common plane (standard deviations of points): that of a triangle has the full
+# Distance of the two parts from their common plane (standard deviations of points): a triangle's has the full
 # error of its three points.
 _WITHIN = 2.0
 

@@ -69,7 +69,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
 
 
 def _beside(planes: LocalPlanes, rows: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return those of the points ``rows`` (m,) that have one of the ``others`` among their neighbors."""
+    """Return the points among ``rows`` (m,) that have one of the ``others`` among their neighbors."""
     is_other, is_beside = np.zeros(len(planes.xyz), bool), np.empty(len(rows), bool)
     is_other[others] = True
 
@@ -289,7 +289,7 @@ def _plane_holds(
 
 
 def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray, rows: np.ndarray) -> Planes:
-    """Return planes fitted to further points ``rows`` (m,) of ``xyz``, those of each by its number ``plane`` (m,)."""
+    """Return planes fitted to further points ``rows`` (m,) of ``xyz``, whose plane is the number ``plane`` (m,)."""
     number, which = np.unique(plane, return_inverse=True)
     more = planes_of(xyz, which, len(number), rows)
     both = Planes(

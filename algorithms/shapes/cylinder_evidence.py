@@ -72,7 +72,7 @@ class Evidence:
     positions: np.ndarray  #: (n, 3): all points, m, of all segments if there are any, sorted by elevation
 
     def is_round(self, cylinder: Cylinder, own: Points, near: Points) -> bool:
-        """Return whether points (k) look like those of a cylinder among all points (m) near it."""
+        """Return whether points (k) look like a cylinder's among all points (m) near it."""
         along, distance, away = cylinder.local(own.xyz)
         near_along, near_distance, near_away = cylinder.local(near.xyz)
         angle = np.degrees(np.arccos(min(float(np.median(_facing(away, own.normals))), 1.0)))

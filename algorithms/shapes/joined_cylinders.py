@@ -13,7 +13,7 @@ from .cylinder_fits import SECTORS, Cylinder, fit_cylinder
 from .cylinder_search import Found
 
 # Largest increase (standard deviations of the noise) of the deviation of a piece's points when its own cylinder is
-# replaced by that of both pieces. Pipes 2 m long with noise of 2 mm whose axes are 6 mm apart exceed it.
+# replaced by the axis of both pieces. Pipes 2 m long with noise of 2 mm whose axes are 6 mm apart exceed it.
 _MOST_APART = 0.2
 
 # Largest ratio of the radii of two pieces: a wide bound that saves fits.
@@ -25,7 +25,7 @@ _ANGLE = 8.0
 # Largest distance (radii) of the facing end of a piece from the axis of the other: another wide bound.
 _BESIDE = 0.5
 
-# Radius (share of that of the cylinder) within which an end cap is looked for: clear of points of the wall.
+# Radius (share of the cylinder's) within which an end cap is looked for: clear of points of the wall.
 _CAP_RADIUS = 0.7
 
 # Least share of the points of an end cap, of those that its area would have, that part two cylinders.

@@ -37,7 +37,7 @@ WHOLE_CLOUD, WITHOUT_SHAPE, EACH_SEGMENT = SEARCHES = ("whole cloud", "points wi
 SEARCH_IN = tunable(
     WHOLE_CLOUD,
     "Points to search: the whole cloud, whose segments and shapes found before are discarded; the points without "
-    "a shape; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep "
+    "a shape; or the points of each segment (SegmentID) by themselves. There, points on which no shape is found keep "
     "their segment.",
     choices=SEARCHES,
 )
@@ -145,7 +145,7 @@ def numbered(
         Shape found at each point.
     segment_id, shape : ndarray of shape (n,), optional
         Dimensions of the cloud before. A search of the whole cloud discards both. One of the points without a shape
-        keeps those of points with a shape; one of each segment keeps all.
+        keeps the ids of points with a shape; a search in each segment keeps all.
     n : int
         Points of the cloud.
     search_in : str

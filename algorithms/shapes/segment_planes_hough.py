@@ -127,8 +127,8 @@ def segment_planes_hough(
 
     The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that
     are nearly the same. But in bins smaller than the noise the points of one plane scatter over several, until its
-    maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since
-    the parameters are determined by a least-squares fit to the points afterwards, and the automatic bins are as wide.
+    maximum is no higher than of planes that exist by chance. Bins as wide as the noise are the best balance, since the
+    parameters are determined by a least-squares fit to the points afterwards, and the automatic bins are as wide.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def segment_planes_hough(
     Deviations from the paper. Steep planes have no finite slope: on two further faces of a cube X and Y are written as
     functions of the other coordinates. The distance is that along the normal in place of the height at the origin, so
     that bins are as wide for steep planes. The space is of a window, not of the whole cloud: its maxima are not
-    those of planes that exist by chance through all objects, and its memory does not grow with the cloud. A
+    maxima of planes that exist by chance through all objects, and its memory does not grow with the cloud. A
     maximum counts with the bin next to it, where a plane at the border of two bins would be lost. A plane must hold
     more points than scattered points would have on one in a thousand windows.
 

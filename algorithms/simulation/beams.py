@@ -86,7 +86,7 @@ def join(parts: Sequence[Echoes]) -> Echoes:
 
 
 class World:
-    """A scene as arrays, ready for beams. Columns of ``crowns`` and ``wires`` are those of :class:`.scene.Scene`."""
+    """A scene as arrays, ready for beams. Columns of ``crowns`` and ``wires`` are as in :class:`.scene.Scene`."""
 
     def __init__(self, scene: Scene) -> None:
         self.relief: Relief = scene.relief

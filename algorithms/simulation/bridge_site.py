@@ -23,7 +23,7 @@ _FADE = 12.0
 # Vertical walls that are terrain are this steep (tangent): beams up to 30° off the vertical meet them once.
 _WALL = 1.7
 
-# Thickness of a deck (m): that of short concrete bridges.
+# Thickness of a deck (m): as of short concrete bridges.
 _THICKNESS = 0.9
 
 # Height of parapets (m), as codes ask for.
@@ -175,7 +175,7 @@ class BridgeRelief(Relief):
         return max(max(kind.depth, _FLY_OVER) for kind in KINDS.values())
 
     def ground(self, x, y) -> np.ndarray:
-        """Elevation (m) of the land, under water that of the bottom."""
+        """Elevation (m) of the land, under water of the bottom."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         z = np.zeros(x.shape)
         for lot in self.lots:

@@ -19,10 +19,10 @@ _WAVES = ((0.6, 0.4), (1.5, 0.5), (4.0, 0.6), (9.0, 0.7))
 _ROUNDING_CHANGES = 8.0
 
 # Crowns are matched worse than roofs, since leaves move and differ from view to view: length and standard deviation of
-# these errors (m). With these, simulated crowns are as rough over 0.75 to 2 m as those of a real suburb.
+# these errors (m). With these, simulated crowns are as rough over 0.75 to 2 m as in a real suburb.
 _LEAF_NOISE = ((0.6, 0.25), (1.6, 0.3))
 
-# Standard deviation (m) of the heights of single points of crowns from those of their neighbors.
+# Standard deviation (m) of the heights of single points of crowns from their neighbors'.
 _LEAF_SCATTER = 0.08
 
 # Some crowns are matched better than others: least and greatest multiple of the errors of leaves.
@@ -34,7 +34,7 @@ _FULL_LEAF_NOISE = 2.0
 # The sun: its azimuth from east, counterclockwise, and its elevation (rad), as on a morning in summer.
 _SUN = (np.radians(130.0), np.radians(38.0))
 
-# How far shadows are looked for (m): those of trees and houses of 20 m.
+# How far shadows are looked for (m): trees and houses of 20 m cast them.
 _SHADOW_REACH = 25.0
 
 # Light of the sky alone (red, green, blue), as a share of sunlight.
@@ -186,7 +186,7 @@ def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
 
 
 def _moved(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Return the value some rows and columns farther on for each cell, beyond the edge that of the edge."""
+    """Return the value some rows and columns farther on for each cell, beyond the edge the edge's."""
     row = np.clip(np.arange(values.shape[0]) + rows, 0, values.shape[0] - 1)
     column = np.clip(np.arange(values.shape[1]) + columns, 0, values.shape[1] - 1)
     return values[np.ix_(row, column)]

@@ -32,5 +32,5 @@ def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.
 
 
 def rank(owner: np.ndarray) -> np.ndarray:
-    """Return the number of each among those of its owner, from 0; ``owner`` (n,) is sorted."""
+    """Return the number of each among its owner's, from 0; ``owner`` (n,) is sorted."""
     return items(np.diff(run_starts(owner), append=len(owner)))[1]

@@ -36,7 +36,7 @@ class Relief:
     """Ground and water as functions of position.
 
     All coordinates are in the frame of the town, which is turned against east and north. *across* is the
-    direction in which the ground rises and the streets run, *along* that of the river, both from the town's center.
+    direction in which the ground rises and the streets run, *along* the river's, both from the town's center.
     """
 
     size: float  #: Side of the town, a square from (0, 0) to (size, size), m
@@ -73,7 +73,7 @@ class Relief:
         return _WATER_DEPTH - _CHANNEL_DEPTH
 
     def ground(self, x, y) -> np.ndarray:
-        """Elevation (m) of the ground, under water that of the river bed."""
+        """Elevation (m) of the ground, under water of the river bed."""
         across, along = self.frame.local(x, y)
         distance = across if self.river is None else across - self.river
         rise = distance

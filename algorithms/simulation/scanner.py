@@ -340,7 +340,7 @@ def _noise_echoes(world: World, pulses: Beams, height: np.ndarray) -> Echoes:
 
 
 def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
-    """Return the echoes with those of some pulses replaced."""
+    """Return the echoes, some pulses' replaced."""
     merged = join([echoes.take(~np.isin(echoes.pulse, noise.pulse)), noise])
     return merged.take(np.argsort(merged.pulse, kind="stable"))
 

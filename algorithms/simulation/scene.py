@@ -49,7 +49,7 @@ class Scene:
     relief: Relief  #: Ground and water
     #: The buildings; their object ids are unique among all objects
     buildings: list[Building] = field(default_factory=list)
-    solids: list[Solid] = field(default_factory=list)  #: All solids, those of the buildings too
+    solids: list[Solid] = field(default_factory=list)  #: All solids, the buildings' too
     #: Ellipsoids that a beam gets through in part. Each has x, y, z of its center, horizontal and vertical radius (m),
     #: mean way of a beam to the next leaf (m) and object id
     crowns: list[tuple] = field(default_factory=list)

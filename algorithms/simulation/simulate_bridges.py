@@ -69,7 +69,7 @@ def simulate_bridges(
 
     Notes
     -----
-    Scanned as in 'Simulate town', with strips, lines and occlusion. Walls of terrain, such as those of tunnel mouths
+    Scanned as in 'Simulate town', with strips, lines and occlusion. Walls of terrain, such as at tunnel mouths
     and abutments, rise at 60°, quays at 90°. Ramps rise at 12 %, steeper than roads, to keep lots small.
 
     Examples

@@ -20,7 +20,7 @@ _SMEARED = 0.3
 # Height above the ground (m) below which points of plants and cars are ground.
 _GROUND = 0.1
 
-# Distinguishes the random numbers of matching from those of other parts of the simulation with the same seed.
+# Distinguishes the random numbers of matching from other parts of the simulation with the same seed.
 _STREAM = 6
 
 # Height from hollows to hills, m.
@@ -104,7 +104,7 @@ def simulate_drone_site(
     changes over the site from half to one and a half times the mean. Points that are smeared beyond the edge of an
     object, ``_SMEARED`` m above the ground or more, are of the object.
 
-    Unevenness of the ground, waves and the roughness of crowns are those of two real clouds, a suburb and a beach. Open
+    Unevenness of the ground, waves and the roughness of crowns are as in two real clouds, a suburb and a beach. Open
     ground deviates from planes by 1 to 1.3 cm over 1 m and by 3 to 5 cm over 4 m.
 
     Not simulated: what lies under eaves, crowns and bridges, double surfaces, seams between blocks of images.

@@ -70,7 +70,7 @@ def simulate_flight(
 
     Notes
     -----
-    The scanners are those of the publication: 40 lines per second, a beam every 0.25° in all directions but a quarter
+    The scanners are the publication's: 40 lines per second, a beam every 0.25° in all directions but a quarter
     of the circle, behind the horizontal one and above the vertical one. They reach 30 m, with 3 cm of noise along the
     beam. The drone sways by up to 0.3 m and 2°. Its position is known exactly: points lie on surfaces but for
     the range noise. With nothing set there are 6.7 million points in 320,000 voxels of 0.1 m, about as many as in the

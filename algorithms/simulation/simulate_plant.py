@@ -181,7 +181,7 @@ def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarr
     """Return the points that a scanner sees from a station, one for each cell of directions ``step`` (radians) wide."""
     near, offset = _looked_at(candidates, station)
     distance = np.sqrt(np.einsum("ij,ij->i", offset, offset))
-    # The farthest come first, so that of those in one cell the nearest is stored last.
+    # The farthest come first, so that of several in one cell the nearest is stored last.
     order = np.argsort(-distance, kind="stable")
     near, offset, distance = near[order], offset[order], distance[order]
     facing = -np.einsum("ij,ij->i", offset, candidates.normal[near]) / np.maximum(distance, 1e-9)

@@ -95,7 +95,7 @@ def simulate_power_line(
 
     Notes
     -----
-    Wires are parabolas with a sag of 3 % of the span, those of low voltage of 0.8 m. A pulse whose axis passes a wire
+    Wires are parabolas with a sag of 3 % of the span, at low voltage of 0.8 m. A pulse whose axis passes a wire
     within 0.1 m gives a return from it in 70 of 100 cases, and most go on. Scanned as in 'Simulate town'.
 
     Examples

@@ -220,7 +220,7 @@ def _through_glass(made: dict[str, np.ndarray], truth: Truth, share: float, seed
 
 
 def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> dict[str, np.ndarray]:
-    """Return points with the numbers of facade and opening instead of those of objects."""
+    """Return points with the numbers of facade and opening instead of the objects'."""
     number = made["segment_id"]
     facade, opening = np.zeros((2, int(number.max(initial=0)) + 1), np.int32)
     for of, table in ((truth.facade_of, facade), (truth.opening_of, opening)):

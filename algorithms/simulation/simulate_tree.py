@@ -15,7 +15,7 @@ from ..stage import Field, Layer, LayerFeatures, stage, tunable
 # Radius of a branch where it leaves its parent (share of the radius of the parent there).
 _THINNER = 0.55
 
-# Radius of the tip of a branch (share of that of its base).
+# Radius of the tip of a branch (share of its base's).
 _TIP = 0.35
 
 # Length of a branch: share of the way from its base to the tip of its parent, so that the parent stays the longer one.

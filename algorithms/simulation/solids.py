@@ -14,7 +14,7 @@ from typing import Optional
 
 import numpy as np
 
-# Most planes of the top of a solid: those of a hip roof.
+# Most planes of the top of a solid: a hip roof's.
 _MAX_TOPS = 4
 
 # Faces of a solid: four sides, the underside and the top.

@@ -53,7 +53,7 @@ _TREE_HEIGHTS = (6.0, 11.0)
 def build_site(trees: int, slope: float, seed: int) -> Scene:
     """Make up a site with a number of ``trees`` on a plane of a ``slope`` (°), the same for the same arguments.
 
-    The seed is that of cars, trees, balconies and the direction of the slope.
+    The seed is for cars, trees, balconies and the direction of the slope.
     """
     rng = np.random.default_rng([seed, 2])
     angle = float(rng.uniform(0.0, 2 * np.pi))

@@ -22,7 +22,7 @@ _BLOCK = 50_000
 # Longest distance (m) that the vehicle drives while it sends the pulses that are worked on at once.
 _BLOCK_WAY = 1.0
 
-# Distinguishes the random numbers of the drive from those of other parts of the simulation with the same seed.
+# Distinguishes the random numbers of the drive from other parts of the simulation with the same seed.
 _STREAM = 5
 
 

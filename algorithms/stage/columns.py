@@ -12,7 +12,7 @@ from .inputs_outputs import Field, Layer, LayerFeatures
 
 
 def all_fields(layer: Layer, features: LayerFeatures) -> list[Field]:
-    """Return the fields of a layer, and those of other columns that its features have: attributes of a map."""
+    """Return the fields of a layer, and of other columns that its features have: attributes of a map."""
     names = {declared.name for declared in layer.fields}
     others = [Field(name, _type_of(column), "") for name, column in features.columns.items() if name not in names]
     return [*layer.fields, *others]

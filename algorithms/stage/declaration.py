@@ -61,10 +61,10 @@ class Stage:
     #: Processor time (s) per million points of a town, as measured; in a chain, its share of the progress
     cost: float = 1.0
     packages: tuple[str, ...] = ("scipy",)  #: Packages besides numpy that it uses, by the names to install them
-    #: Values that it measures on its results; a part of a cloud takes those of the whole instead of its own, see
+    #: Values that it measures on its results; a part of a cloud takes the whole's instead of its own, see
     #: :meth:`.CloudSampling.shared`
     of_whole: tuple[str, ...] = ()
-    #: Input layer of which it makes one feature each: those of a large cloud are worked on block by block
+    #: Input layer of which it makes one feature each: in a large cloud they are worked on block by block
     each: str = ""
     input_title: str = "Point cloud"  #: Label of the cloud that it reads
     report_title: str = "Report"  #: What its page is called
@@ -178,7 +178,7 @@ def stage(group: str, *, title: str = "", tags: str = "", **fields: Any) -> Call
 
     The function returns its results in the order below, and not in a tuple when there is only one. With ``selects`` the
     first are the positions of the points that its result has, int64 (m,). Then comes one array per name in ``writes``:
-    of length n, with ``selects`` m, with ``merges`` that of all clouds together; None for one of ``written_if`` that it
+    of length n, with ``selects`` m, with ``merges`` of all clouds together; None for one of ``written_if`` that it
     leaves out. With ``creates`` it is one per name there, a new cloud of any length. One :class:`LayerFeatures` per
     layer follows, one :class:`RasterSurface` per raster, the items of each file, and a :class:`Report` when there are
     measures. A stage that merges and writes nothing returns None for the cloud that it makes. The decorated function

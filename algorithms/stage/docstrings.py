@@ -20,7 +20,7 @@ _CONSTANT = re.compile(r"``(_?[A-Z][A-Z_]+)((?:\.\w+)?)``")
 def with_values(doc: str, names: dict[str, Any]) -> str:
     """Return a docstring with the values of the constants that it names, so that the help shows numbers.
 
-    ``names`` are those of the module: a docstring repeats no digits that a change of the constant would make wrong.
+    ``names`` are the module's: a docstring repeats no digits that a change of the constant would make wrong.
     """
 
     def value(found: re.Match) -> str:

@@ -108,7 +108,7 @@ class LayerFeatures:
     Of a line layer it holds one (m, 2 or 3) array per feature, of points one (2 or 3,) array.
     Coordinates are relative to the cloud's origin, or, where a stage reads no cloud, to one that all its input
     layers share.
-    ``columns`` maps each field's name to a sequence of the same length; those of an input layer are
+    ``columns`` maps each field's name to a sequence of the same length; an input layer's are
     arrays of int64 or float64 (NaN is NULL), or lists, with None for NULL.
     """
 
@@ -210,7 +210,7 @@ class Raster:
     """A raster that a stage makes.
 
     ``name`` becomes the output's name (``DTM``), ``style`` is the stem of a file in
-    ``resources/styles``, ``unit`` that of the values.
+    ``resources/styles``, ``unit`` the values' unit.
     """
 
     name: str

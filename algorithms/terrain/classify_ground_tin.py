@@ -39,7 +39,7 @@ GROUND = GroundRules()
 # Name of what parts of a cloud take of the whole: the roughness (m) of the finished surface.
 _ROUGHNESS = "surface_roughness"
 
-# The kinds of terrain: the largest building of each is twice as wide as that of the one before.
+# The kinds of terrain: the largest building of each is twice as wide as the previous kind's.
 _TERRAINS = ("nature", "village", "town", "city", "industry")
 
 
@@ -62,7 +62,7 @@ _MAX_BUILDING_SIZE = tunable(
     "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
     within="[1, 1000] m",
     automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
-    "that of the kind of terrain.",
+    "as the kind of terrain has it.",
 )
 
 
@@ -71,7 +71,7 @@ _CELL_SIZE = tunable(
     "Cell in which the lowest point is looked for.",
     label="Grid cell size",
     within="[0.1, 100] m",
-    automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
+    automatic="half the point spacing (coarse and medium: the whole), at least the granularity's.",
     advanced=True,
 )
 

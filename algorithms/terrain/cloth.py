@@ -148,7 +148,7 @@ class _Order:
 class _State:
     """State of the particles, as they are stored; in the margin nothing moves or draws."""
 
-    #: height, before: Height (m), and that of the step before
+    #: height, before: Height (m), and height at the step before
     height: np.ndarray
     before: np.ndarray
     floor: np.ndarray  #: Height (m) at which the particle lands; -inf in the margin
@@ -184,7 +184,7 @@ class Cloth:
     time_step : float
         Time step of the simulation.
     top : float, optional
-        Height of the highest point, m, over which the particles start; that of the highest floor if None. The highest
+        Height of the highest point, m, over which the particles start; the highest floor's if None. The highest
         point is on no floor where another point is nearer to its particle.
     """
 
@@ -277,7 +277,7 @@ class Cloth:
 
     def _land_and_fall(self, front: _Front, motion: np.ndarray) -> None:
         """Let particles land, note how far they moved in their steps, and fall on, unless they made the last one."""
-        # The first diagonal is that of the last step.
+        # The first diagonal is the last step's.
         moved = self._land(self._order.own(front)).reshape(front.diagonals, -1).max(axis=1)[::-1]
         steps = slice(front.last_step - front.diagonals + 1, front.last_step + 1)
         motion[steps] = np.maximum(motion[steps], moved)

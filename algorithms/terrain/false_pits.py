@@ -194,7 +194,7 @@ class _Near:
         limit: np.ndarray,
         spacing: float,
     ) -> _Near:
-        """Return the last returns as near to the ``deep`` points as those of a group and its rim are."""
+        """Return the last returns as near to the ``deep`` points as a group and its rim are."""
         reach = max(_WIDEST, _WIDEST_SPACINGS * spacing) + max(_RIM, _RIM_SPACINGS * spacing)
         grid = grid_over(points, reach)
         cells = np.unique(grid.number(points[deep])[:, None] + [0, *grid.around])
@@ -234,13 +234,13 @@ class _Near:
         return len(sectors) >= _LEAST_SECTORS and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
 
     def _rim(self, group: np.ndarray) -> np.ndarray:
-        """Return the positions of the points around those of a group."""
+        """Return the positions of the points around a group's."""
         width = max(_RIM, _RIM_SPACINGS * self.spacing)
         found = self._tree.query_ball_point(self.xyz[group, :2], width)
         return np.setdiff1d(np.concatenate(found).astype(np.int64), group)
 
     def _is_floor(self, plan: np.ndarray, ground: np.ndarray) -> bool:
-        """Return whether points (m, 2) fill the pit that they make, and those of the ground (k, 2) lie around it."""
+        """Return whether points (m, 2) fill the pit that they make, and points of the ground (k, 2) lie around it."""
         # Points on a line have no hull.
         if len(plan) < _FLOOR_POINTS or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
             return False
@@ -255,7 +255,7 @@ class _Near:
         return inside.sum() <= _MIXED * min(len(plan), density * hull.volume) and not is_crowded
 
     def _density(self, position: np.ndarray) -> float:
-        """Return the density of last returns around a position (2,), points/m², at least that of the cloud."""
+        """Return the density of last returns around a position (2,), points/m², at least the cloud's."""
         radius = max(_RIM, _RIM_SPACINGS * self.spacing)
         count = self._tree.query_ball_point(position, radius, return_length=True)
         return max(count / (np.pi * radius**2), self.spacing**-2)

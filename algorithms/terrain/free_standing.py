@@ -128,7 +128,7 @@ def find_free_standing(
     Segments at the walls of free-standing ones are judged by the rest of their edge. Their steps have to be as high as
     the lowest roof on the mean: wings are, and terraces below a house or below one another are not.
 
-    A level roof on a slope has its highest steps downhill and its lowest uphill, which may be those of any roof. Quays
+    A level roof on a slope has its highest steps downhill and its lowest uphill, as low as any roof's. Quays
     and platforms are low all round, so that with ``low_uphill`` the mean of the steps distinguishes these from halls.
     """
     monitor = monitor or Monitor()
@@ -236,7 +236,7 @@ def _reunited(segments: _Segments, is_free: np.ndarray, least: float) -> np.ndar
     is_part = ~is_free & (lengths.down > FREE.most * lengths.open)
     own, other = segments.edges.own, segments.edges.other
     is_level = is_part[own] & is_part[other] & (np.abs(segments.edges.step) < max(LASER.lowest_roof, least))
-    # Components are numbered by their first segments: that of 0, which is no part, stays 0.
+    # Components are numbered by their first segments: 0, which is no part, stays 0.
     return components(own[is_level], other[is_level], count)[1][segments.number]
 
 

@@ -46,7 +46,7 @@ def in_plan_order(xyz: np.ndarray, usable: np.ndarray, spacing: float) -> np.nda
     """
     points = xyz.take(usable, axis=0)
     squares = grid_over(points, SURFACES.square * spacing)
-    # The shortest integers that hold the numbers: those of two bytes are sorted many times as fast.
+    # The shortest integers that hold the numbers: integers of two bytes are sorted many times as fast.
     number = squares.number(points).astype(np.min_scalar_type(squares.rows * squares.columns))
     return usable[np.argsort(number, kind="stable")]
 

@@ -100,7 +100,7 @@ def seeds_by_opening(
     spacing : float
         Point spacing (m), where that is more than a cell.
     low_uphill : bool
-        Whether the uphill eaves of halls may be as low as those of any roof, see :func:`.find_free_standing`.
+        Whether the uphill eaves of halls may be as low as of any roof, see :func:`.find_free_standing`.
 
     Returns
     -------
@@ -147,7 +147,7 @@ def seeds_by_opening(
     )
     views = [first, *others]
     candidates = views[0].candidates
-    # The first direction is that of the box: it shows best which objects the end of the cloud cuts off.
+    # The first direction is the box's: it shows best which objects the end of the cloud cuts off.
     stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
     is_terrain = (sum(view.says_terrain[candidates] for view in views) > 0) & ~stands_free[candidates]
     return candidates[is_terrain], stands_free, max(max_building_size or USUAL_BUILDING, views[0].size)
@@ -174,7 +174,7 @@ class _Cells:
     #: size, spacing: Size of the cells and spacing of the points, m
     size: float
     spacing: float
-    low_uphill: bool = False  #: Whether the uphill eaves of halls may be as low as those of any roof
+    low_uphill: bool = False  #: Whether the uphill eaves of halls may be as low as of any roof
     is_nearly_empty: bool = False  #: Whether there are far more cells than points
 
     def outside(self, lowest: Lowest) -> np.ndarray:
@@ -222,7 +222,7 @@ def _view(seen: _Surface, z: np.ndarray, slope: Optional[np.ndarray], monitor: M
     slope = lowest.at_points(known)
     above = z - lowest.at_points(removal.surface)
     says_terrain = np.where(is_object, -1, above <= removal.rise(slope)).astype(np.int8)
-    # Points seen through a roof, as those of a pit, lie lower than the surface there.
+    # Points seen through a roof, as in a pit, lie lower than the surface there.
     stands_free = lowest.at_points(is_free) & (above >= 0)
     if seen.cells.low_uphill:
         below = lowest.at_points(_rim_levels(removal.surface, is_free)) - z

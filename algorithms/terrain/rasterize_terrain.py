@@ -85,7 +85,7 @@ def rasterize_terrain(
     Notes
     -----
     Cells lie at multiples of their size from a corner at whole kilometers of the map. Neighboring clouds have the same
-    cells if these divide 1000 m, as those of 1, 2 and 5 times a power of ten do.
+    cells if these divide 1000 m, as 1, 2 and 5 times a power of ten do.
 
     There is no terrain outside the hull of the ground points. Small gaps of the surface (shadows, dark roofs, water)
     are interpolated linearly between the cells around them; larger ones stay empty.

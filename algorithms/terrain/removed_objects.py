@@ -36,7 +36,9 @@ class RemovalRules:
     steepest_bank: float = rule(2.0, "tangent", "physics: a step near a slope as steep as itself is a bank up to 63°")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
     smoothing: float = rule(
-        2.0, "m", "physics: standard deviation of the smoothing of surfaces, half that of slopes; bushes are as wide"
+        2.0,
+        "m",
+        "physics: standard deviation of the smoothing of surfaces, half as much as of slopes; bushes are as wide",
     )
 
 
@@ -218,7 +220,7 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
     squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
-    # Crests have no slope of their own: means over twice the distance give them that of their flanks.
+    # Crests have no slope of their own: means over twice the distance give them the slope of their flanks.
     return np.sqrt(ndimage.gaussian_filter(squares, 2 * REMOVAL.smoothing / cell_size, mode="nearest"))
 
 

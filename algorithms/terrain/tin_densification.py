@@ -38,7 +38,7 @@ class JoinRules:
     max_distance: Optional[float]  #: Largest distance from the facet, m; None is estimated in each round
     bend: float  #: What bends of the terrain between points add to half of an estimated distance, if that is more, m
     edge_length: float  #: Facets whose edges are all shorter are closed, m
-    least: float = LEAST_RESOLUTION  #: Least roughness of a surface, m: that of rounded heights
+    least: float = LEAST_RESOLUTION  #: Least roughness of a surface, m: of rounded heights
     #: Whether the largest angle is estimated in each round, and ``max_angle`` bounds the estimate
     estimates_angle: bool = False
     terrain_angle: float = 90.0  #: Steepest line from a point to the nodes of its facet, °
@@ -173,7 +173,7 @@ def grow(
 def _joining(
     surface: Surface, candidates: np.ndarray, distance: float, max_angle: float, rules: JoinRules, n_start: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the candidates in open facets and away from nodes, and those of them that join now, one per facet."""
+    """Return the candidates in open facets and away from nodes, and the ones that join now, one per facet."""
     tin, facet = surface.tin, surface.facet[candidates]
     # Small facets mostly get smaller, and a point next to a node makes a sliver and adds no information.
     is_open = tin.longest_edge()[facet] > rules.edge_length

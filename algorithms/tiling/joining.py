@@ -96,7 +96,7 @@ def feature_numbers(pipeline: Pipeline, results: list[BlockResult]) -> dict[str,
 
 
 def refer_to_features(numbers: list[dict[str, np.ndarray]], name: str, known: dict[tuple[int, int], int]) -> None:
-    """Give the points of features, in place, the numbers that these have now; those of other segments follow.
+    """Give the points of features, in place, the numbers that these have now; other segments' numbers follow.
 
     Parameters
     ----------

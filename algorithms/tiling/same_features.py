@@ -43,7 +43,7 @@ def leaders(
 ) -> np.ndarray:
     """Return for each feature (n,) the one that stays in its place, itself where it stays; -1 where none does.
 
-    Of features of different blocks that are the same one, that of the block that its middle lies in stays; where none
+    Of features of different blocks that are the same one, the one stays in whose block its middle lies; where none
     or several claim it, the largest. Pieces of one feature give way to it where a block has seen all of it; else the
     largest piece stays for all. Lines and points of which no radius is known stay where their middle lies.
 

@@ -52,7 +52,7 @@ SETTINGS = by_name(
         Setting(
             "CRS",
             "Coordinate reference system",
-            "That of clouds whose files name none, and of their results. Clouds that name one keep it.",
+            "For clouds whose files name none, and for their results. Clouds that name one keep it.",
         ),
         Setting(
             "BLOCK_SIDE",

@@ -92,7 +92,7 @@ class Survey:
 
     @property
     def expected(self) -> float:
-        """Number of points, those of a file that reaches beyond the extent by the share of its area within.
+        """Number of points; a file that reaches beyond the extent counts by the share of its area within.
 
         With a spacing there are no more than _PER_COLUMN in each column of cubes.
         """
@@ -202,7 +202,7 @@ class Survey:
         return found
 
     def _records(self, source: Source, box: np.ndarray, monitor: Monitor) -> Iterable[tuple[np.ndarray, np.ndarray]]:
-        """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
+        """Yield positions in a file and records, in the survey's format, of the points in a box."""
         header, near = source.header, box / self.crs.horizontal
         if self.extent is not None:
             near = np.array([np.maximum(near[0], self.extent[0]), np.minimum(near[1], self.extent[1])])
@@ -328,7 +328,7 @@ def _named_files(paths: Iterable[Union[str, Path]]) -> dict[Path, Named]:
     for path in map(file_at, paths):
         inside = sorted(filter(_is_of_survey, path.iterdir())) if path.is_dir() else [path]
         for file in inside:
-            # A VPC in the folder adds its files: those of the folder count once, and others were meant to be read.
+            # A VPC in the folder adds its files: files of the folder count once, and others were meant to be read.
             for one, said in named_files_of(file).items():
                 found[one.resolve()] = one, said if said.crs else found.get(one.resolve(), (one, said))[1]
     if not found:

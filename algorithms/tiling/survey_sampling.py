@@ -35,7 +35,7 @@ _MEASURED = 1_500_000
 def samplings_of(
     pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor, layers: Any = None
 ) -> dict[str, CloudSampling]:
-    """Return the sampling of a survey, "", and those of the clouds that its preparing steps make, by their names.
+    """Return the sampling of a survey, by the name "", and of the clouds that its preparing steps make, by theirs.
 
     Each has the values that blocks take of the whole (``of_whole``). All is measured on windows that depend on the
     survey alone, not on its blocks.

@@ -119,7 +119,7 @@ class TilesOutcome:
 
     ``side`` is the side of the blocks, m.
 
-    ``tries`` are those of all blocks, see :class:`.BlockResult`. ``seconds`` has the sum over the blocks for each step,
+    ``tries`` are of all blocks, see :class:`.BlockResult`. ``seconds`` has the sum over the blocks for each step,
     and ``values`` the different values of automatic tunables and others that blocks found.
     """
 

@@ -114,7 +114,7 @@ def classify_walls(
 
     Notes
     -----
-    The normal is that of the plane of the neighbors, which are low points near roofs; neighbors that lie on no plane
+    The normal belongs to the plane of the neighbors, which are low points near roofs; neighbors that lie on no plane
     (bushes, corners) make no wall. A point belongs to the nearest roof, if the hull of that roof holds it. The paper
     scales hulls up; here they grow by the same distance on all sides, whatever their size.
 

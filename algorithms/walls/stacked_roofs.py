@@ -59,7 +59,7 @@ def _surrounding(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarra
 def _borders(cells: np.ndarray, columns: int, label: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the roof (k,) of each side of a cell where a roof ends, and the one that begins there, -1 for none.
 
-    ``cells`` (m,) are numbers, ascending, of which those of one row differ from those of the next by ``columns``.
+    ``cells`` (m,) are numbers, ascending; from one row to the next they differ by ``columns``.
     """
     ending, beginning = [], []
     for step in (1, -1, columns, -columns):

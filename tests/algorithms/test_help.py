@@ -69,7 +69,7 @@ def test_dimensions_to_choose_from_are_explained_one_by_one():
 
 
 def test_dimensions_that_may_be_left_out_have_their_condition():
-    """Those of 'Segment planes (RANSAC)' were promised, and are written only if asked for."""
+    """Outputs of 'Segment planes (RANSAC)' were promised, and are written only if asked for."""
     assert (
         "<b>OUTPUT</b>: the cloud with SegmentID; NormalX, NormalY, NormalZ with 'Write normals'; everything else"
     ) in stage_help(STAGES["segment_planes_ransac"])

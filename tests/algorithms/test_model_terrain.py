@@ -1,4 +1,4 @@
-"""Model terrain: the raster under a bridge is that of the road, and objects leave no trace."""
+"""Model terrain: the raster under a bridge shows the road, and objects leave no trace."""
 
 import numpy as np
 

@@ -33,7 +33,7 @@ FINDINGS = HERE.parents[1] / "benchmarks" / "fuzz"
 # What reading a file of some kB may take.
 MOST_MEMORY = 600.0  # MB
 MOST_TIME = 10.0  # s
-# Address space beyond that of a process at rest (MB): an allocation that is refused shows what a file asked for.
+# Address space beyond a process at rest (MB): an allocation that is refused shows what a file asked for.
 ADDRESS_SPACE = 1500.0
 # Longest time of an answer, also of a process that starts on a loaded machine or waits without working.
 _START = 120.0  # s

@@ -34,7 +34,7 @@ from lidar_buildings.algorithms.run import run_stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 
-# Working folders are swept when they are older than some seconds; those of killed runs are made as old as this (s).
+# Working folders are swept when they are older than some seconds; folders of killed runs are made as old as this (s).
 _KEPT = 60.0
 # A run takes seconds; one that takes as long as this (s) hangs.
 _HANGS = 120.0

@@ -28,7 +28,7 @@ def take_result(path: Path, _: int = 0) -> str:
     if not BlockResult.is_complete(path, [POINTS]):
         return "It is worked on again."
     with np.load(path, allow_pickle=False) as found, np.load(path.with_name(SOUND), allow_pickle=False) as sound:
-        assert sorted(found.files) == sorted(sound.files), "other arrays were taken for those of a block"
+        assert sorted(found.files) == sorted(sound.files), "other arrays were taken for a block's"
         for name in sound.files:
             np.testing.assert_array_equal(found[name], sound[name])
     return ""

@@ -10,7 +10,7 @@ stable these are, compared with Building-Regulariser's, ``towns``, ``pits``, ``s
 are real clouds of matched images, ``drone`` simulated ones, ``likeness`` compares the two. ``review`` is how many
 decisions on buildings of real clouds and simulated towns it takes until no false one is left.
 
-Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
+Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and tables of real clouds as the
 Python lines that the tests hold the program to.
 """
 
@@ -292,7 +292,7 @@ def _spread(figures: np.ndarray) -> tuple[float, float, float]:
 
 
 def footprints() -> list[Table]:
-    """Print how many corners outlines have, and how far those of Delft are from its class 6 and from its map."""
+    """Print how many corners outlines have, and how far Delft's are from its class 6 and from its map."""
     # QGIS reads the map, without a screen.
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     from qgis.core import QgsApplication

@@ -25,7 +25,7 @@ B/point     The same without what was there before the cloud was read, by points
 ==========  ==========================================================================================================
 
 Lines with "qgis_process" are the whole command, as users run it, with the start of QGIS and all files. Their memory
-is that of the whole process.
+is of the whole process.
 
 Nothing is judged here: times depend on the machine. The results of each commit are kept in ``benchmarks/history``; at
 the end the change since those kept last, or else since the published ones, is printed, in processor time in units of

@@ -42,8 +42,8 @@ _BELOW = 0.4
 class Matching:
     """How dense matching errs, by standard deviations (m) and the share of sides of buildings that are ``missing``.
 
-    ``rounding`` is that of the window that smooths steps, eaves and ridges, ``waves`` that of waves of some meters,
-    ``noise`` that of single points, and ``smear`` that of points of walls across them.
+    ``rounding`` is for the window that smooths steps, eaves and ridges, ``waves`` for waves of some meters,
+    ``noise`` for single points, and ``smear`` for points of walls across them.
     """
 
     rounding: float = 0.15

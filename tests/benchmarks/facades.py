@@ -255,7 +255,7 @@ def blocks() -> list[Table]:
 
 
 def _outer_corners(outlines) -> np.ndarray:
-    """Return the corners (m, 2) of houses in plan that are not those of a neighbor, within 5 cm."""
+    """Return the corners (m, 2) of houses in plan that are not a neighbor's, within 5 cm."""
     corners = np.concatenate([ring[:-1, :2] for (ring,) in outlines.geometries])
     near = np.linalg.norm(corners[:, None] - corners, axis=2) < 0.05
     return corners[near.sum(axis=1) == 1]

@@ -4,7 +4,7 @@
     .venv/bin/python tests/benchmarks/features.py              0.32 and 1 million points
     .venv/bin/python tests/benchmarks/features.py 0.32 1 10    10 million too, which pgeof has no memory for
 
-The points are those of a simulated drone flight, one per voxel of 0.1 m (Weinmann et al. 2017 have 310 thousand), side
+The points are of a simulated drone flight, one per voxel of 0.1 m (Weinmann et al. 2017 have 310 thousand), side
 by side as often as needed, in the order in which voxels come. Both libraries are given the same points and search for
 the neighbors themselves. Times are processor seconds over all cores, best of three, the two in turns; ``ratio`` is
 ours by theirs. ``B/point`` is the most memory that a process of its own took for it beyond the points themselves. The
@@ -89,7 +89,7 @@ def optimal_of_peer(xyz: np.ndarray) -> Any:
 
 
 def _found(xyz: np.ndarray, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the points, their ``k`` nearest ones, and where those of each begin, as pgeof takes them."""
+    """Return the points, their ``k`` nearest ones, and where each point's begin, as pgeof takes them."""
     import pgeof
 
     points = xyz.astype(np.float32)

@@ -30,7 +30,7 @@ def keep_copy(results: Path) -> Path:
 
 
 def before(path: Path, published: Path) -> Optional[dict[str, Any]]:
-    """Return the results kept last before those of a file of the history.
+    """Return the results kept last before a file of the history.
 
     They are the ``published`` ones where it is the first, and None where that file does not exist.
     """

@@ -39,7 +39,7 @@ LEAST_AREA = 10.0
 # Simplification (m) of traced rings: much less than the distance of points.
 TRACED = 0.05
 
-# Sides (m) of the blocks whose footprints are compared with those of the whole.
+# Sides (m) of the blocks whose footprints are compared with the whole cloud's.
 SIDES = (100.0, 140.0)
 
 # The cloud of this comparison.
@@ -89,7 +89,7 @@ def _in_map(cloud: Cloud, geometries: list) -> list:
 
 
 def _stability(drawings: dict[str, Drawing]) -> Table:
-    """Print how far outlines are from those of moved points and of nine tenths, and how regular they are."""
+    """Print how far outlines are from outlines of moved points and of nine tenths, and how regular they are."""
     how = [f"{what}, {classes} classes" for what in ("moved", "90 %") for classes in ("fixed", "own")]
     columns = [f"{one}: {measure}" for one in how for measure in ("IoU", "m")]
     table = Table("outlines", "drawing", "outlines", *columns, "along", "sharp, %", "corners per 100 m")
@@ -110,7 +110,7 @@ def _stability(drawings: dict[str, Drawing]) -> Table:
 def _regularity(geometries: list) -> tuple[float, float, float]:
     """Return how regular polygons are: share along two directions of their own, sharp corners (%), corners per 100 m.
 
-    The share is that of the length of all edges.
+    The share is of the length of all edges.
     """
     own, total, sharp, corners = 0.0, 0.0, 0, 0
     for rings in geometries:
@@ -152,7 +152,7 @@ def _others(name: str) -> list[Cloud]:
 
 
 def _compared(one: list, other: list) -> tuple[np.ndarray, np.ndarray]:
-    """Return IoU and Hausdorff distance (m) of outlines (n,) from those of another layer that they overlap most."""
+    """Return IoU and Hausdorff distance (m) of outlines (n,) from those in another layer that they overlap most."""
     one = [rings for rings in one if sum(map(signed_area, rings)) >= LEAST_AREA]
     found = match_polygons(one, other, Monitor())
     iou, distance = np.zeros(len(one)), np.full(len(one), np.inf)
@@ -162,7 +162,7 @@ def _compared(one: list, other: list) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _of_map(drawings: dict[str, Drawing]) -> Table:
-    """Print how far corners of Delft's map are from those of outlines, and how many houses are found one to one."""
+    """Print how far corners of Delft's map are from corners of outlines, and how many houses are found one to one."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     from qgis.core import QgsApplication
 

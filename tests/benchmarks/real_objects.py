@@ -15,10 +15,10 @@ CAR, FENCE, POLE, TREE = 65, 66, 64, int(PointClass.HIGH_VEGETATION)
 # Side of the lot of a house, m.
 LOT = 70.0
 
-# What is on a lot, on one side of the house each, the last on that of the first.
+# What is on a lot, on one side of the house each, the last on the first one's.
 BESIDE = (TREE, TREE, CAR, FENCE, POLE)
 
-# Distance (m) from the house of the first tree and the fence, and range of that of the others.
+# Distance (m) from the house of the first tree and the fence, and range of the others'.
 TOUCHING, APART = 0.3, (1.0, 6.0)
 
 # Height (m) of the eaves over the ground downhill and, at least, uphill: objects were cut out above the ground, some
@@ -87,7 +87,7 @@ def _founded(house: np.ndarray, center: np.ndarray, slope: float) -> np.ndarray:
 def _beside(
     points: np.ndarray, house: np.ndarray, number: int, center: np.ndarray, slope: float, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return an object next to the house at ``center``: numbers 0 to 3 on one side each, number 4 on that of 0."""
+    """Return an object next to the house at ``center``: numbers 0 to 3 on one side each, number 4 on the side of 0."""
     half, own = np.ptp(house[:, :2], axis=0) / 2, np.ptp(points[:, :2], axis=0) / 2
     axis, side = number % 2, 1 if number // 2 % 2 else -1
     apart = TOUCHING if number in (0, BESIDE.index(FENCE)) else rng.uniform(*APART)

@@ -24,7 +24,7 @@ PACKAGES = ("numpy", "scipy", "scikit-learn", "laspy", "lazrs")
 class Table:
     """A table that prints each row as soon as it is known; ``rows`` has the figures by heading, not rounded.
 
-    ``name`` is that of its file, without extension; ``columns`` are headings with units, the keys of the figures in the
+    ``name`` is its file's, without extension; ``columns`` are headings with units, the keys of the figures in the
     file. The first columns, as many as ``texts`` says, hold text and are aligned to the left.
     """
 

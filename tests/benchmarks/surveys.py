@@ -6,7 +6,7 @@ detects its buildings with ``--processes``: seconds, points per second, the memo
 the blocks took. ``workers`` compares two workers with one on the same survey. ``tiles`` cuts one survey into few and
 into many tiles: memory must not grow with their number. ``cost`` tells from the block times of the last ``run`` what a
 survey of ``--tiles`` tiles of 1 km² costs on 1, 16 and 200 cores, by a simulation of workers that share one storage.
-``agree`` compares the classes of real clouds in blocks with those of each at once.
+``agree`` compares the classes of real clouds in blocks with each at once.
 """
 
 from __future__ import annotations
@@ -263,7 +263,7 @@ def cost(n_tiles: int, seed: int = 0) -> list[Table]:
     side = float(np.floor((np.sqrt(MOST_POINTS / _DENSITY) - 2 * halo) / 50.0) * 50.0)
     window = side + 2 * halo
     in_window, in_block, in_tile = (length**2 * _DENSITY for length in (window, side, 1000.0))
-    # Every point of a window costs what those of a measured block did, windows that were worked on again among them.
+    # Every point of a window costs what points of a measured block did, windows that were worked on again among them.
     pace = tries[:, 3] / tries[:, 1]
     results = facts["result_bytes"] / facts["points"] * in_block
     n_blocks = int(np.ceil(n_tiles * 1e6 / side**2))
@@ -303,7 +303,7 @@ _COMPARED = {
 
 
 def agree(folder: Path) -> list[Table]:
-    """Compare the points of clouds in blocks with those of each cloud at once."""
+    """Compare the points of clouds in blocks with each cloud at once."""
     table = Table(
         "survey_agreement", "composite", "cloud", "blocks", "points", "same, %", "same as building, %", texts=2
     )

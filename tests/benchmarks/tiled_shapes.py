@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compare facades, openings, pipes, spheres and planes of a survey in tiles with those of the same cloud at once.
+"""Compare facades, openings, pipes, spheres and planes of a survey in tiles with the same cloud's at once.
 
     tiled_shapes.py street            Model facades on a simulated street of 100 m, in blocks of 40 m
     tiled_shapes.py plant             Model industry on a simulated plant, in blocks of 20 m
@@ -98,7 +98,7 @@ def nearest(first: list[np.ndarray], second: list[np.ndarray]) -> np.ndarray:
 
 
 def share(features: LayerFeatures, others: LayerFeatures) -> float:
-    """Return the sum of areas, lengths or radii of features as a share of that of others."""
+    """Return the sum of areas, lengths or radii of features as a share of others'."""
     name = next(name for name in ("area", "length", "radius") if name in features.columns)
     return float(np.sum(others.columns[name]) / np.sum(features.columns[name]))
 

@@ -45,7 +45,7 @@ def algorithm(stage, provider):
 
 
 def test_released_names_stay(provider):
-    """Saved models and scripts call them; ``scripts/released.py`` adds those of a release."""
+    """Saved models and scripts call them; ``scripts/released.py`` adds a release's."""
     released, found = json.loads(RELEASED.read_text(encoding="utf-8")), names_of(provider)
     assert released["detectbuildings"]["outputs"]
     assert missing(released, found) == []

@@ -137,7 +137,7 @@ def test_one_plane_merges_however_it_is_written(provider, context, log, square, 
 def test_a_cloud_without_a_system_is_in_that_of_the_other_with_a_warning(provider, context, log, square, out):
     first, second = square(geokeys(), name="first.las"), square(header_of(ETRS_32), name="second.las")
     run("toymerge", {"INPUTS": [str(first), str(second)], "OUTPUT": str(out / "a.las")}, context, log)
-    said = "first.las names no coordinate reference system; it is taken to be in that of second.las."
+    said = "first.las names no coordinate reference system; it is taken to be in the system of second.las."
     assert log.warnings.count(said) == 1
     assert read_cloud(out / "a.las").crs.plane == "EPSG:25832"
 

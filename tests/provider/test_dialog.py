@@ -21,7 +21,7 @@ from lidar_buildings.provider.settings import CODES, PRESET, THREADS, apply_opti
 def window(qgis_application, monkeypatch):
     from processing.gui import ParametersPanel
 
-    # That of the tests has no browser.
+    # The tests' QGIS has no browser.
     monkeypatch.setattr(ParametersPanel, "iface", None)
     return QMainWindow()
 

@@ -25,7 +25,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-# Hungarian coordinates, as far from zero as those of the paper's villages.
+# Hungarian coordinates, as far from zero as the paper's villages.
 CRS, CORNER = "EPSG:23700", np.array([650_000.0, 240_000.0])
 
 

@@ -357,7 +357,7 @@ def test_a_step_that_fails_leaves_nothing(provider, context, log, town_file, out
 
 
 def test_a_second_run_in_the_same_context_runs_again(provider, context, log, town_file, out):
-    """QGIS took the steps of the first run for those of the second one and wrote nothing."""
+    """QGIS took the steps of the first run for the second one's and wrote nothing."""
     for name, margin in (("a.gpkg", 0.0), ("b.gpkg", 5.0)):
         given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "FOOTPRINTS": str(out / name)}
         result = run("toychain", {**given, "OUTLINE_MARGIN": margin}, context, log)

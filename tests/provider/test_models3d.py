@@ -124,7 +124,7 @@ def test_layers_and_cityjson_are_exported_alike(house, provider, context, log, o
 
 
 def test_a_tileset_is_where_qgis_has_its_models(provider, context, log, out):
-    """Positions are those of QGIS's own way to coordinates from the middle of the Earth, by another formula."""
+    """Positions are as by QGIS's own way to coordinates from the middle of the Earth, by another formula."""
     corners = [
         [500_000, 5_700_000, 100],
         [500_010, 5_700_000, 100],

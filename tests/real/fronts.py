@@ -67,6 +67,6 @@ def box_on(frame: Frame, places: np.ndarray) -> np.ndarray:
 
 
 def union_share(one: np.ndarray, other: np.ndarray) -> float:
-    """Return the area that two boxes (4,) share over that of both together."""
+    """Return the area that two boxes (4,) share over the area of both together."""
     shared = np.clip(np.minimum(one[2:], other[2:]) - np.maximum(one[:2], other[:2]), 0, None).prod()
     return float(shared / ((one[2:] - one[:2]).prod() + (other[2:] - other[:2]).prod() - shared))

@@ -1,6 +1,6 @@
 """Buildings in real clouds, found with nothing set, against figures that were reached before.
 
-The figures are those of ``python tests/benchmarks/accuracy.py buildings``, which prints them ready to be pasted here. A
+The figures come from ``python tests/benchmarks/accuracy.py buildings``, which prints them ready to be pasted here. A
 better result is pasted, a worse one is explained.
 """
 
@@ -84,7 +84,7 @@ def test_every_cloud_of_the_tables_is_held_to_its_figure():
 
 
 def test_the_documentation_has_the_measured_values():
-    """Its figures are exactly those of the file, and none is farther from what was reached than the results may be."""
+    """Its figures are exactly the file's, and none is farther from what was reached than the results may be."""
     docs = Path(__file__).resolve().parents[2] / "docs"
     table = (docs / "accuracy.md").read_text("utf-8").partition("<!-- measured: buildings -->")[2]
     rows = re.findall(r"^\|.*\| \*\*([\d.]+)\*\* \| ([\d.]+)", table.partition("<!-- end -->")[0], re.MULTILINE)
@@ -179,7 +179,7 @@ def test_result_comes_back_from_copc(tmp_path):
 
 
 def sorted_values(cloud, names):
-    """Dimensions side by side (n, m), in an order that does not depend on that of the points."""
+    """Dimensions side by side (n, m), in an order that does not depend on the points' order."""
     values = np.column_stack([cloud.get(name) for name in names])
     values[:, :3] = np.rint(values[:, :3] * 1000)
     return values[np.lexsort(values.T[::-1])]

@@ -104,7 +104,9 @@ def test_one_plane_written_in_six_ways_is_one(case, tmp_path):
     survey = open_survey([case(f"{name}.las") for name in names], monitor=monitor)
     assert survey.crs.identity == "EPSG:25832"
     said = [one for one in monitor.warnings if "coordinate reference system" in one]
-    assert said == ["C_e_none.las names no coordinate reference system; it is taken to be in that of C_w_geokeys.las."]
+    assert said == [
+        "C_e_none.las names no coordinate reference system; it is taken to be in the system of C_w_geokeys.las."
+    ]
 
 
 def test_lengths_in_web_mercator_are_those_on_the_ground(case):

@@ -22,7 +22,7 @@ from lidar_buildings.tests.real.base_map import (
     polygon,
 )
 
-# With the true class 6 and with that of the whole chain: intersection over union with the cells of 0.5 m in which the
+# With the true class 6 and with the whole chain's: intersection over union with the cells of 0.5 m in which the
 # topmost point is true class 6, and the median distance (m) of the map's corners to the nearest corner of the
 # footprint, for single houses and for whole blocks, where buildings that touch are merged. Outlines follow the eaves,
 # which lie 0.27 m (median) outside of the walls that the map shows.

@@ -1,6 +1,6 @@
 """Ground in real clouds, found with nothing set, against figures that were reached before.
 
-The figures are those of ``python tests/benchmarks/accuracy.py ground``, which prints them ready to be pasted here. The
+The figures come from ``python tests/benchmarks/accuracy.py ground``, which prints them ready to be pasted here. The
 samples are of the filter test of ISPRS WG III/3 (Sithole and Vosselman 2004), where the method's author reached a mean
 of 4.8 % on all 15.
 """

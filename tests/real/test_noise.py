@@ -1,6 +1,6 @@
 """Noise in a real cloud, found with nothing set.
 
-The figure is that of ``python tests/benchmarks/accuracy.py noise``. Most of the 322 points that the survey's makers
+The figure comes from ``python tests/benchmarks/accuracy.py noise``. Most of the 322 points that the survey's makers
 rejected lie among the others, between ground and crowns, where no filter of heights can find them. The points far from
 the scene must be found, and no good point may be lost.
 """

@@ -1,6 +1,6 @@
 """Buildings in real clouds matched from a drone's images, found with nothing set, against figures reached before.
 
-The figures are those of ``python tests/benchmarks/accuracy.py photos``. A better result is written down, a worse one
+The figures come from ``python tests/benchmarks/accuracy.py photos``. A better result is written down, a worse one
 explained.
 """
 

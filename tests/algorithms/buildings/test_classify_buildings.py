@@ -289,7 +289,7 @@ def test_a_narrow_roof_beside_a_building_is_one_in_spite_of_the_ground_seen_past
     assert (reason[part == 3] == Reason.NEXT_TO_BUILDINGS).all()
     assert (reason[part == 4] == Reason.PENETRATED).all()
     assert not (found[part == 4] == 6).any()
-    several[part == 3] = 2  # pulses that go on below are those of a hedge
+    several[part == 3] = 2  # pulses that go on below are of a hedge
     assert not (classify_buildings(xyz, ones(xyz), cluster_id, ones(xyz), several, **tunables)[0][part == 3] == 6).any()
 
 

@@ -47,7 +47,7 @@ def test_dry_crowns_are_no_buildings_in_either_kind_of_cloud(rng, gaps):
 
 
 def test_without_color_they_are_called_buildings(rng):
-    """Their shape is that of roofs: only color distinguishes them."""
+    """They have the shape of roofs: only color distinguishes them."""
     cloud, is_crown, _ = site(rng, True)
     plain = create_cloud({"xyz": cloud.get("xyz") + cloud.origin})
     classes = run_pipeline(PIPELINES["detect_buildings"], plain, wanted=("output",)).cloud.get("classification")

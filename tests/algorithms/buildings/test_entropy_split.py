@@ -29,7 +29,7 @@ def test_one_mean_is_not_kept_for_the_whole(sampling):
 
 @pytest.mark.parametrize("count", [5, 3000])
 def test_rough_clusters_alone_are_not_split_in_two_however_many_there_are(count):
-    """Among 3,000 clusters of a forest, the mean of the lower half became that of buildings: 0.84 instead of 0.65."""
+    """Among 3,000 clusters of a forest, the mean of the lower half became the buildings': 0.84 instead of 0.65."""
     split = held_means(np.linspace(0.75, 1.05, count), 0.65, 0.98, Monitor())
     assert split.building == pytest.approx(0.65, abs=0.03)
     assert split.other == pytest.approx(0.97, abs=0.03)

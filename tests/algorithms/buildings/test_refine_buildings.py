@@ -221,7 +221,7 @@ def test_other_colors_of_the_beam_are_no_obstacle(village):
 
 
 def test_a_part_judges_as_the_whole_where_the_whole_was_learned(village):
-    """The western half, with what was learned on the whole village; its corner is that of the whole."""
+    """The western half, with what was learned on the whole village; its corner is the whole village's."""
     whole = CloudSampling.of(village.xyz, village.classification)
     expected = village.refine(sampling=whole)[0]
     west = np.flatnonzero(village.xyz[:, 0] < 60)

@@ -37,7 +37,7 @@ class Site:
         return ((self.xyz[:, :2] >= [west, south]) & (self.xyz[:, :2] <= [east, north])).all(axis=1)
 
     def at(self, cells):
-        """Return the value at each point, that of its cell."""
+        """Return the value at each point, its cell's."""
         return cells[self.surface.cell]
 
 

@@ -211,7 +211,7 @@ def test_pages_without_end_are_refused(server, folder, monkeypatch, bound, most)
     monkeypatch.setattr(vpc, bound, most)
     for number in range(6):
         written(folder, f"{number}.json", collection(item("0.copc.laz"), links=leads_to(f"{number + 1}.json")))
-    with pytest.raises(ValueError, match=r"0\.json leads to more than .* ask for those of an extent"):
+    with pytest.raises(ValueError, match=r"0\.json leads to more than .* ask for the items of an extent"):
         read_cloud(server.address("0.json"))
     assert len(server.requests) <= 5
 

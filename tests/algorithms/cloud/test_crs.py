@@ -237,7 +237,7 @@ def test_clouds_are_in_one_system():
     named, other, none = Crs(identity="a", code="A:1"), Crs(identity="b", code="B:2"), Crs()
     monitor = Monitor()
     assert common_crs([none, named, named], "xyz", monitor) is named
-    assert monitor.warnings == ["x names no coordinate reference system; it is taken to be in that of y."]
+    assert monitor.warnings == ["x names no coordinate reference system; it is taken to be in the system of y."]
     assert common_crs([none, none], "xy", monitor) is none
     with pytest.raises(ValueError, match=r"^x and y have different coordinate reference systems \(A:1, B:2\)"):
         common_crs([named, other], "xy", monitor)

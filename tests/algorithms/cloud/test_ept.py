@@ -144,7 +144,7 @@ def test_windows_of_a_survey_have_each_point_once(server, kind):
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"dataType": "brotli"}, "the type brotli, and those of the types laszip, binary and zstandard can"),
+        ({"dataType": "brotli"}, "the type brotli; only the types laszip, binary and zstandard can"),
         ({"points": 2001}, "it promises 2001 points, but its nodes hold 2000"),
         ({"points": -1}, "it is no description"),
         ({"points": 10**30}, "it is no description"),

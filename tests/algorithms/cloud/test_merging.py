@@ -224,7 +224,8 @@ def test_a_cloud_without_system_is_taken_to_be_in_that_of_the_others(tmp_path):
         union = merged(*clouds, monitor=monitor)
         assert union.crs.identity == "EPSG:28992"
         assert monitor.warnings == [
-            f"Cloud {number} names no coordinate reference system; it is taken to be in that of Cloud {3 - number}."
+            f"Cloud {number} names no coordinate reference system; it is taken to be in the system of "
+            f"Cloud {3 - number}."
         ]
         write_cloud(union, tmp_path / "a.las")
         assert read_cloud(tmp_path / "a.las").crs.identity == "EPSG:28992"

@@ -61,7 +61,7 @@ def test_bounds_that_can_not_be_are_measured_wherever_they_are_used(tmp_path, su
     monitor = Monitor()
     survey = open_survey([path], monitor=monitor)
     assert len(survey.window(box).cloud) == 10 * 20
-    assert f"The bounds in the header of a{suffix} can't be" in " ".join(monitor.warnings)
+    assert f"The bounds in the header of a{suffix} don't fit the points" in " ".join(monitor.warnings)
 
 
 def test_bounds_that_can_be_stay_as_they_are(tmp_path):

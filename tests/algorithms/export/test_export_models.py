@@ -91,7 +91,7 @@ def test_buildings_and_faces_keep_their_attributes(models, source):
     np.testing.assert_allclose(of_faces["slope"][:3], models[2].columns["slope"], atol=0.001)
     assert of_faces["slope"][3:] == [None] * 10
     _, _, building, face, _ = glb.triangles()
-    assert sorted(set(building[face == 2])) == [1], "the third roof is that of the flat house"
+    assert sorted(set(building[face == 2])) == [1], "the third roof is the flat house's"
 
 
 def test_glb_names_where_it_is(models):

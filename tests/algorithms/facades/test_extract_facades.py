@@ -264,7 +264,7 @@ def test_walls_are_found_among_the_facade_lines_of_a_vehicle_and_a_fence_before_
     ring = max(rings, key=lambda ring: float(np.hypot(*(ring[1] - ring[0])[:2])))
     frame = frame_on(ring)
     along, up, out = frame.local(xyz).T
-    # Points low on the front become those of the fence, which hides the front there.
+    # Points low on the front become points of the fence, which hides the front there.
     is_fence = true & (up < ring[0, 2] + 3.0 - frame.origin[2]) & (along > 2.0) & (along < 5.0) & (np.abs(out) < 0.1)
     outward = frame.normal
     fenced = xyz + 4.0 * is_fence[:, None] * outward

@@ -136,7 +136,7 @@ def stairs(rng, west, east, height, depth=1.2, steps=4):
 
 
 def test_a_door_up_two_meters_of_stairs_is_one_and_what_is_beside_it_is_not(rng):
-    """A cellar window in the yard, and a tall window whose sill is as high as that of the door."""
+    """A cellar window in the yard, and a tall window whose sill is as high as the door's."""
     door, cellar, tall = (3.4, 2.0, 4.4, 4.2), (6.0, 0.2, 7.2, 0.9), (9.0, 2.0, 10.2, 4.4)
     points, pane = pierced(rng, [door, cellar, tall])
     hidden = (points[:, 0] > 3.1) & (points[:, 0] < 4.7) & (points[:, 2] < 2.0)

@@ -74,7 +74,7 @@ def test_pieces_are_straight(street):
         offsets = own - own.mean(axis=0)
         direction = np.linalg.svd(offsets, full_matrices=False)[2][0]
         off = offsets - np.outer(offsets @ direction, direction)
-        # The chord of Douglas and Peucker is another line than that of least squares, and misses the way across.
+        # The chord of Douglas and Peucker is another line than the one of least squares, and misses the way across.
         assert np.linalg.norm(off, axis=1).max() < 0.15
 
 

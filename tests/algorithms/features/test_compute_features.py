@@ -80,7 +80,7 @@ def test_position_turn_and_scale_change_nothing(gable, neighborhood):
 
 @pytest.mark.parametrize("neighborhood", ["nearest", "radius", "optimal"])
 def test_features_are_those_of_brute_force(gable, neighborhood):
-    """Whatever the neighborhood, its features are those of its points; the count says which they are."""
+    """Whatever the neighborhood, its features are its points'; the count says which they are."""
     made = named(gable, neighborhood=neighborhood, radius=1.5, n_neighbors=15, max_neighbors=40)
     counts = made["optimal_neighbors"]
     assert (counts == 15).all() if neighborhood == "nearest" else len(np.unique(counts)) > 10

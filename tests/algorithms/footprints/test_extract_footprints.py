@@ -53,7 +53,7 @@ def test_village(village, regularize):
     assert table["height"] == pytest.approx([7, 10], abs=0.02)
     assert table["max_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["ground_elevation"] == pytest.approx([-1, -1], abs=1e-5)
-    # Flat roofs: eaves and ridges are where the roof is, and the space is that of a box.
+    # Flat roofs: eaves and ridges are where the roof is, and the space is a box.
     # Points of the wall down to a meter under the eaves count as points of the eaves.
     assert table["eave_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["ridge_height"] == pytest.approx([7, 10], abs=0.1)
@@ -353,7 +353,7 @@ def test_slits_and_bridges_part_houses_however_points_fall(slit, bridge, houses,
 
 
 def test_ground_between_two_houses_shows_for_both_where_they_end():
-    """The cell of the ground lies next to those of both houses; each house is outlined alone."""
+    """The cell of the ground lies next to both houses' cells; each house is outlined alone."""
     houses, ground = np.array([[0.5, 0.5], [2.5, 0.5], [2.6, 0.6]]), np.array([[1.5, 0.5], [9.5, 0.5]])
     parts = outlining._apart(houses, ground, 1.0)
     assert [(own.tolist(), beside.tolist()) for own, beside in parts] == [([0], [0]), ([1, 2], [0])]

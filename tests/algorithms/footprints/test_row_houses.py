@@ -116,7 +116,7 @@ def test_hipped_houses_beside_clear_ones_are_of_their_row(rng):
 
 
 def across(a, v, number):
-    """Flat houses that step; two in the middle make way for three whose walls end at those of their neighbors."""
+    """Flat houses that step; two in the middle make way for three whose walls end at their neighbors'."""
     return np.where(np.isin(number, [2, 3]), 8.4 + 0.8 * (v // WIDTH % 2 == 0), flat_steps(a, v, number))
 
 

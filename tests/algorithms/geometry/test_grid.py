@@ -27,7 +27,7 @@ def test_number_and_center_agree(rng, make):
 
 @pytest.mark.parametrize("size", [0.3, 2.0])
 def test_a_part_of_a_cloud_has_the_cells_of_the_whole(rng, size):
-    """Fixed cells begin at multiples of their size from zero; those of a grid over points begin at the points."""
+    """Fixed cells begin at multiples of their size from zero; cells of a grid over points begin at the points."""
     xyz = rng.uniform(-20, 30, (500, 3))
     part = xyz[(xyz[:, 0] > 3.1) & (xyz[:, 1] < 7.7)]
     grid = fixed_grid_over(xyz, size)

@@ -12,7 +12,7 @@ RADII = [1, 3, 4, 5, 8, 12]
 
 
 def plate(radius):
-    """Return the octagon of cells (bool) whose diagonal sides, |i| + |j|, come nearest to those of a regular one."""
+    """Return the octagon of cells (bool) whose diagonal sides, |i| + |j|, come nearest to a regular one's."""
     i, j = np.mgrid[-radius : radius + 1, -radius : radius + 1]
     # A diagonal half as long as d cells takes 2 d of that sum away.
     sides = [2 * radius - 2 * d for d in range(radius // 2 + 1)]

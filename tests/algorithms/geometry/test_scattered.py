@@ -26,7 +26,7 @@ def test_numbers_are_as_even_as_random_ones(axes):
 
 
 def test_coordinates_stored_in_steps_give_numbers_as_even():
-    """Those of points are multiples of the step of their file, here of a centimeter in tenths of a millimeter."""
+    """Heights of points are multiples of the step of their file, here of a centimeter in tenths of a millimeter."""
     points = 100 * np.random.default_rng(5).integers(0, 20_000, (50_000, 3))
     counts = np.histogram(scattered(points), 16, (0, 1))[0]
     assert np.abs(counts - len(points) / 16).max() < 4 * np.sqrt(len(points) / 16)

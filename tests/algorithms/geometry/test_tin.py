@@ -172,7 +172,7 @@ def test_residuals_of_a_plane_are_nothing_and_of_one_lifted_node_its_lift(rng):
 
 
 def test_a_sample_of_residuals_depends_neither_on_order_nor_on_one_node(rng):
-    """The ground of a survey in tiles, whose points are sorted, was swept by 3 % less than that of the file."""
+    """The ground of a survey in tiles, whose points are sorted, was swept by 3 % less than the file's."""
     nodes = rng.uniform(0, [60, 60, 1], (3000, 3))
     sample = np.sort(node_residuals(nodes, most=700))
     assert 550 < len(sample) < 950

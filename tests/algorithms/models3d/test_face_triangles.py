@@ -1,4 +1,4 @@
-"""Triangles of faces with holes: their areas are those of the faces."""
+"""Triangles of faces with holes: their areas are the faces'."""
 
 import numpy as np
 import pytest

@@ -198,7 +198,7 @@ def test_planes_meet_where_they_intersect():
 
 
 def test_no_plane_is_steeper_than_the_limit():
-    """Points choose planes after these have grown: those of a facade made a plane of 89° of a growing one of 70°."""
+    """Points choose planes after these have grown: points of a facade made a plane of 89° of a growing one of 70°."""
     rng = np.random.default_rng(2)
     y, z = rng.uniform(0, 8, 3000), rng.uniform(0, 8, 3000)
     roof = np.column_stack([rng.uniform(0, 3, 900), rng.uniform(0, 8, 900)])

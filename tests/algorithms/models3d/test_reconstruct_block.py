@@ -32,7 +32,7 @@ def block():
 
 
 def test_outlines_follow_fronts_with_their_bays_and_recesses(block):
-    """Corners of fronts within 2 cm, although the outlines have none of the steps; those of the yard stay."""
+    """Corners of fronts within 2 cm, although the outlines have none of the steps; outlines in the yard stay."""
     made, layers, _ = block
     found = np.concatenate([rings[0][:-1, :2] for rings in made.layers["buildings"].geometries])
     fronts = np.concatenate([ring[:2, :2] for (ring,) in layers["facades"].geometries])
@@ -138,7 +138,9 @@ def test_layers_without_heights_are_reported_and_the_footprints_stay():
     buildings, walls, *_ = reconstruct_block(
         air["xyz"], air["classification"], outlines(), flat, LayerFeatures([], {}), monitor=monitor
     )
-    assert monitor.warnings[0] == "No facade is an upright polygon with heights, so all walls are those of footprints."
+    assert (
+        monitor.warnings[0] == "No facade is an upright polygon with heights, so all walls are taken from footprints."
+    )
     assert set(walls.columns["source"]) == {"air"}
     assert len(buildings) == len(outlines())
 

@@ -66,7 +66,7 @@ def test_parameters_are_the_vertices_of_the_paper(rng):
 
 
 def test_faces_close_a_solid_and_face_outward(rng):
-    """Each edge is run once in either direction, and the volume by the divergence theorem is that of the house."""
+    """Each edge is run once in either direction, and the volume by the divergence theorem is the house's."""
     gables = gables_of(*house(rng))
     edges = [
         (tuple(a), tuple(b)) for (ring,) in gables.geometries for a, b in zip(ring[:-1].round(6), ring[1:].round(6))

@@ -78,7 +78,7 @@ def test_faces_know_their_slope_direction_and_area():
 
 
 def test_usable_area_is_without_what_is_not_modelled():
-    """A chimney of 1 m² is no face: its area is that of its face still, but nothing can lie there."""
+    """A chimney of 1 m² is no face: its area is its face's still, but nothing can lie there."""
     xyz, classes, footprints = scene(SHAPES["gable"], density=20.0)
     slopes = reconstructed(xyz, classes, footprints)[0]["roofs"].columns
     assert slopes["usable_area"] == pytest.approx(slopes["area"], rel=0.01)

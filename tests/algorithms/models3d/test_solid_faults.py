@@ -99,7 +99,7 @@ def test_valid_solids_have_no_fault():
     ("made", "fault"),
     [
         (cube(f4=[3, 2, 6, 6, 7]), "degenerate"),  # 102
-        (cube(f1=[4, 7, 5, 6]), "open"),  # 104, whose edges are those of no neighbor
+        (cube(f1=[4, 7, 5, 6]), "open"),  # 104, whose edges no neighbor has
         (solid(CUBE, SIDES[:5]), "open"),  # 302
         (solid(CUBE, [*SIDES, SIDES[0]]), "more than two faces"),  # 303
         (hourglass(), "only touch in a corner"),  # 303

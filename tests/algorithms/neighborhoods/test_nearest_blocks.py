@@ -1,4 +1,4 @@
-"""Shapes from blocks against those of brute force: any density, equal distances, precision, any batches."""
+"""Shapes from blocks against brute force: any density, equal distances, precision, any batches."""
 
 import numpy as np
 import pytest

@@ -72,7 +72,7 @@ def test_rounded_heights_are_as_rough_as_rounding_makes_them(slope, rng):
 def test_the_plane_of_twelve_points_by_hand(rng):
     """Twelve points have one neighborhood: the figure is its least squares across, for 12 - 3 degrees of freedom.
 
-    It counts as that of a smooth fifth, whose expected value is 0.773 of the true deviation.
+    It counts as the noise of a smooth fifth, whose expected value is 0.773 of the true deviation.
     """
     xyz = rng.normal(size=(12, 3)) * [3, 2, 0.3]
     least = np.linalg.svd(xyz - xyz.mean(axis=0), compute_uv=False)[2]

@@ -58,7 +58,7 @@ def test_a_border_point_goes_to_the_first_of_the_clusters_it_touches():
     xyz = np.column_stack([np.zeros(9), y, np.zeros(9)])
     assert dbscan(xyz, 1.0, 4, Monitor()).tolist() == [0, 0, 0, 0, 0, 1, 1, 1, 1]
     assert dbscan(xyz[::-1], 1.0, 4, Monitor()).tolist() == [0, 0, 0, 0, 0, 1, 1, 1, 1]
-    # It is first, but the number of a cluster is that of its first core.
+    # It is first, but the number of a cluster is its first core's.
     order = [4, 8, 7, 6, 5, 0, 1, 2, 3]
     assert dbscan(xyz[order], 1.0, 4, Monitor()).tolist() == [0, 0, 0, 0, 0, 1, 1, 1, 1]
 

@@ -57,7 +57,7 @@ def test_the_stem_is_found_with_its_diameter_and_length(found):
     [({}, False), ({"height": 14.0, "dbh": 0.3, "n_branches": 14}, False), ({"leaves": 1.0}, False), ({}, True)],
 )
 def test_branches_have_their_wood(tunables, is_one_sided):
-    """Branches of first order had half of it, those of second order a seventh; half of all where one side is seen."""
+    """Branches of first order had half of it, of second order a seventh; half of all where one side is seen."""
     xyz, classification, truth, branches = simulate_tree(**{**SMALL, **tunables})
     kept = np.ones(len(xyz), bool)
     for number, line in enumerate(branches.geometries if is_one_sided else (), start=1):

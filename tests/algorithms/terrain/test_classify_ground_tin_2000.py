@@ -99,7 +99,7 @@ def test_the_angle_is_estimated_from_the_nodes(noise, spread, rng):
     x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
     nodes = np.column_stack([spread * x.ravel(), spread * y.ravel(), rng.normal(0, noise, x.size)])
     estimated = JoinRules(90.0, None, 0.0, 1.0, estimates_angle=True).angle(nodes)
-    # A residual is that of the node and of the plane of its eight neighbors.
+    # A residual is of the node and of the plane of its eight neighbors.
     deviation = np.degrees(np.arctan(noise * np.sqrt(1 + 1 / 8) / spread))
     assert estimated == pytest.approx(min(8 * deviation, 90.0), rel=0.08)
     assert JoinRules(5.0, None, 0.0, 1.0, estimates_angle=True).angle(nodes) == min(5.0, estimated)

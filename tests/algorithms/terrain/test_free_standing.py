@@ -63,7 +63,7 @@ def test_what_is_wider_than_usual_needs_walls_higher_than_quays(width, height, i
     ],
 )
 def test_a_hall_on_a_slope_may_have_a_low_eave_uphill(rise, uphill, low_uphill, is_object):
-    """Its walls downhill are high; those of a quay are low all round."""
+    """Its walls downhill are high; walls of a quay are low all round."""
     surface = slope(120, 120, rise)
     hall = block(surface, slice(20, 90), slice(20, 90), 69 * rise + uphill + rise)
     found = find_free_standing(surface, 1.0, USUAL, low_uphill=low_uphill)[0]
@@ -191,7 +191,7 @@ def test_machines_right_across_a_roof_make_no_terrain_of_its_halves(rng):
 
 
 def test_a_hall_and_a_wing_hardly_lower_are_one():
-    """The step between them is not that of a hall, and the wing's own edge is half at the hall."""
+    """The step between them is not a hall's, and the wing's own edge is half at the hall."""
     surface = slope(140, 140)
     hall = block(surface, slice(20, 100), slice(20, 90), 6.5)
     wing = block(surface, slice(40, 80), slice(90, 102), 5.2)

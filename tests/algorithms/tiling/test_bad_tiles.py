@@ -75,7 +75,7 @@ def test_a_tile_that_names_no_system_is_in_that_of_the_others(make_las, tmp_path
     files = [make_las(f"{i}.las", point_format=6, vlrs=(crs(RD),) if i else ()) for i in range(2)]
     monitor = Monitor()
     assert open_survey(files, monitor=monitor).crs.identity == "EPSG:28992"
-    warned = "0.las names no coordinate reference system; it is taken to be in that of 1.las."
+    warned = "0.las names no coordinate reference system; it is taken to be in the system of 1.las."
     assert [one for one in monitor.warnings if "taken to be in" in one] == [warned]
 
 

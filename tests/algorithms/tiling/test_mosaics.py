@@ -70,7 +70,7 @@ def test_rasters_of_blocks_are_those_of_the_whole_cloud(ground, tmp_path, monkey
     found = {}
     outcome = run(RASTERS, paths, tmp_path / "out", take_raster=assembled(found))
     assert not outcome.failures
-    # From a file, coordinates are counted from the same origin as those of the survey, and so are voxels and cells.
+    # From a file, coordinates are counted from the same origin as the survey's, and so are voxels and cells.
     write_cloud(cloud, tmp_path / "whole.las")
     cloud = read_cloud(tmp_path / "whole.las")
     whole = run_pipeline(RASTERS, cloud)
@@ -80,7 +80,7 @@ def test_rasters_of_blocks_are_those_of_the_whole_cloud(ground, tmp_path, monkey
         np.testing.assert_allclose(corner, np.array([surface.west, surface.north]) + cloud.origin[:2], atol=1e-6)
         np.testing.assert_array_equal(np.isnan(cells), np.isnan(surface.values))
         np.testing.assert_allclose(cells, surface.values, atol=1e-4)
-    # And the points that are left are those of the whole cloud, each in the tile that it came from.
+    # And the points that are left are the whole cloud's, each in the tile that it came from.
     tiles = [read_cloud(tile) for tile in outcome.tiles]
     left, expected = np.concatenate([one.to_map(one.get("xyz")) for one in tiles]), whole.cloud
     expected = expected.to_map(expected.get("xyz"))

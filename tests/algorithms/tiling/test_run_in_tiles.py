@@ -180,7 +180,7 @@ def test_a_file_too_large_to_be_read_at_once_is_cut_first(points, tmp_path):
 
 @pytest.mark.parametrize("extent", [None, np.array([[4.0, 20.0], [30.0, 60.0]]) + CORNER[:2]])
 def test_a_large_copc_file_is_cut_by_its_index(points, tmp_path, monkeypatch, extent):
-    """Nothing of it is written before the tiles are; these are those of a file that is cut into pieces."""
+    """Nothing of it is written before the tiles are; these come of a file that is cut into pieces."""
     xyz, times, _ = points
     (path,) = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
     copc = tmp_path / "town.copc.laz"
@@ -209,7 +209,7 @@ def test_points_of_a_large_copc_file_that_no_block_has_are_reported(points, tmp_
 
 
 def test_large_files_of_similar_names_keep_all_their_points(points, tmp_path):
-    """The pieces of area.2019.las were overwritten by those of area.2020.las: half of the points were lost."""
+    """The pieces of area.2019.las were overwritten by pieces of area.2020.las: half of the points were lost."""
     xyz, times, _ = points
     paths = []
     for number, name in enumerate(("area.2019.las", "area.2020.las")):

@@ -292,7 +292,7 @@ def test_a_full_disk_is_reported_of_the_folder_that_was_chosen(tmp_path, monkeyp
 
 @pytest.mark.parametrize("fitting", [0, 2])
 def test_a_survey_stops_where_the_disk_is_full(tmp_path, fitting):
-    """It worked on all other blocks, whose results could not be written either, and said that of its last file."""
+    """It worked on all other blocks, whose results could not be written either, and named its last file's reason."""
     (tmp_path / "disk").mkdir()
     mounted = subprocess.run(
         ["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", str(tmp_path / "disk")], capture_output=True, check=False

@@ -180,7 +180,7 @@ def test_a_footprint_that_rests_on_one_wall_is_reported(rng):
 
 
 def test_edges_show_how_precise_they_are(rng):
-    """The precision of an edge is that of its points over the root of their number, as repeated scans confirm."""
+    """The precision of an edge is its points' over the root of their number, as repeated scans confirm."""
     offsets, reported = [], []
     for _ in range(30):
         arrays, _ = building(rng, "rectangle", per_meter=8, noise=0.05)

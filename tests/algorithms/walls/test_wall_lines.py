@@ -88,7 +88,7 @@ def test_walls_become_square_where_their_points_allow_it(rng, angle, squared):
 
 
 def test_a_short_noisy_wall_becomes_square_and_a_long_precise_one_does_not(rng):
-    """A degree and a half off: within the noise of 2.5 m with few points, outside that of 12 m with many."""
+    """A degree and a half off: within the noise of 2.5 m with few points, outside the noise of 12 m with many."""
     turn = np.deg2rad(88.5)
     way = np.array([np.cos(turn), np.sin(turn)])
     base = wall(rng, (0, 0), (12, 0), 30, 0.03)
