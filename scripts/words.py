@@ -42,6 +42,7 @@ FORMS = {
     "what is, for a noun": Form(r"\bwhat is\b(?! (?:missing|wrong|normal|new))", 0.1),
     "return which, for a mask": Form(r"\breturns? which\b", 0.05),
     "beside, for next to": Form(r"\bbeside\b", 0.1),
+    "that of, those of": Form(r"\b(?:that|those) of\b", 0.2),
 }
 SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.01
 
