@@ -13,7 +13,7 @@ from ..geometry.points_in_polygons import are_within
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes
 from ..geometry.rings import polygon_area, sides_of_rings
 from ..models3d.model_inputs import rows_near
-from ..packages import ndimage
+from ..packages import ndimage, spatial
 from . import map_changes
 from .map_changes import BUILT, OLD, RULES, Label, MapUpdate, SeenPoints
 from .map_drawing import draw_labels
@@ -144,7 +144,8 @@ class ChangedBlock:
     def _owner(self, outline: int, mask: np.ndarray, size: float) -> Label:
         """Return the building that a part of a new outline, with that size (m²), is of: one that it adjoins or its own.
 
-        A part that is as large as the old building that it adjoins is a building of its own.
+        Of those that it adjoins along a long side, it is of the one whose walls go on along it: their convex hull grows
+        least. A part that is as large as the old building that it adjoins is a building of its own.
         """
         update = self.update
         if update.is_new[outline]:
@@ -155,13 +156,23 @@ class ChangedBlock:
         may = [row for row in may if size < polygon_area(update.rings[row])]
         new = [number for (kind, _), number in self.labels.items() if kind == BUILT]
         # Areas next to the part: the length of the border times the width of a change.
-        old_side, row = max(((np.sum(self.old[near] == row) * least, row) for row in may), default=(0.0, -1))
+        sides = {row: np.sum(self.old[near] == row) * least for row in may}
+        most = max(sides.values(), default=0.0)
+        wide = (row for row, side in sides.items() if side >= RULES.side * most)
+        row = min(wide, key=lambda row: self._growth(row, mask), default=-1)
+        old_side = sides.get(row, 0.0)
         new_side, number = max(((np.sum(self.wanted[near] == one) * least, one) for one in new), default=(0.0, 0))
         # Walls of the map are known better than those that a survey has between roofs: a strip along one is the new
-        # building's beyond.
-        if new_side > old_side or (new_side and size < RULES.strip * old_side):
+        # building's beyond. Nodes of a strip lie a quarter of its depth from its sides.
+        depth = 4 * RULES.step * ndimage.distance_transform_edt(mask)[mask].mean()
+        if new_side > old_side or (new_side and depth < RULES.strip * self.width):
             return list(self.labels)[number - 1]
         return (OLD, row) if old_side else (BUILT, outline)
+
+    def _growth(self, row: int, mask: np.ndarray) -> float:
+        """Return the area (m²) by which the convex hull of an old building grows with a part of nodes, bool."""
+        ring, part = self.update.rings[row][0], self.lattice.in_plan(np.argwhere(mask)[:, ::-1])
+        return spatial.ConvexHull(np.concatenate([ring, part])).volume - spatial.ConvexHull(ring).volume
 
     def _draw(self) -> None:
         """Draw all buildings that have changed or are new, those that lie together at once."""

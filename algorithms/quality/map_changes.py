@@ -55,6 +55,7 @@ class Rules:
     shown: float = 0.5  #: Share of an area where points must lie, or ground, for it to be seen, or to be empty
     new: float = 0.4  #: Share of new outlines up to which the map may have them for a building to be new
     strip: float = 1.5  #: Depth of a strip along the wall of a row, in widths of a change
+    side: float = 0.5  #: Share of the longest border of a part from which another building may own it
     low: float = 1.0  #: Points up to this height (m) above the ground nearest to them show that no roof is there
     rise: float = 1.0  #: Roofs that rose or fell by more in the median (m) were heightened or lowered
     reach: float = 2.0  #: Points show the surroundings up to this multiple of their distance

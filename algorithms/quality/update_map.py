@@ -81,7 +81,9 @@ def update_map(
         f"{RULES.least_width:g} to {RULES.most_width:g} m.",
     ),
     id_field: str = tunable(
-        "", "Attribute that identifies a building; new ones get new values of it. Empty: 'id' or 'fid'."
+        "",
+        "Attribute that identifies a building; new ones get new values of it. Empty: 'id' or 'fid'; where the map has "
+        "neither, all buildings are numbered in a new 'id'.",
     ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -177,6 +179,8 @@ def update_map(
         ChangedBlock(update, points, olds, news, least_width, min_area).decide(roofs)
         monitor.progress(0.5 + 0.5 * (number + 1) / len(blocks))
     sure = footprints.columns.get("confidence", [np.nan] * len(footprints))
+    if not _new_ids(old_map, id_field, 0)[0]:
+        monitor.inform("The map has no attribute 'id' or 'fid': its buildings are numbered in a new one, 'id'.")
     updated, gone = _layers(update, old_map, old.rows.tolist(), np.array(sure)[new.rows], id_field)
     report = _report(update, updated, gone, fit)
     monitor.inform(_summary(report.values))
@@ -228,6 +232,8 @@ def _layers(
         for known, (name, values) in zip(old_map.columns, old_map.kept(rows, fields).items()):
             of_all = values + (ids if known == key else [None] * len(ids))
             columns[name] = [of_all[row] for row in parts]
+        if not key:
+            columns["id"] = [row + 1 for row in parts]
         every = [*sources, *[None] * len(new)]
         return LayerFeatures([own for row in chosen for own in polygons[row]], columns, [every[row] for row in parts])
 

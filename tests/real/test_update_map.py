@@ -10,7 +10,7 @@ from qgis.core import QgsVectorLayer
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.geometry.line_segments import is_valid
-from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, meeting_boxes, overlaps
+from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
 from lidar_buildings.algorithms.quality.map_changes import CHANGED, GONE, NEW, UNCHANGED
 from lidar_buildings.algorithms.quality.update_map import update_map
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
@@ -88,7 +88,7 @@ def changed_map(true, same, found, ground, rng):
     return made, kinds
 
 
-@pytest.mark.parametrize("seed", range(1))
+@pytest.mark.parametrize("seed", range(2))
 def test_changes_of_delfts_base_map_are_found_and_nothing_else_is_touched(seed):
     found, cloud = footprints("chain")
     true = rings_of_map(cloud)
@@ -109,12 +109,7 @@ def test_changes_of_delfts_base_map_are_found_and_nothing_else_is_touched(seed):
     status = dict(zip(layer.columns["id"], layer.columns["status"]))
     outline = dict(zip(layer.columns["id"], layer.geometries))
     is_same = {number: outline.get(number) is made[number] for number in set(same) - set(kinds)}
-    boxes = as_polygons(true).box
-    altered = [number for number in kinds if number < len(true)]
-    beside = meeting_boxes(boxes[altered] + np.array([[-1.0], [1.0]]), boxes)[1].tolist()
-    # Where the survey has a house and its neighbor as one, a part may be either's.
-    assert all(is_same[number] for number in set(is_same).difference(beside))
-    assert np.mean(list(is_same.values())) >= 0.98
+    assert all(is_same.values())
     new = [rings for rings, one in zip(layer.geometries, layer.columns["status"]) if one == NEW]
     right = Counter()
     for number, kind in kinds.items():
@@ -126,4 +121,4 @@ def test_changes_of_delfts_base_map_are_found_and_nothing_else_is_touched(seed):
             is_right = status.get(number) == CHANGED
             right[kind] += is_right and ious([outline[number]], [true[number]])[0, 0] > 0.85
     assert set(kinds.values()) == {GONE, NEW, "cut", "enlarged"}
-    assert sum(right.values()) >= 0.9 * len(kinds), (right, Counter(kinds.values()))
+    assert sum(right.values()) >= 0.95 * len(kinds), (right, Counter(kinds.values()))

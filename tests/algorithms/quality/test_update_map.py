@@ -126,6 +126,13 @@ def test_new_ids_follow_those_of_the_map(ids, new):
     assert [own[0]["status"] for key, own in rows.items() if key == new] == [NEW]
 
 
+def test_buildings_of_a_map_without_ids_are_numbered():
+    old = [house(0, 0), house(0, 12), house(20, 12)]
+    rows, gone, _ = updated(old, [old[0], old[2], house(20, 0)], columns={"street": ["A", "B", "C"]})
+    assert {key: own[0]["street"] for key, own in rows.items()} == {1: "A", 3: "C", 4: None}
+    assert gone.columns["id"] == [2]
+
+
 def test_a_house_that_was_misdrawn_as_a_whole_is_shifted():
     true = [house(15.0 * i, 14.0 * j) for i in range(3) for j in range(3)]
     old = [[ring + [1.5, -1.0]] if number == 4 else [ring] for number, (ring,) in enumerate(true)]
@@ -196,6 +203,16 @@ def test_buildings_of_the_map_neither_overlap_nor_part_where_one_is_drawn_anew()
     assert sum(map(polygon_area, rings)) == pytest.approx(280, abs=1)
     for corner in [(10, 0), (10, 8), (20, 0), (20, 8)]:
         assert (rings[1][0] == corner).all(axis=1).any()
+
+
+def test_a_part_between_buildings_is_of_the_one_whose_walls_go_on_along_it():
+    row = [house(6 * i, 0, (0, 0), (6, 0), (6, 12), (0, 12)) for i in range(3)]
+    behind = house(0, 12, (0, 0), (18, 0), (18, 9), (6, 9), (6, 8), (0, 8))
+    whole = house(0, 0, (0, 0), (18, 0), (18, 21), (6, 21), (6, 20), (0, 20))
+    old = [row[0], house(6, 0, (0, 0), (6, 0), (6, 9), (0, 9)), row[2], behind]
+    rows, _, _ = updated(old, [whole], [whole])
+    assert [own[0]["status"] for own in rows.values()] == [UNCHANGED, CHANGED, UNCHANGED, UNCHANGED]
+    assert iou(rows[1][0]["rings"], row[1]) > 0.99
 
 
 @pytest.mark.parametrize("is_classified", [True, False])
