@@ -125,7 +125,7 @@ def _as_entropy(parts: int) -> str:
 
 _EVIDENCE: dict[Evidence, tuple[str, Callable[[int], str]]] = {
     Evidence.NONE: ("", str),
-    Evidence.POINTS: ("{} points of a roof surface (half sure from {})", str),
+    Evidence.POINTS: ("{} points of a roof surface (confidence 0.5 at {})", str),
     Evidence.ENTROPY: ("entropy {} (limit {})", _as_entropy),
     Evidence.PENETRATION: ("{} of the beam passes (limit {})", _as_percent),
     Evidence.SURROUNDINGS: ("{} of the points around are on buildings (limit {})", _as_percent),

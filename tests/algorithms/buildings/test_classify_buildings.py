@@ -248,7 +248,7 @@ def test_the_weakest_evidence_is_what_is_nearest_to_its_limit(rng):
     assert not weakest[cluster_id == 0].any()
     texts = [evidence_text(int(weakest[cluster_id == number][0])) for number in range(1, 6)]
     size = (cluster_id == 1).sum()
-    assert texts[0] == f"{size} points of a roof surface (half sure from 80)"
+    assert texts[0] == f"{size} points of a roof surface (confidence 0.5 at 80)"
     assert texts[1].endswith("of the beam passes (limit 35 %)")
     assert float(texts[1].split(" %")[0]) > 35
     middle = (report.values["building_entropy"] + report.values["other_entropy"]) / 2

@@ -33,7 +33,7 @@ def test_evidence_is_stored_in_one_number_and_read_as_words():
     assert packed.dtype == np.uint32
     assert packed.tolist() == [1_0079_0122, 2_0713_0780, 3_0380_0400, 4_0450_0400, 0]
     assert [evidence_text(one) for one in packed.tolist()] == [
-        "79 points of a roof surface (half sure from 122)",
+        "79 points of a roof surface (confidence 0.5 at 122)",
         "entropy 0.71 (limit 0.78)",
         "38 % of the beam passes (limit 40 %)",
         "45 % of the points around are on buildings (limit 40 %)",
