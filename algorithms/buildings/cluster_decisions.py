@@ -9,6 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..cloud.reasons import Reason
+from ..geometry.groups import placed
 from ..stage import Monitor, Report
 from .cluster_entropies import ClusterEntropies
 from .cluster_report import Clusters, build_report
@@ -84,10 +85,9 @@ def written_to_points(
     classes, why = _without_buildings(classification, reason)
     classes[rows[decisions.is_building[position]]] = PointClass.BUILDING
     why[rows] = decisions.reasons[position]
-    per_point = (entropies.values, entropies.means[position], confidence[position])
-    evidence = np.zeros(len(classes), np.uint32)
-    evidence[rows] = weakest[position]
-    return classes, *(_at_points(values, rows, len(classes)) for values in per_point), why, evidence, report
+    per_point = np.float32((entropies.values, entropies.means[position], confidence[position]))
+    measures = (placed(values, rows, len(classes), np.nan) for values in per_point)
+    return classes, *measures, why, placed(weakest[position].astype(np.uint32), rows, len(classes)), report
 
 
 def no_clusters(classification: np.ndarray, reason: Optional[np.ndarray], monitor: Monitor) -> tuple[Any, ...]:
@@ -113,10 +113,3 @@ def _without_buildings(classification: np.ndarray, reason: Optional[np.ndarray])
     classes = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     why = np.zeros(len(classes), np.uint8) if reason is None else reason.astype(np.uint8)
     return classes.astype(np.uint8), why
-
-
-def _at_points(values: np.ndarray, rows: np.ndarray, n_points: int) -> np.ndarray:
-    """Return values (n_points,), float32: known at some ``rows``, NaN elsewhere."""
-    whole = np.full(n_points, np.nan, np.float32)
-    whole[rows] = values
-    return whole

@@ -205,12 +205,12 @@ def _as_learned(
     used = not_noise(classification)
     if not len(used):
         return found
-    height, segment_id, number, of, intensity = (_of(values, used) for values in measured)
+    height, segment_id, *recorded = (None if values is None else values[used] for values in measured)
     scene = _Scene(sampling.from_corner(xyz.take(used, axis=0)), classification[used], height, cluster_id[used])
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
     size = _RULES.cell_spacings / float(np.sqrt(density))
-    labeled = scene.labeled(size, number, of, intensity, monitor.part(0.1, 0.7))
+    labeled = scene.labeled(size, recorded, monitor.part(0.1, 0.7))
     learned = sampling.learned(_LEARNED, partial(labeled.sample, scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
@@ -265,15 +265,13 @@ class _Scene:
         never = np.isin(self.classification, NEVER)
         return (self.height > IMAGES.foot) & ~never
 
-    def labeled(
-        self,
-        size: float,
-        return_number: Optional[np.ndarray],
-        number_of_returns: Optional[np.ndarray],
-        intensity: Optional[np.ndarray],
-        monitor: Monitor,
-    ) -> LabeledCells:
-        """Return the cells of a ``size`` (m) with raised points, and what they are like."""
+    def labeled(self, size: float, recorded: list[Optional[np.ndarray]], monitor: Monitor) -> LabeledCells:
+        """Return the cells of a ``size`` (m) with raised points, and what they are like.
+
+        ``recorded`` are return numbers, numbers of returns and intensities, (n,) each; None where unknown.
+        """
+        number, of, intensity = recorded
+        has_returns = number is not None and of is not None and of.max(initial=0) > 1
         cells = SpaceCells(self.xyz, size)
         monitor.progress(0.3)
         raised = cells.sums(self.is_raised)
@@ -283,7 +281,7 @@ class _Scene:
             self.xyz,
             self.height,
             self.classification == PointClass.GROUND,
-            _returns(return_number, number_of_returns),
+            (number, of) if has_returns else None,
             intensity if intensity is not None and intensity.any() else None,
         )
         around = cells.around(chosen)
@@ -323,20 +321,6 @@ class _Scene:
         return becomes, ceases, of_nearest[tuple(index[becomes] for index in cell)]
 
 
-def _returns(
-    return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray]
-) -> Optional[tuple[np.ndarray, np.ndarray]]:
-    """Return both numbers (n,) where pulses are known to have several returns; None elsewhere."""
-    if return_number is None or number_of_returns is None or number_of_returns.max(initial=0) < 2:
-        return None
-    return return_number, number_of_returns
-
-
 def _log_odds(probability: np.ndarray) -> np.ndarray:
     """Return the logarithms (n,) of the odds of probabilities (n,)."""
     return np.log(probability / (1 - probability))
-
-
-def _of(values: Optional[np.ndarray], rows: np.ndarray) -> Optional[np.ndarray]:
-    """Return the values (k,) of some rows; None where there are no values."""
-    return None if values is None else values[rows]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..facades.facade_frame import frame_of
 from ..geometry.line_segments import are_inside, is_valid
 from ..geometry.polygons import area_vector
 from .solids import WALL, Solid
@@ -48,7 +49,7 @@ def with_openings(solid: Solid, openings: list[Opening]) -> tuple[Solid, list[Op
         wall, flat = _best_wall(walls, opening)
         if wall is None:
             continue
-        ring = wall.space(flat)
+        ring = wall.frame.space(flat)
         numbers = list(range(len(vertices), len(vertices) + len(ring)))
         vertices += [tuple(row) for row in ring.tolist()]
         wall.rings.append(np.concatenate([flat[::-1], flat[-1:]]))
@@ -64,22 +65,14 @@ class _Wall:
     """An upright face of a solid, in its own plane: along and up it."""
 
     def __init__(self, solid: Solid, face: int) -> None:
-        self.face = face
         normal = solid.normals[face]
-        self.normal = normal / np.linalg.norm(normal)
-        level = np.array([-self.normal[1], self.normal[0], 0.0])
-        self.along = level / np.linalg.norm(level)
-        self.up = np.cross(self.normal, self.along)
-        self.origin = solid.vertices[solid.faces[face][0][0]]
+        self.face = face
+        self.frame = frame_of(solid.vertices[solid.faces[face][0][0]], normal / np.linalg.norm(normal))
         self.rings = [self.flat(solid.vertices[[*ring, ring[0]]]) for ring in solid.faces[face]]
 
     def flat(self, positions: np.ndarray) -> np.ndarray:
         """Return positions (m, 2) along and up the wall of positions (m, 3)."""
-        return (positions - self.origin) @ np.column_stack([self.along, self.up])
-
-    def space(self, flat: np.ndarray) -> np.ndarray:
-        """Return the positions (m, 3) on the wall of positions (m, 2)."""
-        return self.origin + flat[:, :1] * self.along + flat[:, 1:] * self.up
+        return self.frame.local(positions)[:, :2]
 
 
 def _best_wall(walls: list[_Wall], opening: Opening) -> tuple:
@@ -87,12 +80,12 @@ def _best_wall(walls: list[_Wall], opening: Opening) -> tuple:
     normal = area_vector(opening.ring)
     normal /= np.linalg.norm(normal)
     middle = opening.ring.mean(axis=0)
-    off = [abs(float((middle - wall.origin) @ wall.normal)) for wall in walls]
+    off = [abs(float((middle - wall.frame.origin) @ wall.frame.normal)) for wall in walls]
     for number in np.argsort(off):
         wall = walls[number]
         if off[number] > _OFF:
             break
-        if normal @ wall.normal >= _SAME_WAY:
+        if normal @ wall.frame.normal >= _SAME_WAY:
             flat = _cut_back(wall.rings, wall.flat(opening.ring))
             if flat is not None:
                 return wall, flat

@@ -11,7 +11,7 @@ from ..report.charts import draw_matrix
 from ..report.page import FALSE, HIT, MISS, REST, build_page, draw_map, draw_table, percent, rows_of
 from ..stage import Measure, Report, stage, tunable
 from .confusion import class_rates, cohens_kappa, confusion, overall_accuracy
-from .point_matching import compared_points
+from .point_matching import counted_points, match_points
 
 # Classes that have an output of their own, by the names of these.
 _KINDS = {
@@ -118,9 +118,8 @@ def assess_classes(
     100.0
     """
     groups = parse_groups(merged_classes)
-    xyz, called, true = compared_points(
-        xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)
-    )
+    true_classes = reference_classification[match_points(xyz, reference_xyz)]
+    xyz, called, true = counted_points(xyz, classification, true_classes, parse_classes(ignored_classes))
     monitor.progress(0.5)
     every = confusion(true, called, _CODES)
     parts = merged(np.flatnonzero(every.any(axis=0) | every.any(axis=1)), groups)

@@ -8,7 +8,7 @@ from ..cloud.asprs import PointClass, parse_classes
 from ..params import IGNORED_CLASSES
 from ..report.page import build_page, draw_map, outcome_of, rows_of
 from ..stage import Measure, Report, stage
-from .point_matching import compared_points
+from .point_matching import counted_points, match_points
 
 _MEASURES = (
     Measure("type_1", "Type I error", "%"),
@@ -79,9 +79,8 @@ def assess_ground(
     >>> float(report.values["total"])
     0.0
     """
-    xyz, called, true = compared_points(
-        xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)
-    )
+    true_classes = reference_classification[match_points(xyz, reference_xyz)]
+    xyz, called, true = counted_points(xyz, classification, true_classes, parse_classes(ignored_classes))
     monitor.progress(0.5)
     called, ground = called == PointClass.GROUND, true == PointClass.GROUND
     values = ground_errors(called, ground)

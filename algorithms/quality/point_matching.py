@@ -11,32 +11,6 @@ from ..packages import spatial
 _TOLERANCE = 1e-3
 
 
-def compared_points(
-    xyz: np.ndarray,
-    classification: np.ndarray,
-    reference_xyz: np.ndarray,
-    reference_classification: np.ndarray,
-    ignored: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return coordinates, classes and true classes of the points that count.
-
-    Parameters
-    ----------
-    xyz, classification : ndarrays of shape (n, 3) and (n,)
-        The cloud that is assessed.
-    reference_xyz, reference_classification : ndarrays of shape (m, 3) and (m,)
-        What it is compared with.
-    ignored : ndarray of int
-        Classes of the reference that don't count.
-
-    Raises
-    ------
-    ValueError
-        If a point is not in the reference, or none is left to compare.
-    """
-    return counted_points(xyz, classification, reference_classification[match_points(xyz, reference_xyz)], ignored)
-
-
 def counted_points(
     xyz: np.ndarray, classification: np.ndarray, true: np.ndarray, ignored: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
