@@ -4,24 +4,30 @@ from __future__ import annotations
 
 from typing import Optional
 
+import numpy as np
+
 from ..neighborhoods.covariance import Nearest
+from ..packages import cluster
 from ..params import MIN_BUILDING_AREA, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS, nearest_points
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import stage, tunable
+from ..stage import Monitor, stage, tunable
 from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
-from .entropy_split import MEAN_ENTROPIES, split_of_whole
-from .two_means import k_means, two_means
+from .entropy_split import MEAN_ENTROPIES, Split, split_of_whole
 from .weakest_evidence import weakest_evidence
 
 # A covariance of full rank takes more than three points; three are the fewest that have eigenvalues to compare.
 _MIN_NEIGHBORS = 3
 
-_SPLITS = {"exact": two_means, "k-means": k_means}
-
 # How far neighborhoods reach (m): of 4 m² 1.1 m, in sparse clouds more.
 _REACH = 5.0
+
+# Means closer together are equal: clusters differ by 0.01 and more.
+_SAME = 1e-3
+
+# Runs of K-means, of which the best counts: the default of scikit-learn for years.
+_STARTS = 10
 
 
 @stage(
@@ -127,10 +133,52 @@ def classify_buildings_2019(
     if not (cluster_id > 0).any():
         return no_clusters(classification, reason, monitor)
     entropies = cluster_entropies(xyz, cluster_id, Nearest(n_neighbors), monitor.part(0, 0.95))
-    split = split_of_whole(sampling, lambda: _SPLITS[two_classes](entropies.means, monitor))
+    separated = k_means if two_classes == "k-means" else two_means
+    split = split_of_whole(sampling, lambda: separated(entropies.means, monitor))
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     decided = decide_by_entropy(entropies.means, split)
     report = build_report(Clusters(entropies.means, decided.reasons, split))
     smallest = min_area * density
     weakest = weakest_evidence(entropies, smallest, split)
     return written_to_points(classification, reason, entropies, decided, weakest, smallest, report)
+
+
+def two_means(means: np.ndarray, monitor: Monitor) -> Split:
+    """Separate the clusters' mean entropies (m,) in two so that the sum of squares within both classes is least.
+
+    This is what two-class K-means approaches by rounds. In one dimension each class is an interval, so that trying
+    every gap between the sorted values finds the optimum.
+    """
+    known = np.sort(means[np.isfinite(means)])
+    alike = _alike(known, monitor)
+    if alike is not None:
+        return alike
+    n_low = np.flatnonzero(np.diff(known) > 0) + 1
+    low = np.cumsum(known)[n_low - 1] / n_low
+    high = (known.sum() - n_low * low) / (len(known) - n_low)
+    # The sum of squares between the classes is greatest where that within them is least.
+    best = np.argmax(n_low * (len(known) - n_low) * (high - low) ** 2)
+    return Split(float(low[best]), float(high[best]))
+
+
+def k_means(means: np.ndarray, monitor: Monitor) -> Split:
+    """Separate the clusters' mean entropies (m,) by scikit-learn's K-means with two classes, from ten random starts."""
+    known = np.sort(means[np.isfinite(means)])
+    alike = _alike(known, monitor)
+    if alike is not None:
+        return alike
+    found = cluster.KMeans(n_clusters=2, n_init=_STARTS, random_state=0).fit(known[:, None])
+    building, other = np.sort(found.cluster_centers_.ravel())
+    return Split(float(building), float(other))
+
+
+def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
+    """Return the split of ascending mean entropies that can't be separated, and say so; None where they can."""
+    if len(known) >= 2 and np.ptp(known) >= _SAME:
+        return None
+    only = "are only clusters of the same entropy"
+    if len(known) < 2:
+        only = "is only one cluster" if len(known) else "is no cluster with an entropy"
+    monitor.warn(f"There {only}: nothing to separate, so nothing was called a building.")
+    same = float(known.mean()) if len(known) else np.nan
+    return Split(same, same)

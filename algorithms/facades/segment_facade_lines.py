@@ -151,10 +151,10 @@ def segment_facade_lines(
     line = _lines(gps_time[order], source[order], duration)
     piece = _pieces(xyz[order], line, tolerance, monitor.part(0, 0.8))
     limits = (max_ground_height, facade_distance)
-    segment_id, features = _described(xyz, order, line, piece, limits, min_points)
+    segment_id, features = _described(xyz[order], line, piece, limits, min_points)
     if not features.geometries:
         monitor.none_found("No scan line has a straight segment; lower the minimum points or raise the tolerance.")
-    return segment_id, features
+    return placed(segment_id, order, len(xyz)), features
 
 
 def are_of_facade_lines(
@@ -230,24 +230,18 @@ def _across(xyz: np.ndarray) -> np.ndarray:
 
 
 def _described(
-    xyz: np.ndarray,
-    order: np.ndarray,
-    line: np.ndarray,
-    piece: np.ndarray,
-    limits: tuple[float, float],
-    min_points: int,
+    xyz: np.ndarray, line: np.ndarray, piece: np.ndarray, limits: tuple[float, float], min_points: int
 ) -> tuple[np.ndarray, LayerFeatures]:
-    """Return the segment (n,) of each point, and the segments with their attributes."""
+    """Return the segment (n,) of each point in the order of the lines, and the segments with their attributes."""
     count = np.bincount(piece)
     first = run_starts(piece)
     last = first + count - 1
     kept = np.flatnonzero(count >= min_points)
     number = placed(np.arange(1, len(kept) + 1, dtype=np.int32), kept, len(count))
-    segment_id = placed(number[piece], order, len(xyz))
-    start, end = xyz[order[first[kept]]], xyz[order[last[kept]]]
+    start, end = xyz[first[kept]], xyz[last[kept]]
     middle, of_line = (start + end) / 2, line[first[kept]]
-    slope = _slopes(xyz[order], piece, kept)
-    side, distance = _from_scanner(xyz[order], line, middle, of_line)
+    slope = _slopes(xyz, piece, kept)
+    side, distance = _from_scanner(xyz, line, middle, of_line)
     height = middle[:, 2] - least_of(middle[:, 2], of_line, int(line[-1]) + 1)[of_line]
     length = np.linalg.norm(end - start, axis=1)
     columns = {
@@ -262,7 +256,7 @@ def _described(
         "points": count[kept],
     }
     columns["kind"] = [KINDS[kind] for kind in _kinds(columns, 2 * of_line + side, limits)]
-    return segment_id, LayerFeatures(list(np.stack([start, end], axis=1)), columns)
+    return number[piece], LayerFeatures(list(np.stack([start, end], axis=1)), columns)
 
 
 def _slopes(xyz: np.ndarray, piece: np.ndarray, kept: np.ndarray) -> np.ndarray:

@@ -208,7 +208,7 @@ def reconstruct_roofs(
         point_spacing(building), tolerance, min_plane_area, max_slope, min_step, top_percentile, level_of_detail
     )
     part = monitor.part(0.0, 0.8 if terrain_tolerance else 1.0)
-    models, patches = _modelled(building, are_low(building, settings.spacing), ground, outlines, settings, part), []
+    models, patches = _modelled(building, ground, outlines, settings, part), []
     if terrain_tolerance and models:
         terrain = triangulate_terrain(ground, models, terrain_tolerance, monitor.part(0.8, 1.0))
         models, patches = on_terrain(models, terrain), terrain.models()
@@ -245,18 +245,13 @@ def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> lis
 
 
 def _modelled(
-    building: np.ndarray,
-    is_low: np.ndarray,
-    ground: np.ndarray,
-    outlines: list[_Outline],
-    settings: Settings,
-    monitor: Monitor,
+    building: np.ndarray, ground: np.ndarray, outlines: list[_Outline], settings: Settings, monitor: Monitor
 ) -> list[NamedModel]:
     """Return the models of all footprints that can be modelled; log their levels, and why the others have no model.
 
     The points are of buildings, in the order of their eastings.
     """
-    tree = spatial.cKDTree(ground[:, :2])
+    tree, is_low = spatial.cKDTree(ground[:, :2]), are_low(building, settings.spacing)
     models, empty, failed = [], 0, []
     for number, outline in enumerate(outlines):
         over = rows_within(building, outline.rings)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -173,11 +174,13 @@ def assess_buildings(
     values = {f"points_{name}": value for name, value in rates(predicted, true).items()}
     values.update({f"cells_{name}": value for name, value in rates(predicted[top], true[top]).items()})
     monitor.progress(0.6)
-    reference = _side(grid, cell[top], true[top], predicted[top], min_area)
-    result = _side(grid, cell[top], predicted[top], true[top], min_area)
+    reference, result = (
+        _side(grid, cell[top], own[top], other[top], cell[own], min_area)
+        for own, other in ((true, predicted), (predicted, true))
+    )
     values.update(_object_rates(reference, result), cell_size=cell_size)
     monitor.inform(_summary(values))
-    objects = _objects(grid, (reference, cell[true]), (result, cell[predicted]), min_area)
+    objects = _objects(grid, reference, result, min_area)
     monitor.progress(0.9)
     return objects, Report(values, _page(xyz, predicted, true, values, min_area))
 
@@ -225,6 +228,7 @@ class _Side:
     shared: np.ndarray  #: (m,), bool: cells that are building in the other classification too
     covered: np.ndarray  #: (k,): share of each object that is, 0 to 1
     is_large: np.ndarray  #: (k,), bool: objects that count, by their area
+    of_points: np.ndarray  #: (p,), int64: cell of each building point
 
     @property
     def agreed(self) -> np.ndarray:
@@ -232,12 +236,30 @@ class _Side:
         return self.is_large & (self.covered >= 0.5)
 
 
-def _side(grid: Grid, cells: np.ndarray, own: np.ndarray, other: np.ndarray, min_area: float) -> _Side:
-    """Return the objects of the cells that are ``own``, and how they look from the ``other`` classification."""
+def _side(
+    grid: Grid, cells: np.ndarray, own: np.ndarray, other: np.ndarray, of_points: np.ndarray, min_area: float
+) -> _Side:
+    """Return the objects of the cells that are ``own``, and how they look from the ``other`` classification.
+
+    Parameters
+    ----------
+    grid : Grid
+        Cells seen from above.
+    cells : ndarray of shape (m,), int64
+        Numbers of all cells with points, ascending.
+    own : ndarray of shape (m,), bool
+        Cells that are building in the one classification.
+    other : ndarray of shape (m,), bool
+        Cells that are building in the other one.
+    of_points : ndarray of shape (p,), int64
+        Cell of each building point of the one.
+    min_area : float
+        Area of the smallest object that counts, m².
+    """
     count, group = connected_cells(grid, cells[own])
     size = np.bincount(group, minlength=count)
     covered = np.bincount(group, other[own], count) / np.maximum(size, 1)
-    return _Side(cells[own], group, other[own], covered, size * grid.size**2 >= min_area)
+    return _Side(cells[own], group, other[own], covered, size * grid.size**2 >= min_area, of_points)
 
 
 def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
@@ -256,22 +278,17 @@ def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
     }
 
 
-def _objects(
-    grid: Grid, reference: tuple[_Side, np.ndarray], result: tuple[_Side, np.ndarray], min_area: float
-) -> LayerFeatures:
-    """Return the layer of what was found, missed and invented, from both sides and the cells of their points."""
-    (true, _), (predicted, _) = reference, result
+def _objects(grid: Grid, true: _Side, predicted: _Side, min_area: float) -> LayerFeatures:
+    """Return the layer of what was found, missed and invented, from both sides."""
     kinds = (
-        (FOUND, reference, true.agreed[true.group]),
-        (MISSED, reference, (true.is_large & ~true.agreed)[true.group]),
-        (INVENTED, result, (predicted.is_large & ~predicted.agreed)[predicted.group]),
-        (MISSED_PART, reference, _parts(grid, true, min_area)),
-        (INVENTED_PART, result, _parts(grid, predicted, min_area)),
+        (FOUND, true, true.agreed[true.group]),
+        (MISSED, true, (true.is_large & ~true.agreed)[true.group]),
+        (INVENTED, predicted, (predicted.is_large & ~predicted.agreed)[predicted.group]),
+        (MISSED_PART, true, _parts(grid, true, min_area)),
+        (INVENTED_PART, predicted, _parts(grid, predicted, min_area)),
     )
-    layer = LayerFeatures([], {field.name: [] for field in _OBJECTS.fields})
-    for kind, (side, point_cells), chosen in kinds:
-        _add(layer, kind, grid, side, chosen, point_cells)
-    return layer
+    features = [feature for kind in kinds for feature in _features(grid, *kind)]
+    return LayerFeatures.numbered(features, _OBJECTS.fields)
 
 
 def _parts(grid: Grid, side: _Side, min_area: float) -> np.ndarray:
@@ -286,18 +303,16 @@ def _parts(grid: Grid, side: _Side, min_area: float) -> np.ndarray:
     return placed((wide & large)[group], rows, len(side.cells))
 
 
-def _add(layer: LayerFeatures, kind: str, grid: Grid, side: _Side, chosen: np.ndarray, point_cells: np.ndarray) -> None:
-    """Append the groups of the chosen cells of a side to the layer."""
+def _features(grid: Grid, kind: str, side: _Side, chosen: np.ndarray) -> Iterator[tuple[list, dict[str, Any]]]:
+    """Yield the groups of the chosen cells of a side with their attributes."""
     cells = side.cells[chosen]
     count, group = connected_cells(grid, cells)
-    position, inside = find_cells(cells, point_cells)
-    size = np.bincount(group, minlength=count)
-    layer.columns["id"] += range(len(layer) + 1, len(layer) + 1 + count)
-    layer.columns["kind"] += [kind] * count
-    layer.columns["area"] += (size * grid.size**2).tolist()
-    layer.columns["points"] += np.bincount(group[position[inside]], minlength=count).tolist()
-    layer.columns["covered"] += (np.bincount(group, side.shared[chosen], count) / size).tolist()
-    layer.geometries += outline_cells(grid, cells, group)
+    position, inside = find_cells(cells, side.of_points)
+    size, points = np.bincount(group, minlength=count), np.bincount(group[position[inside]], minlength=count)
+    covered = np.bincount(group, side.shared[chosen], count) / size
+    columns = (size * grid.size**2).tolist(), points.tolist(), covered.tolist()
+    for rings, *facts in zip(outline_cells(grid, cells, group), *columns):
+        yield rings, {"kind": kind, **dict(zip(("area", "points", "covered"), facts))}
 
 
 def _summary(values: dict) -> str:

@@ -61,17 +61,11 @@ class OutlineCells:
     """The cells that all lines of a building make, and the cost of an outline of some of them.
 
     An outline is given by the cells that are ``inside`` (cells,). Its cost is a sum over cells, edges and crossings.
-    The roof juts out by ``overhang`` over the ``walls`` (n, 2), and a roof may by ``max_overhang``, m.
+    The ``overhangs`` are how far the roof juts out over the ``walls`` (n, 2), and how far a roof may, m.
     """
 
     def __init__(
-        self,
-        lines: list[WallLine],
-        walls: np.ndarray,
-        cover: RoofCover,
-        scale: Scale,
-        overhang: float,
-        max_overhang: float,
+        self, lines: list[WallLine], walls: np.ndarray, cover: RoofCover, scale: Scale, overhangs: tuple[float, float]
     ) -> None:
         self.lines, self.scale = lines, scale
         self.near = [points_near(walls, line, scale) for line in lines]
@@ -79,7 +73,7 @@ class OutlineCells:
         self.arrangement = Arrangement(points, self.directions, cover.low, cover.high)
         self.edges = self.arrangement.edges
         self.cost = _edge_costs(self.arrangement, lines, self.near, scale)
-        self.if_inside, self.if_outside = _cell_costs(self.arrangement, cover, overhang, max_overhang)
+        self.if_inside, self.if_outside = _cell_costs(self.arrangement, cover, *overhangs)
         u, v = (self.directions[self.arrangement.crossing[:, i]] for i in (0, 1))
         self.corner_cost = _CORNER_COST + _SKEW_COST * (np.abs(np.einsum("ij,ij->i", u, v)) > _SQUARE)
 

@@ -19,7 +19,7 @@ from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.solids import Rect, flat
 from lidar_buildings.algorithms.simulation.town_houses import Site
 from lidar_buildings.algorithms.simulation.town_layout import park_car
-from lidar_buildings.algorithms.simulation.village_houses import Home
+from lidar_buildings.algorithms.simulation.village_layout import Home
 from lidar_buildings.algorithms.stage import Monitor
 
 # A parapet on a flat roof: width and height (m).

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from lidar_buildings.algorithms.buildings.classify_buildings_2019 import classify_buildings_2019
+from lidar_buildings.algorithms.buildings.classify_buildings_2019 import classify_buildings_2019, k_means, two_means
 from lidar_buildings.algorithms.buildings.entropy_split import reference_entropies
-from lidar_buildings.algorithms.buildings.two_means import k_means, two_means
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.algorithms.buildings.parts import clusters, ones, reasons_of
