@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +27,14 @@ class Given:
     def read(self, kind: str, name: str, *more: Any) -> Any:
         """Return a parameter as QGIS reads it: as "Extent", say, by ``parameterAsExtent``, which may ask for more."""
         return getattr(self.algorithm, f"parameterAs{kind}")(self.parameters, name, self.context, *more)
+
+    def as_text(self) -> str:
+        """Return the algorithm and its parameters but outputs, as JSON."""
+        values = self.algorithm.asMap(self.parameters, self.context)["inputs"]
+        outputs = {one.name() for one in self.algorithm.destinationParameterDefinitions()}
+        return json.dumps(
+            [self.algorithm.id(), {name: one for name, one in values.items() if name not in outputs}], default=str
+        )
 
     def title(self, name: str) -> str:
         """Return what the dialog calls a parameter."""

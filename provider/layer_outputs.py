@@ -51,7 +51,7 @@ def write_layer(given: Given, name: str, layer: Layer, features: LayerFeatures, 
         if Path(target.split("|")[0]).suffix.lower() == GPKG:
             store_styles(target, layer_style(layer), layer.fields)
     target = final(target)
-    show_on_load(given.context, target, layer.geometry, layer_style(layer), layer.fields)
+    show_on_load(given.context, target, layer.geometry, layer_style(layer), layer.fields, run=given.as_text())
     if not len(features):
         switch_off(given.context, [target])
         if layer.on_demand:

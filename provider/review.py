@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import datetime
@@ -15,8 +16,10 @@ from qgis.core import (
     QgsFeatureRequest,
     QgsField,
     QgsGeometry,
+    QgsProject,
     QgsProperty,
     QgsRenderContext,
+    QgsSpatialIndex,
     QgsSymbol,
     QgsVectorLayer,
 )
@@ -39,6 +42,30 @@ _SHORT = 10
 
 # Opacity (%) of buildings that are marked as deleted: seen, and not mistaken for others.
 _FAINT = 15
+
+
+# Share of a building that overlaps another one from which this is said: walls that meet overlap by rounding.
+_OVERLAP = 0.001
+
+# Intersection over union from which an outline is the same one, and share of the smaller of two that both have where
+# one is the other drawn anew.
+_SAME, _REDRAWN = 0.999, 0.5
+
+
+def changes_between(before: QgsVectorLayer, after: QgsVectorLayer) -> dict[str, int]:
+    """Return how many buildings a layer has as another one had them, how many drawn anew, new and gone."""
+    in_plane = QgsFeatureRequest().setDestinationCrs(after.crs(), QgsProject.instance().transformContext())
+    old = {one.id(): one.geometry() for one in before.getFeatures(in_plane)}
+    index, matched = QgsSpatialIndex(before.getFeatures(in_plane)), set()
+    found: Counter[str] = Counter()
+    for outline in (one.geometry() for one in after.getFeatures()):
+        both = {fid: outline.intersection(old[fid]).area() for fid in index.intersects(outline.boundingBox())}
+        fid, shared = max(both.items(), key=lambda one: one[1], default=(None, 0.0))
+        areas = (outline.area(), old[fid].area()) if shared else (1.0, 1.0)
+        is_same = shared > _REDRAWN * min(areas)
+        found["kept" if shared > _SAME * (sum(areas) - shared) else "redrawn" if is_same else "new"] += 1
+        matched.update([fid] if is_same else [])
+    return {**{name: found[name] for name in ("kept", "redrawn", "new")}, "gone": len(old) - len(matched)}
 
 
 def is_reviewable(layer: Any) -> bool:
@@ -133,6 +160,13 @@ class Review:
         if len(touching) != 1:
             raise ValueError(f"{len(touching)} buildings touch this one; select those to merge it with.")
         return touching
+
+    def overlapped(self, fid: int) -> list[QgsFeature]:
+        """Return the buildings that the outline of another one overlaps, without those that are marked as deleted."""
+        outline = self.layer.getGeometry(fid)
+        near = self.layer.getFeatures(QgsFeatureRequest().setFilterRect(outline.boundingBox()))
+        others = [one for one in near if one.id() != fid and self.value(one, REVIEW) != DELETED]
+        return [one for one in others if one.geometry().intersection(outline).area() > _OVERLAP * outline.area()]
 
     def prepare_division(self, fid: int) -> None:
         """Have QGIS's tool split this building alone, and share its volume and points by area."""

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import html
+import json
 from typing import Any, Callable, Optional
 
-from qgis.core import Qgis, QgsExpression, QgsFeature, QgsFeatureRequest, QgsProject, QgsVectorLayer
+from qgis.core import (
+    Qgis,
+    QgsApplication,
+    QgsExpression,
+    QgsFeature,
+    QgsFeatureRequest,
+    QgsProcessingContext,
+    QgsProcessingUtils,
+    QgsProject,
+    QgsVectorLayer,
+)
 from qgis.gui import QgsMapTool, QgsRubberBand
 from qgis.PyQt.QtCore import QEvent, QSignalBlocker, Qt, QTimer
 from qgis.PyQt.QtGui import QColor, QKeySequence
@@ -30,8 +41,9 @@ from .input_layers import input_layer_name
 from .inputs import INPUT
 from .menu import DETECT, REVIEW_WINDOW
 from .questions import push_with_button
-from .review import CONFIDENCE, Review, is_reviewable
+from .review import CONFIDENCE, Review, changes_between, is_reviewable
 from .review_views import PointViews, clouds_for
+from .styles import RUN
 from .view3d import look_at, view_angles
 
 # Columns of the list: attributes, and what they are called.
@@ -87,16 +99,29 @@ def _filters_of(layer: QgsVectorLayer) -> dict[str, str]:
     return {name: which for name, (needed, which) in _FILTERS.items() if layer.fields().lookupField(needed) >= 0}
 
 
-def offer_review(iface: Any, layer: QgsVectorLayer) -> None:
-    """Say how many buildings a run has found, with a button for their review."""
+def _run_of(layer: QgsVectorLayer) -> tuple[str, dict[str, Any]]:
+    """Return the algorithm that made a layer, and its parameters; "" and none where they are not known."""
+    return tuple(json.loads(layer.customProperty(RUN, '["", {}]')))
+
+
+def offer_review(iface: Any, layer: QgsVectorLayer, context: QgsProcessingContext) -> None:
+    """Say how many buildings a run has found and how many decisions have changed, with a button for their review."""
+    if not is_reviewable(layer):
+        return
     name, which = next(iter(_filters_of(layer).items()))
     open_ones = QgsExpression(f'({which}) AND "{REVIEW}" IS NULL')
     request = QgsFeatureRequest(open_ones).setFlags(Qgis.FeatureRequestFlag.NoGeometry)
     count, made = sum(1 for _ in layer.getFeatures(request)), layer.id()
+    said = f"{layer.featureCount()} buildings, {count} of them {name.lower()}."
+    source = _run_of(layer)[1].get(input_layer_name(REVIEWED))
+    before = QgsProcessingUtils.mapLayerFromString(source, context) if source else None
+    if before is not None:
+        changes = changes_between(before, layer)
+        said += f" Since the review: {', '.join(f'{count} {kind}' for kind, count in changes.items())}."
     push_with_button(
         iface,
         "LiDAR Buildings",
-        f"{layer.featureCount()} buildings, {count} of them {name.lower()}.",
+        said,
         "Review buildings…",
         lambda: show_review(iface, QgsProject.instance().mapLayer(made)),
     )
@@ -247,7 +272,10 @@ class ReviewDock(QDockWidget):
             return
         layer, outline = self.review.layer, self.review.layer.getGeometry(self._fid)
         why = [self.review.value(self._listed[self.row], name) for name in ("reason", "evidence")]
-        self.facts.setText(html.escape(": ".join(one for one in why if one)))
+        facts = ": ".join(one for one in why if one)
+        for other in self.review.overlapped(self._fid):
+            facts += f" Overlaps building {self.review.value(other, 'id')}: move a wall of one, or delete it."
+        self.facts.setText(html.escape(facts.strip()))
         self._band.setToGeometry(outline, layer)
         self.views.show_building(layer, outline)
         if self._fid != before:
@@ -286,12 +314,18 @@ class ReviewDock(QDockWidget):
         self.iface.actionSplitFeatures().trigger()
 
     def run_again(self, review: Review) -> None:
-        """Open the dialog that finds buildings, with the cloud and with these decisions."""
+        """Open the dialog of the run that made the buildings, with its parameters and with these decisions.
+
+        It is *Detect buildings* with the cloud where the run is not known or takes no decisions.
+        """
         from processing import execAlgorithmDialog
 
         review.save()
-        cloud = next((one.id() for one in clouds_for(review.layer)), None)
-        execAlgorithmDialog(DETECT, {INPUT: cloud, input_layer_name(REVIEWED): review.layer.id()})
+        decisions, (algorithm, given) = input_layer_name(REVIEWED), _run_of(review.layer)
+        known = QgsApplication.processingRegistry().algorithmById(algorithm)
+        if known is None or known.parameterDefinition(decisions) is None:
+            algorithm, given = DETECT, {INPUT: next((one.id() for one in clouds_for(review.layer)), None)}
+        execAlgorithmDialog(algorithm, {**given, decisions: review.layer.id()})
 
     def _current(self) -> int:
         """Return the current building, or refuse."""

@@ -43,6 +43,9 @@ _BELOW = (QgsRasterLayer, QgsPointCloudLayer)
 # Decimals of numbers in tables: millimeters.
 _DECIMALS = 3
 
+# Property of a layer with the algorithm that made it and the parameters, as JSON.
+RUN = "lidar_buildings/run"
+
 # Attributes that a map tip shows, in this order, the most of them, and their decimals where these are not one.
 _IN_TIPS = ("status", "kind", "roof_type", "height", "area", "length", "width", "radius", "confidence")
 _MOST_IN_TIPS = 4
@@ -56,12 +59,15 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
     """Gives a loaded result the style of one file, and its table the units of the fields and few decimals.
 
     With ``is_off`` the layer is loaded but not visible: it is the result of a step that another step has used.
-    ``crs`` (code or WKT) is for clouds in which QGIS finds none: it reads WKT alone.
+    ``crs`` (code or WKT) is for clouds in which QGIS finds none: it reads WKT alone. ``run`` is kept as the property
+    ``RUN`` of the layer.
     """
 
-    def __init__(self, stem: Optional[str], fields: Sequence[Field] = (), is_off: bool = False, crs: str = "") -> None:
+    def __init__(
+        self, stem: Optional[str], fields: Sequence[Field] = (), is_off: bool = False, crs: str = "", run: str = ""
+    ) -> None:
         super().__init__()
-        self.stem, self.fields, self.is_off, self.crs = stem, fields, is_off, crs
+        self.stem, self.fields, self.is_off, self.crs, self.run = stem, fields, is_off, crs, run
 
     @staticmethod
     def file(stem: str) -> Path:
@@ -70,7 +76,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     def copy(self) -> Styler:
         """Return another one that does the same."""
-        return Styler(self.stem, self.fields, self.is_off, self.crs)
+        return Styler(self.stem, self.fields, self.is_off, self.crs, self.run)
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, if there is one, and say so in the log when it can't be."""
@@ -80,6 +86,8 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         message = self.apply(layer)
         if message:
             feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
+        if self.run:
+            layer.setCustomProperty(RUN, self.run)
         layer.triggerRepaint()
         stack_results(context)
         if len(context.layersToLoadOnCompletion()) == 1:
@@ -88,7 +96,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
             # Late: without a desktop nobody needs its widgets.
             from .review_dock import offer_review
 
-            offer_review(iface, layer)
+            offer_review(iface, layer, context)
         node = context.project().layerTreeRoot().findLayer(layer.id()) if self.is_off else None
         if node is not None:
             node.setItemVisibilityChecked(False)
@@ -203,18 +211,19 @@ def show_on_load(
     stem: Optional[str],
     fields: Sequence[Field] = (),
     crs: str = "",
+    run: str = "",
 ) -> None:
     """Have the result ``target`` styled, and put at its place among the others, when and if it is loaded.
 
-    ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer. ``crs`` is as for
-    :class:`Styler`.
+    ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer. ``crs`` and
+    ``run`` are as for :class:`Styler`.
     """
     if not context.willLoadLayerOnCompletion(target):
         return
     details = context.layerToLoadOnCompletionDetails(target)
     details.layerSortKey = _DRAWN.index(kind)
     if stem is not None or fields or crs:
-        details.setPostProcessor(_kept(Styler(stem, fields, crs=crs)))
+        details.setPostProcessor(_kept(Styler(stem, fields, crs=crs, run=run)))
 
 
 def switch_off(context: QgsProcessingContext, targets: Iterable[str]) -> None:

@@ -14,6 +14,8 @@ from qgis.core import (
     QgsLineString,
     QgsPoint,
     QgsPointCloudLayer,
+    QgsProcessingContext,
+    QgsProcessingOutputLayerDefinition,
     QgsProject,
     QgsRectangle,
     QgsVector3D,
@@ -27,7 +29,7 @@ from qgis.PyQt.QtWidgets import QApplication, QDockWidget, QPushButton
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.provider import styles
-from lidar_buildings.provider.review import Review
+from lidar_buildings.provider.review import Review, changes_between
 from lidar_buildings.provider.review_dock import show_review
 from lidar_buildings.tests.provider.helpers import run, vector
 
@@ -402,6 +404,60 @@ def test_the_run_is_offered_again_with_the_decisions(dock, layer, monkeypatch, t
     next(one for one in dock.actions() if one.text() == "Run again…").trigger()
     assert given == [{"INPUT": one, "REVIEWED": layer.id()} for one in (None, cloud.id())]
     assert not layer.isModified(), "the run reads what is stored"
+
+
+def test_the_run_is_offered_again_with_its_own_parameters(dock, qgis_iface, log, monkeypatch, town_file, tmp_path):
+    """And after it, how many buildings are others."""
+    offered, context = [], QgsProcessingContext()
+    processing = SimpleNamespace(execAlgorithmDialog=lambda *given: offered.append(given))
+    context.setProject(QgsProject.instance())
+    monkeypatch.setattr(styles, "iface", qgis_iface)
+
+    def load(parameters):
+        target = tmp_path / f"{len(offered)}.gpkg"
+        outputs = QgsProcessingOutputLayerDefinition(str(target), QgsProject.instance())
+        run("extractfootprints", {**parameters, "FOOTPRINTS": outputs}, context, log)
+        ((source, details),) = context.layersToLoadOnCompletion().items()
+        layer = QgsProject.instance().addMapLayer(QgsVectorLayer(source, "found", "ogr"))
+        details.postProcessor().postProcessLayer(layer, context, log)
+        context.setLayersToLoadOnCompletion({})
+        return layer
+
+    layer = load({"INPUT": str(town_file), "MIN_AREA": 6.5, "MERGE_TOUCHING": True})
+    dock.follow(layer)
+    dock.review.decide(1, "kept")
+    monkeypatch.setitem(sys.modules, "processing", processing)
+    next(one for one in dock.actions() if one.text() == "Run again…").trigger()
+    monkeypatch.undo()
+    monkeypatch.setattr(styles, "iface", qgis_iface)
+    ((name, given),) = offered
+    assert name == "lidarbuildings:extractfootprints"
+    wanted = {"INPUT": str(town_file), "MIN_AREA": 6.5, "MERGE_TOUCHING": True, "REVIEWED": layer.id()}
+    assert given == wanted
+    load(given)
+    assert qgis_iface.messageBar().currentItem().text().endswith("Since the review: 1 kept, 0 redrawn, 0 new, 0 gone.")
+    qgis_iface.messageBar().clearWidgets()
+
+
+def test_buildings_of_two_layers_are_kept_redrawn_new_or_gone():
+    before, after = (
+        vector("Polygon", [(square(*one), [0]) for one in rows], fields="field=id:int")
+        for rows in ([(0,), (20,), (40,)], [(0,), (21, 9), (60,), (80,)])
+    )
+    assert changes_between(before, after) == {"kept": 1, "redrawn": 1, "new": 2, "gone": 1}
+
+
+def test_an_outline_that_overlaps_its_neighbor_is_told(dock, layer):
+    layer.startEditing()
+    layer.beginEditCommand("Redrawn")
+    layer.changeGeometry(2, QgsGeometry.fromWkt(square(8, 5)))
+    layer.endEditCommand()
+    dock.filter.setCurrentIndex(dock.filter.findText("All buildings"))
+    dock.go_to(listed(dock).index("2"))
+    assert dock.facts.text().endswith("Overlaps building 1: move a wall of one, or delete it.")
+    dock.review.decide(1, "deleted")
+    dock.fill()
+    assert "Overlaps" not in dock.facts.text()
 
 
 def test_reviewed_outlines_come_back_as_their_file_has_them(context, log, town_file, tmp_path):
