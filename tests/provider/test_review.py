@@ -406,7 +406,9 @@ def test_the_run_is_offered_again_with_the_decisions(dock, layer, monkeypatch, t
     assert not layer.isModified(), "the run reads what is stored"
 
 
-def test_the_run_is_offered_again_with_its_own_parameters(dock, qgis_iface, log, monkeypatch, town_file, tmp_path):
+def test_the_run_is_offered_again_with_its_own_parameters(
+    dock, provider, qgis_iface, log, monkeypatch, town_file, tmp_path
+):
     """And after it, how many buildings are others."""
     offered, context = [], QgsProcessingContext()
     processing = SimpleNamespace(execAlgorithmDialog=lambda *given: offered.append(given))
