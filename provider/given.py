@@ -25,7 +25,7 @@ class Given:
         return self.parameters.get(name) not in _NOTHING
 
     def read(self, kind: str, name: str, *more: Any) -> Any:
-        """Return a parameter as QGIS reads it: as "Extent", say, by ``parameterAsExtent``, which may ask for more."""
+        """Return a parameter as QGIS reads it, as an "Extent" say: with what its method for that asks for besides."""
         return getattr(self.algorithm, f"parameterAs{kind}")(self.parameters, name, self.context, *more)
 
     def as_text(self) -> str:
