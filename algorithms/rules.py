@@ -1,4 +1,4 @@
-"""Rules of the methods: numbers that a module's frozen dataclass holds, each with its unit and the reason for it."""
+"""Rules of the methods: numbers that a module groups under a name, each with its unit and the reason for it."""
 
 from __future__ import annotations
 
@@ -8,17 +8,25 @@ from typing import Any
 
 
 def rule(value: Any, unit: str, why: str) -> Any:
-    """Return a field of a dataclass of rules: its value, the unit, and why it is so large.
+    """Return a field of :func:`rules`: its value, the unit, and why it is so large."""
+    return dataclasses.field(default=value, metadata={"unit": unit, "why": why})
+
+
+def rules(declared: type) -> Any:
+    """Return the rules that a class declares, for its name: fields that nothing changes while it runs.
 
     Examples
     --------
-    >>> @dataclasses.dataclass(frozen=True)
-    ... class Rules:
+    >>> @rules
+    ... class EAVES:
     ...     step: float = rule(1.0, "m", "physics: lower than any eave")
-    >>> [(one.name, one.default, one.metadata["unit"]) for one in dataclasses.fields(Rules)]
-    [('step', 1.0, 'm')]
+    >>> EAVES.step
+    1.0
+    >>> [(one.name, one.metadata["unit"]) for one in dataclasses.fields(EAVES)]
+    [('step', 'm')]
     """
-    return dataclasses.field(default=value, metadata={"unit": unit, "why": why})
+    frozen: Any = dataclasses.dataclass(frozen=True)(declared)
+    return frozen()
 
 
 def rules_of(module: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:

@@ -10,7 +10,7 @@ import numpy as np
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
 from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE, nearest_points
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.sufficiency import doubted, why_doubtful
 from ..sampling.surface_noise import plane_roughness
@@ -24,15 +24,13 @@ from .surface_evidence import decide_in_images, green_clusters, without_green
 from .weakest_evidence import weakest_evidence
 
 
-@dataclass(frozen=True)
-class EntropyRules:
+@rules
+class ENTROPY:
     """Neighborhoods of entropies."""
 
     points: float = rule(1.5, "ratio", "to those that show a plane: three shares come from them, not one direction")
     points_on_lines: float = rule(1.75, "ratio", "the same on scan lines, along which neighbors say little")
 
-
-ENTROPY = EntropyRules()
 
 # Points of each cluster whose entropy is measured, about. In a cluster they scatter by 0.15: a mean of 256 is good to
 # 0.01, half of what K-means moves the threshold by.

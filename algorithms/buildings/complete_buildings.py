@@ -14,7 +14,7 @@ from ..geometry.groups import least_of, placed, ranked_by_least
 from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.kinds import IMAGES, LASER, SCENE
 from ..sampling.surface_noise import ON_PLANE
@@ -28,15 +28,12 @@ from .roof_extent import RoofExtent, amid_rough, without_vehicles
 AROUND = 30.0
 
 
-@dataclass(frozen=True)
-class CompletionRules:
+@rules
+class COMPLETION:
     """Gaps of buildings."""
 
     gap: float = rule(4.0, "point spacings", "statistics: random points hardly ever leave larger gaps in a roof")
     least_gap: float = rule(3.0, "m", "physics: ridges, gutters and skylights are narrower")
-
-
-COMPLETION = CompletionRules()
 
 
 @stage(

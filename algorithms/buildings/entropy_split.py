@@ -8,19 +8,17 @@ from typing import Callable
 import numpy as np
 
 from ..neighborhoods.covariance import shannon_entropy_lps, symmetric_eigenvalues
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor
 
 
-@dataclass(frozen=True)
-class SplitRules:
+@rules
+class SPLIT:
     """How two mean entropies are found."""
 
     weight: float = rule(10.0, "times the clusters", "chosen: clusters move a reference by a tenth of their distance")
 
-
-SPLIT = SplitRules()
 
 # Names of the two means among what parts of a cloud take of the whole.
 MEAN_ENTROPIES = ("building_entropy", "other_entropy")

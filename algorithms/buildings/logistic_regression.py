@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rules import rule
+from ..rules import rule, rules
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """How the regression is fitted."""
 
     steps: int = rule(20, "steps", "numerics: Newton's method converges in 6 to 9")
@@ -18,9 +18,6 @@ class _Rules:
         6, "decimals", "numerics: of the weights, so that rounding changes none; smaller steps end the fit"
     )
     block: int = rule(64, "rows", "numerics: products this small are computed by one thread, in one order")
-
-
-_RULES = _Rules()
 
 
 @dataclass(frozen=True)

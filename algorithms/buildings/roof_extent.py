@@ -10,22 +10,22 @@ from ..cloud.reasons import Reason
 from ..geometry.grid import EIGHT
 from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.kinds import IMAGES, MATCHING
 from ..segmentation.top_surface import TopSurface
 from ..terrain.free_standing import FREE
 from .roof_coverage import disk
 
 
-@dataclass(frozen=True)
-class ImageRoofRules:
+@rules
+class IMAGE_ROOFS:
     """Roofs and vehicles in clouds of matched images."""
 
     least_width: float = rule(1.5, "m", "physics: narrower objects are walls, railings or hedges")
 
 
-@dataclass(frozen=True)
-class VehicleRules:
+@rules
+class VEHICLES:
     """Sizes of cars and vans, with their smeared edges; buses are wider and longer."""
 
     width: float = rule(2.6, "m", "physics: the width that roads admit")
@@ -33,8 +33,6 @@ class VehicleRules:
     most_length: float = rule(7.5, "m", "physics: length of the longest van")
     height: float = rule(3.0, "m", "physics: height of the highest van")
 
-
-IMAGE_ROOFS, VEHICLES = ImageRoofRules(), VehicleRules()
 
 # Directions (radians) that the smallest rectangle around an object is looked for in.
 _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))

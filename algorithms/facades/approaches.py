@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..geometry.groups import least_of
+from ..rules import rules
 
 # Distance (m) before a wall from which points are of ground, landings and stairs: sills and cornices jut out less.
 FROM_WALL = 0.2
@@ -15,8 +14,8 @@ FROM_WALL = 0.2
 BEFORE = 1.5
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """What makes an opening a door."""
 
     # Least height (m): a person walks through. Building codes ask for 2.0 m; a rim may not be seen.
@@ -31,9 +30,6 @@ class _Rules:
     column: float = 0.15
     # Where nothing is seen before a wall, its foot is this quantile of the heights of its points.
     foot: float = 0.01
-
-
-_RULES = _Rules()
 
 
 class Approach:

@@ -9,11 +9,12 @@ import numpy as np
 
 from ..geometry.grid import distinct, grid_over
 from ..packages import spatial
+from ..rules import rules
 from .plan_segments import PlanSegments
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """Features common to both scans, and their largest displacement."""
 
     # Walls and outlines run the same way within this angle (°): regularized outlines turn by a few degrees.
@@ -43,9 +44,6 @@ class _Rules:
     least_cells: int = 20
     # Half of the range of height differences (m) that count as common ground: the range that holds most of them.
     ground: float = 0.2
-
-
-_RULES = _Rules()
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.line_segments import is_valid
+from ..rules import rules
 from ..stage import LayerFeatures
 from .facade_outline import ring_of_lines
 from .plan_segments import PlanSegments, exterior
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """Which walls are of a footprint, and how both go together."""
 
     # A wall is of the footprint within this distance (m): eaves jut out up to 1 m, recesses are 1 to 2 m deep.
@@ -35,8 +36,6 @@ class _Rules:
     # Shortest row of walls (m) that is taken: shorter ones are of porches and pillars.
     shortest: float = 1.0
 
-
-_RULES = _Rules()
 
 # An edge of a ring: a point (2,) and the way (2,) of its line, and where it began before (2,), m.
 _Line = tuple[np.ndarray, np.ndarray, np.ndarray]

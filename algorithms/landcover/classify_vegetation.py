@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple, Optional
 
 import numpy as np
@@ -13,6 +12,7 @@ from ..geometry.components import connect
 from ..geometry.groups import least_of
 from ..neighborhoods.covariance import Nearest, reduce_neighborhoods, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import Shapes
+from ..rules import rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE
 from ..stage import Monitor, stage, tunable
@@ -40,8 +40,8 @@ HEIGHTS = {
 _REACH = 2.5
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """Rules by which solid objects are recognized."""
 
     #: gap_spacings, least_gap: Points of one object are closer in plan: 2 point spacings, as clusters of the building
@@ -60,9 +60,6 @@ class _Rules:
     smooth_share: float = 0.5  #: Least share of points on smooth surfaces: most points
     #: Least ratio of the height of poles to their extent in plan: lamps with an arm have 4, trees 1 to 2
     slenderness: float = 4.0
-
-
-_RULES = _Rules()
 
 
 @stage(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
@@ -12,6 +11,7 @@ from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
 from ..geometry.groups import least_of
 from ..packages import ndimage
 from ..params import SURFACE_NOISE
+from ..rules import rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, stage, tunable
 
@@ -26,8 +26,8 @@ _DEVIATIONS = 3.0
 _REACH = 10.0
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """What water is to a laser: most pulses are reflected away from the sensor, the others return from one level."""
 
     least_cell: float = 1.0  #: Least side of the cells, m
@@ -40,9 +40,6 @@ class _Rules:
     #: Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents
     level: float = 0.15
     ring: int = 3  #: Width (cells) of the surroundings of water, and of the strip in which pulses from land hide it
-
-
-_RULES = _Rules()
 
 
 @stage(

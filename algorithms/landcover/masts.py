@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.groups import components, run_starts, split_groups
 from ..packages import spatial
+from ..rules import rules
 from .wire_spans import Span
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """What a mast is."""
 
     #: Distance from where spans end within which their mast is looked for, as a share of its height: wires hang from
@@ -29,9 +29,6 @@ class _Rules:
     #: Shares of the height between which a mast has no arms and a tree has its crown: around it there are fewer points
     #: than in it
     trunk: tuple[float, float] = (0.25, 0.65)
-
-
-_RULES = _Rules()
 
 
 def on_masts(xyz: np.ndarray, height: np.ndarray, is_wire: np.ndarray, spans: list[Span]) -> np.ndarray:

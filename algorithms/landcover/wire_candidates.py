@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,13 +10,14 @@ from ..geometry.grid import fixed_grid_over
 from ..geometry.groups import components, items, run_starts
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
+from ..rules import rules
 from ..stage import Monitor
 from ..threads import in_chunks
 from .wire_spans import RULES as SPAN
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """Where wires are looked for."""
 
     least_column: float = 1.0  #: Least side of the columns in which heights are compared, m
@@ -37,8 +37,6 @@ class _Rules:
     turn: float = 8.0  #: Largest angle (°) between directions at points of one wire
     bend: float = 0.02  #: Height over the tangent of a wire that farther points may have, as a share of their distance
 
-
-_RULES = _Rules()
 
 # Lines whose points are counted at once.
 _CHUNK = 1000

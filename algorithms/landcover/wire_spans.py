@@ -10,10 +10,11 @@ import numpy as np
 
 from ..geometry.groups import members
 from ..packages import spatial
+from ..rules import rules
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class RULES:
     """Criteria for the span of a wire, and its search."""
 
     #: tries, trials: Points from which a span is looked for along their direction, and parabolas through three points
@@ -45,9 +46,6 @@ class _Rules:
     #: Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings
     beside: float = 1.0
     line: float = 8.0  #: Distance (m) aside and in height of wires on the same masts: arms of towers are 4 to 10 m long
-
-
-RULES = _Rules()
 
 
 @dataclass(frozen=True)

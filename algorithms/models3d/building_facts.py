@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..rules import rules
 from ..stage import Field
 from .building_models import BuildingModel
 from .mending import LARGE
@@ -34,8 +35,8 @@ _LEVEL = 0.35
 _MANSARD = 12.0
 
 
-@dataclass(frozen=True)
-class Checks:
+@rules
+class CHECKS:
     """Which models are to be looked at."""
 
     #: doubtful, poor: Shares of roof points off the model: twice and five times the median building's on maps
@@ -46,8 +47,6 @@ class Checks:
     #: Share of the points of a large face that lie on it: on the other side of a half it is not the face that was seen
     weakest: float = 0.5
 
-
-CHECKS = Checks()
 
 # Quantile of the heights along the outline that is the eaves', as in 'Extract footprints': gables rise from eaves.
 _EAVE = 0.25

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,12 +12,13 @@ from ..geometry.points_in_polygons import are_within
 from ..geometry.polygons import axes_across
 from ..geometry.rings import sides_of_rings, signed_area
 from ..packages import spatial
+from ..rules import rules
 from .face_triangles import triangulate_face
 from .solids import Ring, Solid, edges_around, groups_of
 
 
-@dataclass(frozen=True)
-class Rules:
+@rules
+class RULES:
     """How exact a solid has to be."""
 
     #: Corners lie no farther off the plane of their face than this (m): the default of val3dity
@@ -30,9 +30,6 @@ class Rules:
     #: within a millimeter
     apart: float = 0.001
     folded: float = 0.1  #: Faces that share an edge are at least this far (°) from lying on each other
-
-
-RULES = Rules()
 
 
 def fault_of(solid: Solid) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
@@ -11,7 +10,7 @@ from ..cloud.asprs import PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..packages import spatial
 from ..params import MIN_FREQUENCY
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
@@ -20,15 +19,12 @@ from .height_histograms import AUTOMATIC_BIN, Histogram, automatic_bin_height, p
 from .points_under_ground import UNDER_GROUND, under_ground
 
 
-@dataclass(frozen=True)
-class HistogramRules:
+@rules
+class HISTOGRAM:
     """What a gap in a histogram parts from the scene."""
 
     points_per_cell: int = rule(450, "points", "statistics: with the cells around, some 4000 points make a histogram")
     gap: int = rule(2, "bins", "physics: empty ones; chimneys, treetops and rock faces leave no such gap")
-
-
-HISTOGRAM = HistogramRules()
 
 
 @stage(

@@ -14,7 +14,7 @@ import numpy as np
 from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over
 from ..geometry.groups import mask_of, ordered
 from ..packages import spatial
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..sampling.surface_noise import SURFACES
@@ -22,15 +22,12 @@ from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 
 
-@dataclass(frozen=True)
-class UnderGroundRules:
+@rules
+class UNDER_GROUND:
     """Points under the ground, and which of them are a floor."""
 
     depth: float = rule(0.45, "m", "physics: ground, grass, ruts and floors differ by less from cell to cell")
     few: int = rule(3, "points", "physics: at one height, as of a lamp or a wire; under the ground, more are a floor")
-
-
-UNDER_GROUND = UnderGroundRules()
 
 
 def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor) -> np.ndarray:

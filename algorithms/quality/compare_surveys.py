@@ -11,6 +11,7 @@ from ..geometry.groups import components, split_groups
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
+from ..rules import rules
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
 from .building_maps import (
     BuildingMap,
@@ -33,8 +34,8 @@ COLORS = {UNCHANGED: BLUE, HEIGHT: "#66ccee", OUTLINE: "#228833", BOTH: "#aa3377
 _HEIGHTS = ("ridge_height", "height")
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class RULES:
     """How changes are distinguished from the scatter between two surveys.
 
     Attributes
@@ -58,8 +59,6 @@ class _Rules:
     most_height: float = 3.0
     wall: float = 0.5
 
-
-RULES = _Rules()
 
 _BUILDINGS = Layer(
     "buildings",

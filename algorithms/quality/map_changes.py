@@ -13,6 +13,7 @@ from ..geometry.polygon_overlap import as_polygons, meeting_boxes
 from ..models3d.model_inputs import by_easting
 from ..packages import spatial
 from ..report.charts import BLUE, GRAY, RED, YELLOW
+from ..rules import rules
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Monitor
 from .building_maps import BuildingMap, measure_overlap
@@ -41,8 +42,8 @@ OLD, BUILT = "old", "built"
 Label = tuple[str, int]
 
 
-@dataclass(frozen=True)
-class Rules:
+@rules
+class RULES:
     """How changes are distinguished from errors of the map and of the survey."""
 
     step: float = 0.25  #: Step of the lattice on which both maps are compared, m: finer than any change
@@ -59,9 +60,6 @@ class Rules:
     low: float = 1.0  #: Points up to this height (m) above the ground nearest to them show that no roof is there
     rise: float = 1.0  #: Roofs that rose or fell by more in the median (m) were heightened or lowered
     reach: float = 2.0  #: Points show the surroundings up to this multiple of their distance
-
-
-RULES = Rules()
 
 
 @dataclass

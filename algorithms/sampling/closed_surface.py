@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..geometry.grid import find_cells, grid_over
-from ..rules import rule
+from ..rules import rule, rules
 from .kinds import LASER
 
 
-@dataclass(frozen=True)
-class ClosedSurfaceRules:
+@rules
+class CLOSED:
     """Where a cloud is seen through."""
 
     least_spacing: float = rule(0.25, "m", "least; in denser clouds cells would be as small as details of surfaces")
     cell: float = rule(3.0, "point spacings", "statistics: nine points share a cell")
-
-
-CLOSED = ClosedSurfaceRules()
 
 
 def seen_through_share(xyz: np.ndarray, spacing: float) -> float:

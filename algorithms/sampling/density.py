@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import distinct, grid_over, plan_box
-from ..rules import rule
+from ..rules import rule, rules
 from .height_resolution import LEAST_RESOLUTION
 
 
-@dataclass(frozen=True)
-class DensityRules:
+@rules
+class DENSITY:
     """How the area is measured that points occupy."""
 
     points_per_cell: float = rule(5.0, "points", "statistics: random points leave one such cell in 150 empty")
@@ -27,9 +26,6 @@ class DensityRules:
     most_spacing: float = rule(
         2.0, "ratio", "of effective to mean spacing; beyond it dense parts are seen too coarsely"
     )
-
-
-DENSITY = DensityRules()
 
 
 def point_density(xyz: np.ndarray) -> float:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..rules import rule
+from ..rules import rule, rules
 
 
-@dataclass(frozen=True)
-class HeightRules:
+@rules
+class HEIGHTS:
     """How coarsely heights are rounded."""
 
     least: float = rule(0.01, "m", "files keep a centimeter; smaller deviations can not be distinguished from zero")
@@ -19,7 +17,6 @@ class HeightRules:
     even: float = rule(0.01, "share", "of the median step; at least half of all steps differ from it by no more")
 
 
-HEIGHTS = HeightRules()
 LEAST_RESOLUTION = HEIGHTS.least
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeVar
 
-from ..rules import rule
+from ..rules import rule, rules
 
 Choice = TypeVar("Choice")
 
@@ -32,15 +32,15 @@ class CloudKind:
         return images if self.is_surface else laser
 
 
-@dataclass(frozen=True)
-class MatchingRules:
+@rules
+class MATCHING:
     """What matching does to clouds of images."""
 
     rounded: float = rule(0.7, "m", "physics: images are matched by windows as large, which round edges of roofs")
 
 
-@dataclass(frozen=True)
-class SceneRules:
+@rules
+class SCENE:
     """What any cloud shows of a scene."""
 
     ground_within: float = rule(10.0, "m", "physics: distance within which some ground is seen, even among trees")
@@ -54,4 +54,3 @@ LASER = CloudKind(is_surface=False)
 # Sheds and carports of 2 m have rounded edges, which lower the mean over their surface; cars differ by shape.
 # Walls are seen down to their feet, and ground is smooth.
 IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, foot=0.2)
-MATCHING, SCENE = MatchingRules(), SceneRules()

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import Grid, distinct, grid_over
-from ..rules import rule
+from ..rules import rule, rules
 from .cloud_sampling import CloudSampling, without_noise
 from .density import DENSITY
 
 
-@dataclass(frozen=True)
-class SufficiencyRules:
+@rules
+class SUFFICIENCY:
     """What a cloud has that shows buildings."""
 
     density: float = rule(0.5, "points/m²", "measured on three towns: mean F 95 at 4, 92 at 1, 88 at 0.5, 83 at 0.35")
@@ -22,9 +20,6 @@ class SufficiencyRules:
     ground: float = rule(0.1, "share", "of cells with ground; dense forest has 0.25, the densest town 0.45")
     void: float = rule(0.3, "share", "of empty cells by occupied ones: up to 0.14 in surveys, 0.14 to 0.53 in roofs")
     doubt: float = rule(0.3, "share", "of a confidence above 0.5 that is left: no building is sure")
-
-
-SUFFICIENCY = SufficiencyRules()
 
 
 def why_doubtful(xyz: np.ndarray, classification: np.ndarray, sampling: CloudSampling) -> str:

@@ -14,14 +14,14 @@ from ..geometry.tin import PLANE_POINTS
 from ..neighborhoods.covariance import Nearest, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import LEAST_WIDTH, MOST_ACROSS_LINES, Wide
 from ..packages import spatial, special
-from ..rules import rule
+from ..rules import rule, rules
 from ..stage import Monitor
 from ..threads import in_chunks, n_threads
 from .density import point_spacing
 
 
-@dataclass(frozen=True)
-class SurfaceRules:
+@rules
+class SURFACES:
     """What shows the noise of surfaces, and how rough roofs and walls are."""
 
     sample: int = rule(20_000, "points, or cells", "statistics: quantiles of as many are good to a percent")
@@ -46,7 +46,6 @@ class SurfaceRules:
     on_plane: float = rule(2.33, "deviations", "statistics: 98 % of normally distributed points lie as near to a plane")
 
 
-SURFACES = SurfaceRules()
 ON_PLANE, LEAST_NEIGHBORS = SURFACES.on_plane, SURFACES.least_neighbors
 ROUGHNESS_OF_SPACING = SURFACES.roughness_of_spacing
 

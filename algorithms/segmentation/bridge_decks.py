@@ -12,7 +12,7 @@ from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import items, placed, run_starts
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.closed_surface import CLOSED
 from ..sampling.kinds import LASER
 from ..stage import Monitor
@@ -22,8 +22,8 @@ from ..threads import made_ahead
 from .scan_line_pieces import NearPoints, ends_of, pieces_of_lines, slices
 
 
-@dataclass(frozen=True)
-class DeckRules:
+@rules
+class DECK:
     """Rules by which decks of bridges are recognized."""
 
     directions: int = rule(8, "", "geometry: one of the lines crosses each bridge within 12° of its shortest section")
@@ -46,9 +46,6 @@ class DeckRules:
     least_cell: float = rule(1.0, "m", "least side of cells, and distance from an edge within which a bank shows")
     slope: float = rule(15.0, "°", "of sections and roads, fitted on canals: at 30° F is 34 to 59 instead of 80 to 95")
     noise_step: float = rule(4.0, "standard deviations", "statistics: largest difference in height that is noise")
-
-
-DECK = DeckRules()
 
 
 @dataclass(frozen=True)

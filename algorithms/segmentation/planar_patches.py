@@ -12,23 +12,20 @@ from ..geometry.groups import placed
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import Wide
 from ..packages import csgraph, sparse, spatial
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 
 
-@dataclass(frozen=True)
-class PatchRules:
+@rules
+class PATCHES:
     """When neighbors share a smooth surface; deviations are distances of points from planes."""
 
     same_surface: float = rule(
         3.5, "deviations", "statistics: points and planes of a surface, each with their own error"
     )
     same_direction: float = rule(15.0, "°", "between normals of one surface, whose errors are a few degrees")
-
-
-PATCHES = PatchRules()
 
 
 @dataclass

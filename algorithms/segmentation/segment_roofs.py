@@ -14,7 +14,7 @@ from ..geometry.components import connect, number_large
 from ..geometry.groups import placed
 from ..neighborhoods.covariance import Nearest
 from ..params import POINT_DENSITY, POINT_SOURCE, SURFACE_NOISE
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.density import DENSITY
 from ..sampling.kinds import IMAGES, LASER
@@ -26,8 +26,8 @@ from .planar_patches import segment_patches
 from .top_surface import TopSurface, highest_of_cells
 
 
-@dataclass(frozen=True)
-class RoofSurfaceRules:
+@rules
+class SURFACE:
     """Criteria of a roof surface."""
 
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
@@ -38,14 +38,11 @@ class RoofSurfaceRules:
     )
 
 
-@dataclass(frozen=True)
-class ImageSurfaceRules:
+@rules
+class IMAGE_SURFACE:
     """Planes in clouds of matched images."""
 
     cell: float = rule(0.15, "m", "one point of each is taken: as dense as planes need, which bounds time and memory")
-
-
-SURFACE, IMAGE_SURFACE = RoofSurfaceRules(), ImageSurfaceRules()
 
 
 @stage(

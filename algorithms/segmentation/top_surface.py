@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..geometry.grid import distinct, fixed_grid_over, raster_cells, refuse_sparse
 from ..geometry.groups import least_of, topmost
 from ..packages import ndimage
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.closed_surface import CLOSED
 
 
-@dataclass(frozen=True)
-class TopSurfaceRules:
+@rules
+class TOP:
     """The surface seen from above, in cells."""
 
     cell: float = rule(1.2, "point spacings", "statistics: cells hold a point nearly everywhere")
     filled: float = rule(2.0, "cells", "up to which empty cells take the height of the nearest one")
-
-
-TOP = TopSurfaceRules()
 
 
 class TopSurface:

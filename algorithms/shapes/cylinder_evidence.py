@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..rules import rules
 from .cylinder_fits import SECTORS, Cylinder, bends
 
 # Largest angle between the normal of a point on a cylinder and the direction away from the axis, as its cosine. It is
@@ -16,8 +17,8 @@ FACING = float(np.cos(np.radians(30.0)))
 MOST_LOOKED_AT = 1500
 
 
-@dataclass(frozen=True)
-class _Rules:
+@rules
+class _RULES:
     """What points on a cylinder have in common."""
 
     #: Least share of the points within the tolerance, of those that face the axis within twice the tolerance. It is
@@ -49,9 +50,6 @@ class _Rules:
     length: float = 1.5  #: Least length (diameters): shorter pieces cannot be distinguished from elbows
     short: float = 0.3  #: Least length (diameters) of wide ones: shorter pieces cannot be distinguished from spheres
     long_enough: float = 1.0  #: Length (m) that is enough unless ``short`` asks for more: of tanks less may be seen
-
-
-_RULES = _Rules()
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import POINT_SOURCE
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
@@ -18,8 +17,8 @@ from .smeared_objects import on_no_object, on_smeared_objects
 from .tin_densification import DENSIFICATION, JoinRules, Surface, grow, surface_roughness
 
 
-@dataclass(frozen=True)
-class GroundRules:
+@rules
+class GROUND:
     """How points of the ground join its surface, and lie near it."""
 
     bend: float = rule(0.5, "point spacings", "by which the surface may bend between points")
@@ -33,8 +32,6 @@ class GroundRules:
         30.0, "°", "physics: iteration angle in nature, where breaks are steeper and objects fewer"
     )
 
-
-GROUND = GroundRules()
 
 # Name of what parts of a cloud take of the whole: the roughness (m) of the finished surface.
 _ROUGHNESS = "surface_roughness"

@@ -10,13 +10,13 @@ import numpy as np
 from ..geometry.adjacent_cells import adjacent_cells
 from ..geometry.groups import components
 from ..packages import ndimage
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.kinds import LASER
 from ..stage import Monitor
 
 
-@dataclass(frozen=True)
-class FreeStandingRules:
+@rules
+class FREE:
     """Steps at the edge of a segment that make it a building."""
 
     step: float = rule(1.0, "m", "physics: least height of a step, lower than any eave")
@@ -27,9 +27,6 @@ class FreeStandingRules:
         0.5, "share", "majority of steps, of the edge of a part, region or machine, or of the cells of a crest"
     )
     least_cells: int = rule(4, "cells", "of a segment; smaller ones are undecided, as rough cells are")
-
-
-FREE = FreeStandingRules()
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from ..geometry.groups import least_of
 from ..geometry.raster_filling import nearest_known
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.kinds import MATCHING, SCENE
 from ..stage import Monitor
 from ..threads import made_ahead
@@ -20,8 +20,8 @@ from .free_standing import find_free_standing
 from .removed_objects import ObjectRemoval
 
 
-@dataclass(frozen=True)
-class SeedRules:
+@rules
+class SEEDS:
     """Which lowest points are seeds of the ground."""
 
     pit_slope: float = rule(5.0, "tangent", "physics: sides of pits of multipath, 5 m deep in a cell of 1 m")
@@ -29,8 +29,6 @@ class SeedRules:
     most_turned: float = rule(2.5, "ratio", "of the box of a turned cloud to its own; narrow strips have more")
     grids: int = rule(3, "grids of cells", "turned, decide together: on bushes it matters which points share a cell")
 
-
-SEEDS = SeedRules()
 
 # Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
 USUAL_BUILDING = 60.0

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.density import DENSITY
 from ..sampling.surface_noise import LEAST_NEIGHBORS
 
 
-@dataclass(frozen=True)
-class DeckRules:
+@rules
+class DECK:
     """Objects on the deck of a bridge."""
 
     hidden: float = rule(
@@ -25,9 +24,6 @@ class DeckRules:
         0.25, "m", "crown, camber and railings: how far objects reach below a deck, and how wide its side is in plan"
     )
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
-
-
-DECK = DeckRules()
 
 
 def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.rough) -> tuple[np.ndarray, np.ndarray]:

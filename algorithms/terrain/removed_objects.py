@@ -15,13 +15,13 @@ from ..geometry.adjacent_cells import adjacent_cells
 from ..geometry.raster_filling import filled_by_means
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
-from ..rules import rule
+from ..rules import rule, rules
 from ..stage import Monitor
 from .free_standing import FREE, smooth_segments
 
 
-@dataclass(frozen=True)
-class RemovalRules:
+@rules
+class REMOVAL:
     """How steep terrain may be, and what joins it."""
 
     step: float = rule(0.1, "m", "physics: terrain has kerbs, ruts and tussocks as high within any window")
@@ -40,9 +40,6 @@ class RemovalRules:
         "m",
         "physics: standard deviation of the smoothing of surfaces, half as much as of slopes; bushes are as wide",
     )
-
-
-REMOVAL = RemovalRules()
 
 
 @dataclass(frozen=True)

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.density import DENSITY
 from ..sampling.kinds import LASER, SCENE
 from .free_standing import FREE
 
 
-@dataclass(frozen=True)
-class SmearedRules:
+@rules
+class SMEARED:
     """Small objects with smeared walls in matched images."""
 
     width: float = rule(
         4.5, "m", "physics: narrower raised surfaces are objects: a shed of 3 m, walls smeared over 0.7 m"
     )
-
-
-SMEARED = SmearedRules()
 
 
 def on_no_object(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:

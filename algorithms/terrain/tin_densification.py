@@ -10,14 +10,14 @@ import numpy as np
 from ..geometry.grid import plan_box
 from ..geometry.tin import Tin, node_residuals, robust_deviation
 from ..packages import spatial
-from ..rules import rule
+from ..rules import rule, rules
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor
 
 
-@dataclass(frozen=True)
-class DensificationRules:
+@rules
+class DENSIFICATION:
     """Constants of all ground filters that grow a TIN."""
 
     deviations: float = rule(
@@ -25,9 +25,6 @@ class DensificationRules:
     )
     node_distance: float = rule(0.25, "share", "of the edge length: nearer points make slivers and add no information")
     least_growth: float = rule(0.005, "share", "of the nodes that a round must add to have another one after it")
-
-
-DENSIFICATION = DensificationRules()
 
 
 @dataclass(frozen=True)

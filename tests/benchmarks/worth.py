@@ -244,7 +244,9 @@ def constants(
 
 
 def _assigned(node: ast.stmt) -> list[str]:
-    """Return the names that a statement assigns to, none where it gives another name to a constant."""
+    """Return the names that a statement assigns to, or that of rules; none where it renames a constant."""
+    if isinstance(node, ast.ClassDef):
+        return [node.name]
     if isinstance(getattr(node, "value", None), (ast.Attribute, ast.Tuple)) and not any(
         isinstance(part, (ast.Constant, ast.Call)) for part in ast.walk(node.value)
     ):
