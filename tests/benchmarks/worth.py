@@ -43,6 +43,7 @@ from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: 
 from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.stage import Param  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, ROOT, Table  # noqa: E402
 from lidar_buildings.tests.real.clouds import (  # noqa: E402
@@ -239,6 +240,8 @@ def constants(
         named = [target for node in tree.body for target in _assigned(node) if target.strip("_").isupper()]
         for name in dict.fromkeys(named):
             value = vars(loaded)[name]
+            if isinstance(value, Param):
+                continue  # Shared tunables are moved as those of the steps.
             found += [(f"{short}:{name}", value, part) for part in _numbers(value)]
     return found
 
