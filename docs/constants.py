@@ -58,7 +58,7 @@ def _page(title: str, parts: list[tuple[str, list[str]]], rooms: tuple[str, ...]
 
 
 def _parts(pipeline: Pipeline) -> list[tuple[str, list[str]]]:
-    """Return the parts of the page: what is measured on the cloud first, then the stages in their order."""
+    """Return the parts of the page: measurements on the cloud first, then the stages in their order."""
     stages = {step.stage.name: step.stage for step in pipeline.steps}
     return [
         ("Sampling", _modules_of("sampling")),

@@ -140,7 +140,7 @@ def _check_database(value: Any) -> None:
 
 
 def _check_target(definition, path: Path, inputs: list) -> None:
-    """Refuse a file that an output can't be written to, by its extension, its folder and what is read."""
+    """Refuse a file that an output can't be written to, by its extension, its folder and the inputs."""
     if _is_cloud(definition):
         check_output(path, inputs)
         # The last step of a model reads the output of the step before, so it can't know the model's input.

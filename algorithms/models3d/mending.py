@@ -298,7 +298,7 @@ class _Mending:
                 self._cut_off_at(corners)
 
     def _cut_off_at(self, corners: np.ndarray) -> None:
-        """Cut off what is too high at some corners, and give it another plane."""
+        """Cut off parts that are too high at some corners, and give it another plane."""
         for corner in corners.tolist():
             for cell in self._high_at(corner):
                 if cell in self._high_at(corner):

@@ -141,8 +141,8 @@ class _Surface:
         """Fit the surface around the ``wanted`` cells (positions in ``cells``).
 
         ``lowest`` and ``middle`` are the points of each cell at these ranks in height. Up to three neighbors may hold
-        companions of a low point; most points of such a cell are on the surface, though, unlike the points of a cell
-        beyond an edge or farther along a ditch.
+        companions of a low point. Most points of such a cell are on the surface, though; in a cell beyond an edge or
+        farther along a ditch they are not.
         """
 
         def work(part: np.ndarray) -> None:

@@ -295,7 +295,7 @@ def _table(true: BuildingMap, new: BuildingMap, match: _Match, corners: MatchedC
         "hausdorff": np.append(_distances(hausdorff, true, new, match.best, monitor), nothing),
         "polis": np.append(_distances(polis, true, new, match.best, Monitor()), nothing),
         "corners": np.append(counts, counts_of_new[invented]),
-        # What is appended is the last value, which buildings without a counterpart take: their best is -1.
+        # The value appended is the last one, which buildings without a counterpart take: their best is -1.
         "counterpart_corners": np.append(np.append(counts_of_new, 0)[match.best], zero),
         "matched": np.append(matched, zero),
         "corner_distance": np.append(distance, nothing),

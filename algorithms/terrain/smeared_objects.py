@@ -44,7 +44,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     The lowest ground points of cells are opened with a window of ``SMEARED.width`` m. Planes of any slope and plateaus
     wider than the window stay as they are. Sheds are removed, and so is the ring of ground points on the smeared walls
     of a house, since no window is centered on its roof. Ridges and dikes narrower than the window rise above the
-    opened surface as well: what is longer than two windows stays, except for such rings.
+    opened surface as well: objects longer than two windows stay, except for such rings.
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)

@@ -23,7 +23,7 @@ from .processes import FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
 # Seconds between two checks for a cancellation by the user.
 _BETWEEN_LOOKS = 0.5
 
-# Seconds between two messages about what is done or waited for.
+# Seconds between two messages about tasks that are done or waited for.
 BETWEEN_MESSAGES = 10.0
 
 # Seconds that a scheduler has to answer.
@@ -184,7 +184,7 @@ def run_all(
     stop : Path
         A file by which running work stops; it is made when the user cancels.
     monitor : Monitor
-        Receives the share of tasks that are done, and what is waited for where none is done for a while.
+        Receives the share of tasks that are done, and the tasks waited for where none is done for a while.
     on_done : callable
         Is called with the position of every task that is done.
 
