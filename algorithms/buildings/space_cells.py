@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..geometry.groups import placed
 from ..geometry.sparse_voxels import neighbor_pairs, voxelize
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..packages import sparse
@@ -44,8 +45,7 @@ class SpaceCells:
     def around(self, chosen: np.ndarray) -> Any:
         """Return a sparse matrix (k, m): 1 for each of the cells ``chosen`` (k,) and the up to 26 that touch it."""
         one, other, _ = neighbor_pairs(self.voxels, 26)
-        row = np.full(len(self.count), -1, np.int32)
-        row[chosen] = np.arange(len(chosen))
+        row = placed(np.arange(len(chosen), dtype=np.int32), chosen, len(self.count), -1)
         pairs = [(row[chosen], chosen)]
         for own, beside in ((one, other), (other, one)):
             is_own = row[own] >= 0

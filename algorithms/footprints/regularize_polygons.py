@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.grid import plan_box
 from ..geometry.kept_areas import welded, with_areas
-from ..geometry.line_segments import nearest_edge_distances
+from ..geometry.line_segments import distances_to_rings
 from ..geometry.points_in_polygons import are_within
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.ring_directions import deviations
@@ -269,5 +269,4 @@ def _shares(rings: list, spacing: float) -> Shares:
 
 def _farthest(new: list, old: list) -> float:
     """Return the greatest distance (m) of a new outline from the old one."""
-    start, end = np.moveaxis(sides_of_rings(old), 1, 0)
-    return float(nearest_edge_distances(sampled_rings(new, LEAST_SPACING), start, end).max())
+    return float(distances_to_rings(sampled_rings(new, LEAST_SPACING), old).max())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .rings import signed_area
+from .rings import sides_of_rings, signed_area
 
 # Pairs of segments or of points and segments that are compared at once.
 _PAIRS_AT_ONCE = 1_000_000
@@ -80,6 +80,12 @@ def nearest_edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndar
     for low in range(0, len(points), step):
         nearest[low : low + step] = edge_distances(points[low : low + step], starts, ends).min(axis=1)
     return nearest
+
+
+def distances_to_rings(points: np.ndarray, rings: list) -> np.ndarray:
+    """Return the distances (n,), m, of points (n, 2) from the nearest side of rings."""
+    starts, ends = np.moveaxis(sides_of_rings(rings), 1, 0)
+    return nearest_edge_distances(points, starts, ends)
 
 
 def edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:

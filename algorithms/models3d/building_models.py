@@ -9,7 +9,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.groups import components, placed
-from ..geometry.line_segments import nearest_edge_distances
+from ..geometry.line_segments import distances_to_rings
 from .mending import LARGE, mended
 from .roof_partition import FARTHEST, Partition, covered_share, divide_footprint, empty_partition
 from .roof_planes import RoofPlanes, find_roof_planes, selected_planes, with_level_patches
@@ -266,8 +266,7 @@ def _describe(model: BuildingModel, top: _Top, partition: Partition, above: np.n
     inside = partition.label >= 0
     area = np.bincount(partition.label[inside], partition.cells.areas()[inside])
     model.face_on = {plane: _explained(off, top) for plane, off in off_of.items() if len(off)}
-    sides = np.concatenate([np.stack([ring[:-1], ring[1:]]) for ring in top.rings], axis=1)
-    on_rim = over & ~top.is_low & (nearest_edge_distances(top.xyz[:, :2], *sides) <= _RIM)
+    on_rim = over & ~top.is_low & (distances_to_rings(top.xyz[:, :2], top.rings) <= _RIM)
     model.face_parapet = {plane: _parapet(above[on_rim & (label == plane)]) for plane in off_of}
     model.weakest = min((on for plane, on in model.face_on.items() if area[plane] >= LARGE), default=1.0)
 

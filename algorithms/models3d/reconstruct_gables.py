@@ -283,10 +283,10 @@ def _model(number: int, house: House) -> NamedModel:
 
 
 def _features(houses: list[House]) -> LayerFeatures:
-    columns: dict[str, list] = {field.name: [] for field in GABLE_FIELDS}
-    geometries = []
+    geometries, table = [], []
     for number, house in enumerate(houses, start=1):
         own = house.vertices
+        of_house = (*own[:6, :2].ravel().tolist(), *own[[0, 2, 6], 2].tolist(), house.rms)
         faces = [(kind, face) for kind, all_faces in FACES.items() for face in all_faces]
         for k, (kind, face) in enumerate(faces, start=1):
             ring = own[[vertex - 1 for vertex in (*face, face[0])]]
@@ -294,7 +294,5 @@ def _features(houses: list[House]) -> LayerFeatures:
             size = float(np.linalg.norm(normal))
             slope = float(np.degrees(np.arccos(np.clip(abs(normal[2]) / size, 0, 1))))
             geometries.append([ring])
-            values = number, k, kind, size, slope, *own[:6, :2].ravel().tolist(), *own[[0, 2, 6], 2].tolist(), house.rms
-            for name, value in zip(columns, values):
-                columns[name].append(value)
-    return LayerFeatures(geometries, columns)
+            table.append((number, k, kind, size, slope, *of_house))
+    return LayerFeatures(geometries, {field.name: [row[i] for row in table] for i, field in enumerate(GABLE_FIELDS)})

@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.groups import components, split_groups
+from ..geometry.line_segments import distances_to_rings
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
@@ -22,7 +23,7 @@ from .building_maps import (
     refuse_elsewhere,
     rounded_down,
 )
-from .polygon_comparison import distances_from, positions_along
+from .polygon_comparison import positions_along
 
 UNCHANGED, HEIGHT, OUTLINE, BOTH = "unchanged", "height changed", "outline changed", "height and outline changed"
 NEW, GONE = "new", "gone"
@@ -277,9 +278,9 @@ def _farthest(buildings: list, others: list) -> float:
         positions = positions_along(building)
         neighbors = [ring for other in buildings[:row] + buildings[row + 1 :] for ring in other]
         if neighbors:
-            positions = positions[distances_from(positions, neighbors) > RULES.wall]
+            positions = positions[distances_to_rings(positions, neighbors) > RULES.wall]
         if len(positions):
-            off = max(off, float(distances_from(positions, rings).max()))
+            off = max(off, float(distances_to_rings(positions, rings).max()))
     return off
 
 

@@ -119,15 +119,10 @@ def match_corners(
     """
     one, other, distance = nearest_corners(old, new, same, shift, max(FARTHEST, tolerance or 0.0))
     if tolerance is None:
-        tolerance = automatic_tolerance(distance)
+        tolerance = float(np.clip(_MEDIANS * typical_distance(distance), _LEAST_TOLERANCE, FARTHEST))
         monitor.resolved(tolerance=tolerance)
     near = distance <= tolerance
     return MatchedCorners(old, new, one[near], other[near])
-
-
-def automatic_tolerance(distance: np.ndarray) -> float:
-    """Return the distance (m) up to which nearest corners are the same, from the distances of all of these."""
-    return float(np.clip(_MEDIANS * typical_distance(distance), _LEAST_TOLERANCE, FARTHEST))
 
 
 def typical_distance(distance: np.ndarray) -> float:

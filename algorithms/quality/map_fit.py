@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, split_groups
 from ..geometry.line_segments import is_valid
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import Polygons
@@ -72,9 +72,8 @@ def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
     position, outward, building = _outer(old.polygons)
     there, normal, _ = _outer(new.polygons)
     walls = _Walls(position, outward, group[building], count, spatial.cKDTree(there), there, normal)
-    first, _ = walls.fit(np.zeros(3))
-    usual = np.median(first, axis=0)
-    fits, _ = walls.fit(usual)
+    usual = np.median(walls.fit(np.zeros(3)), axis=0)
+    fits = walls.fit(usual)
     # A building that shifts and has another overhang was not misdrawn: a part of it was built or torn down.
     fits[:, 2] = usual[2]
     off, found = walls.deviations(fits)
@@ -139,8 +138,8 @@ class _Walls:
     there: np.ndarray  #: (q, 2): these, m
     normal: np.ndarray  #: (q, 2): unit vectors out of these walls
 
-    def fit(self, usual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return shift east and north and overhang (groups, 3), m, of each group, and the distances (p,) after that.
+    def fit(self, usual: np.ndarray) -> np.ndarray:
+        """Return shift east and north and overhang (groups, 3), m, of each group.
 
         ``usual`` (3,) holds where its walls do not show it.
         """
@@ -160,7 +159,7 @@ class _Walls:
             right += total[:, None] * _USUAL * (usual - fits)
             matrix += total[:, None, None] * np.diag(_USUAL)
             fits = fits + np.linalg.solve(matrix, right[..., None])[..., 0]
-        return fits, self._apart(fits)
+        return fits
 
     def _apart(self, fits: np.ndarray) -> np.ndarray:
         """Return how far (p,), m, new walls lie outside of the shifted ones, NaN where none is found."""
@@ -178,8 +177,7 @@ class _Walls:
         off = np.abs(self._apart(fits) - fits[self.group, 2])
         found = np.isfinite(off)
         median = np.full(self.count, np.nan)
-        order = np.argsort(self.group, kind="stable")
-        for number, rows in enumerate(np.split(order, np.searchsorted(self.group[order], np.arange(1, self.count)))):
+        for number, rows in enumerate(split_groups(self.group, self.count)):
             median[number] = np.median(np.where(found[rows], off[rows], _FARTHEST)) if len(rows) else np.nan
         size = np.maximum(np.bincount(self.group, minlength=self.count), 1)
         return median, np.bincount(self.group, found, self.count) / size

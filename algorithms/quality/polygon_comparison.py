@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.line_segments import nearest_edge_distances
+from ..geometry.line_segments import distances_to_rings
 from ..geometry.ring_directions import along_two_directions
-from ..geometry.rings import sampled_rings, sides_of_rings
+from ..geometry.rings import sampled_rings
 
 # Step (m) of the samples between which the distance of two outlines is measured: below the accuracy of outlines.
 _STEP = 0.1
@@ -21,18 +21,12 @@ def polis(first: list[np.ndarray], second: list[np.ndarray]) -> float:
     """Return the mean distance (m) of the vertices of polygons from the other's outline, in the mean of both ways."""
     ways = (first, second), (second, first)
     return float(
-        np.mean([distances_from(np.concatenate([ring[:-1] for ring in one]), other).mean() for one, other in ways])
+        np.mean([distances_to_rings(np.concatenate([ring[:-1] for ring in one]), other).mean() for one, other in ways])
     )
 
 
 def _farthest(rings: list[np.ndarray], others: list[np.ndarray]) -> float:
-    return float(distances_from(positions_along(rings), others).max())
-
-
-def distances_from(positions: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
-    """Return the distances (n,), m, of positions (n, 2) from rings."""
-    starts, ends = np.moveaxis(sides_of_rings(rings), 1, 0)
-    return nearest_edge_distances(positions, starts, ends)
+    return float(distances_to_rings(positions_along(rings), others).max())
 
 
 def positions_along(rings: list[np.ndarray]) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..buildings.roof_extent import amid_rough
 from ..cloud.asprs import NOISE
-from ..geometry.groups import mask_of
+from ..geometry.groups import mask_of, placed
 from ..packages import ndimage, spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.cluster_measures import plan_areas
@@ -58,10 +58,10 @@ def bent_roofs(
     # With the westernmost and the southernmost point, cells begin where they do in the whole cloud.
     is_near[np.argmin(xyz[:, :2], axis=0)] = True
     near = np.flatnonzero(is_near)
-    segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[near] = segment_roofs(
+    found = segment_roofs(
         xyz[near], classification[near], height[near], source="matched images", sampling=sampling, monitor=monitor
     )[0]
+    segment_id = placed(found, near, len(xyz))
     return np.where(amid_rough(surface, xyz, segment_id), 0, segment_id)
 
 

@@ -7,7 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.groups import ranked_by_least
+from ..geometry.groups import placed, ranked_by_least
 from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import plan_areas
@@ -113,8 +113,7 @@ def classify_roofs(
     is_roof = _is_on_roof(segment_id, height_above_ground, min_height) & ~np.isin(classification, NOISE)
     roof = np.flatnonzero(is_roof)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
-    cluster_id = np.zeros(len(xyz), np.int32)
-    cluster_id[roof] = _clusters(xyz[roof], gap, min_area, density, monitor.part(0, 0.5))
+    cluster_id = placed(_clusters(xyz[roof], gap, min_area, density, monitor.part(0, 0.5)), roof, len(xyz))
     if sampling.is_closed_surface(source) and cluster_id.any():
         bent = bent_roofs(xyz, classification, height_above_ground, cluster_id, sampling, monitor.part(0.5, 0.9))
         is_bent = _is_on_roof(bent, height_above_ground, min_height) & (cluster_id == 0)

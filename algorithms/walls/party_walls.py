@@ -7,7 +7,7 @@ import numpy as np
 from ..footprints.outline_pieces import pieces_alone
 from ..footprints.row_houses import split_row
 from ..footprints.soft_shares import spread_out
-from ..geometry.groups import ranked_by_least
+from ..geometry.groups import placed, ranked_by_least
 from ..segmentation.top_surface import highest_of_cells
 from ..stage import Monitor
 
@@ -57,9 +57,7 @@ def split_blocks(
         house[mine] = np.where(part > 1, count + part - 1, number)
         count += int(part.max()) - 1
         monitor.progress((done + 1) / len(buildings))
-    result = np.zeros_like(cluster_id)
-    result[own] = ranked_by_least(xyz[own, 0], house)
-    return result
+    return placed(ranked_by_least(xyz[own, 0], house), own, len(cluster_id))
 
 
 def _houses_at(plan: np.ndarray, height: np.ndarray, positions: np.ndarray, spacing: float) -> np.ndarray:
