@@ -10,7 +10,8 @@ from typing import Optional
 from .captions import captions
 from .cloud.dimensions import DIMENSIONS
 from .pipeline import Output, Pipeline, Step
-from .stage import REFERENCE_PREFIX, VALUES, Field, InputLayer, Layer, Raster, Stage, TextFile, Tunable
+from .stage import REFERENCE_PREFIX, REPORT, VALUES, Field, InputLayer, Layer, Raster, Stage, TextFile, Tunable
+from .stage.tunables import with_unit
 
 
 def stage_help(stage: Stage) -> str:
@@ -64,12 +65,7 @@ def output_text(pipeline: Pipeline, output: Output) -> str:
         return f"<b>{name}</b>: the cloud with {written_by(pipeline)}."
     if output.of == "output":
         return f"<b>{name}</b>: the cloud as the step {step_title(output.step)} leaves it."
-    declared = output.declared
-    if isinstance(declared, Layer):
-        return _layer_text(declared, name)
-    if isinstance(declared, Raster):
-        return _raster_text(declared, name)
-    return _file_text(declared, name) if isinstance(declared, TextFile) else _report_text(stage, name)
+    return _result_text(stage, output.of, name)
 
 
 def written_by(pipeline: Pipeline) -> str:
@@ -185,12 +181,7 @@ def _default_text(tunable: Tunable, default: object) -> str:
 
 def outputs(stage: Stage) -> list:
     """Return what a stage makes, one HTML text per output."""
-    texts = [f"<b>OUTPUT</b>: {_cloud_text(stage)}"] if stage.makes_cloud else []
-    texts += [_layer_text(layer, layer.name.upper()) for layer in stage.layers]
-    texts += [_raster_text(raster, raster.name.upper()) for raster in stage.rasters]
-    texts += [_file_text(file, file.name.upper()) for file in stage.files]
-    if stage.measures:
-        texts.append(_report_text(stage, "REPORT"))
+    texts = [_result_text(stage, name, name.upper()) for name in stage.outputs]
     used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_optional and t.type in (int, float)]
     if used:
         texts.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
@@ -231,33 +222,31 @@ def _chosen(stage: Stage) -> Optional[Tunable]:
 
 def _meaning(name: str) -> str:
     dimension = DIMENSIONS[name]
-    unit = f" ({dimension.unit})" if dimension.unit else ""
-    return f"<i>{name}</i>: {', '.join(dimension.disk)}, {html.escape(dimension.description + unit)}"
+    text = html.escape(with_unit(dimension.description, dimension.unit))
+    return f"<i>{name}</i>: {', '.join(dimension.disk)}, {text}"
 
 
-def _report_text(stage: Stage, name: str) -> str:
-    measures = ", ".join(f"{m.title} ({m.unit})" if m.unit else m.title for m in stage.measures)
-    return f"<b>{name}</b>: a page with {html.escape(measures)}; each is an output of its own too."
+def _result_text(stage: Stage, of: str, name: str) -> str:
+    """Return what one output of a stage is, under the name that it has for users."""
+    declared = stage.outputs[of]
+    if isinstance(declared, Layer):
+        attributes = _sublist([_field_text(field) for field in declared.fields])
+        made = f"{html.escape(declared.title)}, with the attributes:{attributes}"
+    elif isinstance(declared, Raster):
+        made = f"{html.escape(with_unit(declared.title, declared.unit))}, a raster."
+    elif isinstance(declared, TextFile):
+        formats = "; ".join(f"{called} ({', '.join(endings)})" for called, endings in declared.formats.items())
+        made = f"{html.escape(declared.title)}, a file: {html.escape(formats)}."
+    elif declared == REPORT:
+        measures = ", ".join(with_unit(measure.title, measure.unit) for measure in stage.measures)
+        made = f"a page with {html.escape(measures)}; each is an output of its own too."
+    else:
+        made = _cloud_text(stage)
+    return f"<b>{name}</b>: {made}"
 
 
-def _raster_text(raster: Raster, name: str) -> str:
-    unit = f" ({raster.unit})" if raster.unit else ""
-    return f"<b>{name}</b>: {html.escape(raster.title + unit)}, a raster."
-
-
-def _file_text(file: TextFile, name: str) -> str:
-    formats = "; ".join(f"{called} ({', '.join(endings)})" for called, endings in file.formats.items())
-    return f"<b>{name}</b>: {html.escape(file.title)}, a file: {html.escape(formats)}."
-
-
-def _layer_text(layer: Layer, name: str) -> str:
-    attributes = _sublist([_field_text(declared) for declared in layer.fields])
-    return f"<b>{name}</b>: {html.escape(layer.title)}, with the attributes:{attributes}"
-
-
-def _field_text(declared: Field) -> str:
-    unit = f" ({declared.unit})" if declared.unit else ""
-    return f"<i>{html.escape(declared.name + unit)}</i>: {html.escape(declared.help.rstrip('.'))}"
+def _field_text(field: Field) -> str:
+    return f"<i>{html.escape(with_unit(field.name, field.unit))}</i>: {html.escape(field.help.rstrip('.'))}"
 
 
 def _dimensions(stage: Stage) -> str:

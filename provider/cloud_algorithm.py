@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
@@ -78,19 +78,6 @@ from .text_files import write_text
 from .web import check_sizes, tell_sizes
 
 
-@dataclass(frozen=True)
-class Inputs:
-    """What an algorithm reads."""
-
-    clouds: bool  #: Whether it reads a cloud, or several
-    several: bool
-    title: str
-    layers: tuple[InputLayer, ...]
-    compared: Optional[Stage] = None  #: The stage that reads the second cloud
-    needs_reference: bool = False
-    needs_cloud: bool = True
-
-
 @dataclass
 class Job:
     """What a run needs of its parameters, found out before it starts."""
@@ -134,7 +121,9 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     Subclasses say what they read and make, and compute it.
     """
 
-    inputs: Inputs
+    compared: Optional[Stage]  #: The stage that reads the second cloud
+    needs_cloud = True
+    layers: Collection[InputLayer]
     made: list[Made]
     creates = False  #: Whether it makes a cloud of nothing
     #: Progress when all is read, and when all is computed; writing takes the rest
@@ -166,18 +155,18 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802 - QGIS asks for these names
         """Declare inputs, tunables and outputs."""
-        inputs = self.inputs
-        if inputs.clouds:
-            self.addParameter(input_parameter(inputs.several, inputs.title, inputs.needs_cloud))
-        if inputs.compared is not None:
-            self.addParameter(reference_parameter(inputs.compared))
-        for input_layer in inputs.layers:
+        declared = self.declared
+        if declared.reads_cloud:
+            self.addParameter(input_parameter(declared.merges, declared.input_title, self.needs_cloud))
+        if self.compared is not None:
+            self.addParameter(reference_parameter(self.compared))
+        for input_layer in self.layers:
             self.addParameter(input_layer_parameter(input_layer))
         self.add_tunables()
-        if inputs.clouds:
+        if declared.reads_cloud:
             self.addParameter(extent_parameter())
             self.addParameter(spacing_parameter())
-        if inputs.clouds or self.creates:
+        if declared.reads_cloud or self.creates:
             self.addParameter(crs_parameter(SIMULATED_CRS if self.creates else None))
         for made in self.made:
             self.addParameter(made.definition())
@@ -198,19 +187,19 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def _job(self, given: Given) -> Job:
         """Return the checked parameters of a run; raise a ValueError where it can't succeed."""
-        inputs = self.inputs
+        declared = self.declared
         tunables = self.tunables(given)
         wanted = [made for made in self.made if given.has(made.name)]
-        layers = find_input_layers(given, inputs.layers)
+        layers = find_input_layers(given, self.layers)
         compared = {one.name for one in layers} | ({REFERENCE.lower()} if given.has(REFERENCE) else set())
         job = Job(tunables, [made for made in wanted if not made.only_with or compared & set(made.only_with)])
         job.unmade = [made for made in wanted if made not in job.wanted]
         # Others last as long as their layers.
         job.systems = [layer.sourceCrs().authid() for one, layer in layers.items() if one.read]
-        if inputs.clouds and (inputs.needs_cloud or given.has(INPUT)):
-            job.clouds = input_paths(given, inputs.several)
+        if declared.reads_cloud and (self.needs_cloud or given.has(INPUT)):
+            job.clouds = input_paths(given, declared.merges)
             job.layer = name_of_layer(given.parameters.get(INPUT))
-        if inputs.compared is not None and (inputs.needs_reference or given.has(REFERENCE)):
+        if self.compared is not None and (declared.needs_reference or given.has(REFERENCE)):
             job.reference = cloud_path(given, REFERENCE)
         job.crs = given_crs(given) if self.parameterDefinition(CRS) else job.crs
         if job.clouds:
@@ -221,7 +210,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         read = [*files_read(job.paths), *input_layer_files(given, layers)]
         check_targets(self.destinationParameterDefinitions(), given.parameters, read, job.clouds)
         # A cloud that is classified anew may well be assessed by the classes that it had.
-        if job.reference and (inputs.needs_reference or all(made.declared != CLOUD for made in self.made)):
+        if job.reference and (declared.needs_reference or all(made.declared != CLOUD for made in self.made)):
             refuse_same(job.clouds, job.reference)
         for path in job.paths:
             check_readable(path, box=job.box)
@@ -273,7 +262,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         parts = [monitor.part(i / count, (i + 1) / count) for i in range(count)]
         clouds = read_clouds(job.paths, parts, job.crs, job.box, job.spacing)
         reference = clouds.pop() if job.reference else None
-        found = find_input_layers(given, self.inputs.layers)
+        found = find_input_layers(given, self.layers)
         place = place_of_cloud(clouds[0]) if clouds else place_of_layers(found, monitor)
         layers = read_input_layers(found, place, given.context, monitor.part(1.0, 1.0)) if place is not None else {}
         return Read(clouds, reference, layers, place)

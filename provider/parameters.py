@@ -15,6 +15,7 @@ from qgis.core import (
 )
 
 from ..algorithms.stage import Stage, Tunable
+from ..algorithms.stage.tunables import with_unit
 from .given import Given
 
 _NUMBERS = {float: Qgis.ProcessingNumberParameterType.Double, int: Qgis.ProcessingNumberParameterType.Integer}
@@ -118,10 +119,7 @@ def automatic_numbers(stage: Stage) -> list:
 
 def number_outputs(stage: Stage) -> dict[str, str]:
     """Return names and titles of the numbers that a run gives: measures, and what automatic tunables took."""
-    numbers = {}
-    for measure in stage.measures:
-        title = measure.title
-        numbers[measure.name.upper()] = f"{title} ({measure.unit})" if measure.unit else title
+    numbers = {measure.name.upper(): with_unit(measure.title, measure.unit) for measure in stage.measures}
     for tunable in automatic_numbers(stage):
         numbers[used_name(tunable)] = f"{tunable.title}, as used"
     return numbers

@@ -11,7 +11,7 @@ from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.run import Results, run_pipeline
 from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, TextFile
-from .cloud_algorithm import CloudAlgorithm, Inputs, Read
+from .cloud_algorithm import CloudAlgorithm, Read
 from .destinations import Made
 from .feedback import ChainMonitor
 from .given import Given
@@ -54,14 +54,8 @@ class PipelineAlgorithm(CloudAlgorithm):
     def __init__(self, pipeline: Pipeline) -> None:
         super().__init__()
         self.pipeline = self.declared = pipeline
-        self.inputs = Inputs(
-            pipeline.reads_cloud,
-            pipeline.merges,
-            pipeline.input_title,
-            tuple(pipeline.input_layers.values()),
-            pipeline.compared,
-            pipeline.needs_reference,
-        )
+        self.compared = pipeline.compared
+        self.layers = pipeline.input_layers.values()
         self.made = [_made(pipeline, output) for output in sorted(pipeline.outputs, key=_rank)]
 
     def help(self) -> str:

@@ -12,7 +12,7 @@ from ..algorithms.run import Results, run_stage
 from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, Stage
 from ..algorithms.tiling.features_in_blocks import LARGEST, measure_features
 from ..algorithms.tiling.survey import open_survey
-from .cloud_algorithm import CloudAlgorithm, Inputs, Read
+from .cloud_algorithm import CloudAlgorithm, Read
 from .crs_authority import crs_reader
 from .destinations import Made
 from .feedback import FeedbackMonitor, announce
@@ -32,16 +32,9 @@ class StageAlgorithm(CloudAlgorithm):
     def __init__(self, stage: Stage) -> None:
         super().__init__()
         self.stage = self.declared = stage
-        compared = stage if stage.reads_reference else None
-        self.inputs = Inputs(
-            stage.reads_cloud,
-            stage.merges,
-            stage.input_title,
-            stage.input_layers,
-            compared,
-            stage.needs_reference,
-            stage.needs_cloud,
-        )
+        self.compared = stage if stage.reads_reference else None
+        self.needs_cloud = stage.needs_cloud
+        self.layers = stage.input_layers
         self.creates = bool(stage.creates)
         self.made = _made(stage)
 

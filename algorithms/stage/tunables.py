@@ -91,6 +91,11 @@ class Param:
         return digits + self.unit if self.unit == "°" else f"{digits} {self.unit}".rstrip()
 
 
+def with_unit(title: str, unit: str) -> str:
+    """Return a title with its unit, for users: "Height (m)"."""
+    return f"{title} ({unit})" if unit else title
+
+
 def tunable(default: Any, help: str, **fields: Any) -> Any:
     """Declare a keyword argument of a stage, in place of its default: see :class:`Param`."""
     return Param(default, help, **fields)
@@ -137,7 +142,7 @@ class Tunable:
     @property
     def title(self) -> str:
         """Label with its unit, for users."""
-        return f"{self.label} ({self.param.unit})" if self.param.unit else self.label
+        return with_unit(self.label, self.param.unit)
 
     @property
     def is_optional(self) -> bool:
