@@ -258,9 +258,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         # Before reading: a process that runs out of memory is ended without a message.
         warn_if_memory_is_short(job.points, monitor)
         tell_sizes(job.paths, job.box, job.spacing, monitor)
-        count = max(1, len(job.paths))
-        parts = [monitor.part(i / count, (i + 1) / count) for i in range(count)]
-        clouds = read_clouds(job.paths, parts, job.crs, job.box, job.spacing)
+        clouds = read_clouds(job.paths, monitor.parts(len(job.paths)), job.crs, job.box, job.spacing)
         reference = clouds.pop() if job.reference else None
         found = find_input_layers(given, self.layers)
         place = place_of_cloud(clouds[0]) if clouds else place_of_layers(found, monitor)
@@ -280,8 +278,7 @@ class _Writer:
         """Write everything but pages; return where each is, by the names of the outputs."""
         files = [made for made in wanted if made.declared != REPORT]
         written: dict[str, str] = {}
-        for number, made in enumerate(files):
-            part = self.monitor.part(number / len(files), (number + 1) / len(files))
+        for made, part in zip(files, self.monitor.parts(len(files))):
             written.update(self._write(made, results, part))
             part.progress(1.0)
         return written

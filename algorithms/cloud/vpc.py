@@ -299,8 +299,7 @@ def _records_within(
 ) -> np.ndarray:
     """Return the records of all tiles that lie within a box, as records of the merged cloud."""
     found = [np.empty(0, merged.layout.dtype)]
-    for done, (path, tile) in enumerate(zip(paths, headers)):
-        part = monitor.part(done / len(paths), (done + 1) / len(paths))
+    for path, tile, part in zip(paths, headers, monitor.parts(len(paths))):
         records = points_within(path, tile, box, part)
         found.append(np.zeros(len(records), merged.layout.dtype))
         fill_merged(found[-1], records, tile, merged)

@@ -142,9 +142,8 @@ class CylinderSearch:
         """Return the cylinders with radii (m) in a range, the smallest first."""
         found: list[Found] = []
         ranges = levels(min_radius, max_radius)
-        for step, (low, high) in enumerate(ranges):
+        for (low, high), part in zip(ranges, monitor.parts(len(ranges))):
             level = level_of(self.xyz, self.is_free, low, high, LEAST_POINTS)
-            part = monitor.part(step / len(ranges), (step + 1) / len(ranges))
             windows = [level.windows[n] for n in np.flatnonzero(self._is_curved(level))]
             for number, window in enumerate(windows):
                 part.progress(number / len(windows))

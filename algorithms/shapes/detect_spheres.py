@@ -119,9 +119,8 @@ class SphereSearch:
         """Return the spheres with radii (m) in a range, the smallest first."""
         found: list[FoundSphere] = []
         ranges = levels(min_radius, max_radius)
-        for step, (low, high) in enumerate(ranges):
+        for (low, high), part in zip(ranges, monitor.parts(len(ranges))):
             level = level_of(self.xyz, self.is_free, low, high, LEAST_POINTS)
-            part = monitor.part(step / len(ranges), (step + 1) / len(ranges))
             for number, window in enumerate(level.windows):
                 part.progress(number / len(level.windows))
                 rows = level.rows[window]

@@ -53,6 +53,10 @@ class Monitor:
         """Return a monitor whose 0 to 1 is ``start`` to ``end`` of this one, and whose values get a prefix here."""
         return Part(self, start, end, prefix)
 
+    def parts(self, count: int) -> list[Monitor]:
+        """Return the monitors of as many parts, which follow each other and take as long."""
+        return [self.part(number / count, (number + 1) / count) for number in range(count)]
+
     def step(self, name: str, stage: Stage, tunables: dict[str, Any], start: float, end: float) -> Monitor:
         """Return the monitor of a step of a chain, a stage with its tunables; its values get the name as prefix."""
         return self.part(start, end, f"{name}_")

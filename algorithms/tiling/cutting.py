@@ -69,11 +69,10 @@ def cut_into_tiles(
         if survey.extent is None and count != len(survey):
             raise ValueError(f"The tiles would have {count:,} of the {len(survey):,} points; nothing was written.")
         tiles = []
-        for done, block in enumerate(blocks):
+        for block, part in zip(blocks, monitor.part(_READ, 1.0).parts(len(blocks))):
             tile = folder / f"{stem}_{block.name}{kind}"
             heap = heaps / block.name
             records = np.memmap(heap, survey.header.layout.dtype, "r")
-            part = monitor.part(_READ, 1.0).part(done / len(blocks), (done + 1) / len(blocks))
             with replacing(tile) as stream:
                 _write(survey, records, compressed, stream, part)
                 check_count(stream, tile, len(records))

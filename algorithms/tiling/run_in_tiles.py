@@ -199,8 +199,8 @@ class _Run:
         if not (pieces / key).is_file():
             shutil.rmtree(pieces, ignore_errors=True)
             pieces.mkdir()
-            for done, (source, stem) in enumerate(zip(large, unique_stems(large))):
-                part = self.monitor.part(SAMPLED, CUT).part(done / len(large), (done + 1) / len(large))
+            parts = self.monitor.part(SAMPLED, CUT).parts(len(large))
+            for source, stem, part in zip(large, unique_stems(large), parts):
                 alone = self._opened([source.path])
                 cut_into_tiles(alone, side, pieces, stem, False, part)
             (pieces / key).touch()
@@ -304,8 +304,7 @@ class _Run:
         owner, declared = owners(self.settings.pipeline), layers_of(self.settings.pipeline)
         clusters = [of_block.get("cluster_id", np.zeros(0, np.int32)) for of_block in numbers]
         references = {one.numbers: References.of(found, one.numbers) for one in declared.values() if one.numbers}
-        for number, name in enumerate(sorted(names, key=lambda name: name in owner)):
-            part = monitor.part(number / len(names), (number + 1) / len(names))
+        for name, part in zip(sorted(names, key=lambda name: name in owner), monitor.parts(len(names))):
             # A block without points has no layers, any other one has all of them.
             of_blocks = [result.layers.get(name, LayerFeatures([], {})) for result in found]
             if name in owner:

@@ -143,8 +143,7 @@ class Survey:
         monitor = monitor or Monitor()
         numbers = self.near(box)
         found = []
-        for done, number in enumerate(numbers):
-            part = monitor.part(done / len(numbers), (done + 1) / len(numbers))
+        for number, part in zip(numbers, monitor.parts(len(numbers))):
             found += [(number, *one) for one in self._records(self.sources[number], self._of_cubes(box), part)]
         if not found:
             return None
@@ -176,9 +175,8 @@ class Survey:
         first = np.cumsum([0, *(source.header.count for source in self.sources)])
         wanted = np.unique(((np.arange(count) + 0.5) / count * first[-1]).astype(np.int64))
         found = [np.zeros((0, 2))]
-        for number, source in enumerate(self.sources):
+        for number, (source, part) in enumerate(zip(self.sources, monitor.parts(len(self.sources)))):
             rows = wanted[(wanted >= first[number]) & (wanted < first[number + 1])] - first[number]
-            part = monitor.part(number / len(self.sources), (number + 1) / len(self.sources))
             if not len(rows):
                 continue
             try:

@@ -77,8 +77,7 @@ def samplings_of(
         monitor.inform(f"Measured on parts of the survey: {step.stage.title}.")
         # All parts, until the points are those that the others work on.
         if any(later in prepares for later in steps[done:]):
-            parts = [part.part(at / len(clouds), (at + 1) / len(clouds)) for at in range(len(clouds))]
-            made = list(map(make, clouds, parts))
+            made = list(map(make, clouds, part.parts(len(clouds))))
             clouds = [one for one in made if one is not None]
             if step in prepares:
                 samplings[step.name] = _sampling_of(clouds, corner)
@@ -113,8 +112,7 @@ def _squares_around(positions: np.ndarray, side: float) -> list[np.ndarray]:
 def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple[list[Cloud], Survey]:
     """Return the points of each box that has any, and the survey without files found damaged."""
     found = []
-    for done, box in enumerate(boxes):
-        part = monitor.part(done / len(boxes), (done + 1) / len(boxes))
+    for box, part in zip(boxes, monitor.parts(len(boxes))):
         try:
             window = survey.window(box, part)
         except ValueError as error:
@@ -143,10 +141,9 @@ def _measured(
     made: list[Optional[Cloud]] = []
     values: dict[str, list[float]] = {}
     tables: dict[str, list[tuple[np.ndarray, Learn]]] = {}
-    for done, cloud in enumerate(clouds):
+    for cloud, part in zip(clouds, monitor.parts(len(clouds))):
         sampling.found.clear()
         sampling.samples.clear()
-        part = monitor.part(done / len(clouds), (done + 1) / len(clouds))
         try:
             made.append(make(cloud, part))
         except ValueError:

@@ -203,8 +203,7 @@ def extract_wall_footprints(
         monitor.resolved(tolerance=tolerance)
     limits = Limits(tolerance, min_length, max_overhang, min_area, min_seen, seed)
     outlined: list[_Outlined] = []
-    for done, building in enumerate(buildings):
-        part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
+    for building, part in zip(buildings, monitor.parts(len(buildings))):
         try:
             outlined += [_outlined(*house, limits) for house in _houses(building, limits, part)]
         except SparsePointsError as error:
