@@ -125,7 +125,9 @@ def classify_noise_histogram(
         return made
     points = xyz.take(used, axis=0)
     spacing = sampling.spacing
-    cell_size, bin_height = _automatic(cell_size, bin_height, spacing, monitor)
+    cell_size = float(np.sqrt(HISTOGRAM.points_per_cell)) * spacing if cell_size is None else cell_size
+    bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
+    monitor.resolved(cell_size=cell_size, bin_height=bin_height)
     monitor.progress(0.2)
     beyond = _beyond_scene(points, cell_size, bin_height, min_frequency, max_clearance, monitor.part(0.2, 0.7))
     if beyond is None:
@@ -141,19 +143,6 @@ def classify_noise_histogram(
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
     return made
-
-
-def _automatic(
-    cell_size: Optional[float], bin_height: Optional[float], spacing: float, monitor: Monitor
-) -> tuple[float, float]:
-    """Return the cell size and bin height to use, and log those that were not given."""
-    if cell_size is None:
-        cell_size = float(np.sqrt(HISTOGRAM.points_per_cell)) * spacing
-        monitor.resolved(cell_size=cell_size)
-    if bin_height is None:
-        bin_height = automatic_bin_height(spacing)
-        monitor.resolved(bin_height=bin_height)
-    return cell_size, bin_height
 
 
 def _beyond_scene(
