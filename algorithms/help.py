@@ -10,8 +10,19 @@ from typing import Optional
 from .captions import captions
 from .cloud.dimensions import DIMENSIONS
 from .pipeline import Output, Pipeline, Step
-from .stage import REFERENCE_PREFIX, REPORT, VALUES, Field, InputLayer, Layer, Raster, Stage, TextFile, Tunable
-from .stage.tunables import with_unit
+from .stage import (
+    CLOUD,
+    REFERENCE_PREFIX,
+    VALUES,
+    Field,
+    InputLayer,
+    Layer,
+    Raster,
+    Stage,
+    TextFile,
+    Tunable,
+    with_unit,
+)
 
 
 def stage_help(stage: Stage) -> str:
@@ -237,11 +248,11 @@ def _result_text(stage: Stage, of: str, name: str) -> str:
     elif isinstance(declared, TextFile):
         formats = "; ".join(f"{called} ({', '.join(endings)})" for called, endings in declared.formats.items())
         made = f"{html.escape(declared.title)}, a file: {html.escape(formats)}."
-    elif declared == REPORT:
+    elif declared == CLOUD:
+        made = _cloud_text(stage)
+    else:
         measures = ", ".join(with_unit(measure.title, measure.unit) for measure in stage.measures)
         made = f"a page with {html.escape(measures)}; each is an output of its own too."
-    else:
-        made = _cloud_text(stage)
     return f"<b>{name}</b>: {made}"
 
 

@@ -14,8 +14,7 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..algorithms.stage import Stage, Tunable
-from ..algorithms.stage.tunables import with_unit
+from ..algorithms.stage import Stage, Tunable, with_unit
 from .given import Given
 
 _NUMBERS = {float: Qgis.ProcessingNumberParameterType.Double, int: Qgis.ProcessingNumberParameterType.Integer}

@@ -49,4 +49,4 @@ from .inputs_outputs import (  # noqa: F401
     given_layers,
 )
 from .monitor import Cancelled, Monitor, Part, ProgressOnly  # noqa: F401
-from .tunables import Param, Tunable, tunable  # noqa: F401
+from .tunables import Param, Tunable, tunable, with_unit  # noqa: F401
