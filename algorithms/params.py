@@ -49,6 +49,9 @@ MIN_BUILDING_AREA = tunable(
     4.0, "Area of the smallest building to be found.", label="Minimum building area", within="[0.1, 10_000] m²"
 )
 
+# The same where walls are mapped.
+MIN_MAPPED_AREA = MIN_BUILDING_AREA.with_default(6.0)
+
 POINT_SOURCE = tunable(
     "automatic",
     "Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by "

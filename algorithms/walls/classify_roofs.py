@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.groups import placed, ranked_by_least
-from ..params import MIN_BUILDING_AREA, POINT_DENSITY, POINT_SOURCE
+from ..params import MIN_MAPPED_AREA, POINT_DENSITY, POINT_SOURCE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
@@ -40,7 +40,7 @@ def classify_roofs(
     segment_id,
     *,
     min_height: float = tunable(2.0, "Height above the ground over which half of a roof lies.", within="[0.5, 100] m"),
-    min_area: float = MIN_BUILDING_AREA.with_default(6.0),
+    min_area: float = MIN_MAPPED_AREA,
     gap: Optional[float] = tunable(
         None,
         "Points of planes at most this far apart belong to one building.",

@@ -15,7 +15,7 @@ from ..geometry.groups import members
 from ..geometry.line_segments import polygons_of
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.rings import perimeter, signed_area
-from ..params import MIN_BUILDING_AREA, SEED
+from ..params import MIN_MAPPED_AREA, SEED
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..sampling.surface_noise import ROUGHNESS
@@ -92,7 +92,7 @@ def extract_wall_footprints(
     classification=None,
     voxel_count=None,
     *,
-    min_area: float = MIN_BUILDING_AREA.with_default(6.0),
+    min_area: float = MIN_MAPPED_AREA,
     min_length: float = tunable(
         1.2, "Length of the shortest wall that is looked for.", label="Minimum wall length", within="[0.2, 100] m"
     ),

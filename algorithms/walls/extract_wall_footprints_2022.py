@@ -13,7 +13,7 @@ from ..geometry.groups import components, members
 from ..geometry.line_segments import polygons_of
 from ..geometry.rings import perimeter, signed_area
 from ..packages import csgraph, sparse
-from ..params import MIN_BUILDING_AREA, SEED
+from ..params import MIN_MAPPED_AREA, SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .candidate_corners import CORNER, OFF_OUTLINE
 from .wall_lines import WallLine, fit_line
@@ -86,7 +86,7 @@ def extract_wall_footprints_2022(
     classification=None,
     voxel_count=None,
     *,
-    min_area: float = MIN_BUILDING_AREA.with_default(6.0),
+    min_area: float = MIN_MAPPED_AREA,
     tolerance: float = tunable(0.1, "Distance within which points lie on a line.", within="[0.01, 2] m"),
     min_points: Optional[int] = tunable(
         None,
