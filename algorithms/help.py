@@ -1,4 +1,4 @@
-"""Help of an algorithm as HTML, from what its stage or pipeline declares."""
+"""Help of an algorithm as HTML, from the declaration of its stage or pipeline."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def stage_help(stage: Stage) -> str:
 
 
 def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
-    """Return what a pipeline does, step by step, with the parameters of its steps.
+    """Return the help of a pipeline, step by step, with the parameters of its steps.
 
     ``made`` are texts of the outputs, where they differ from a run on one cloud.
     """
@@ -70,7 +70,7 @@ def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
 
 
 def output_text(pipeline: Pipeline, output: Output) -> str:
-    """Return what one output of a composite is, as HTML."""
+    """Describe one output of a composite, as HTML."""
     name, stage = output.name.upper(), output.step.stage
     if output.name == "output":
         return f"<b>{name}</b>: the cloud with {written_by(pipeline)}."
@@ -93,7 +93,7 @@ def _written(step: Step) -> tuple[str, ...]:
 
 
 def step_title(step: Step) -> str:
-    """Return what a composite calls a step, "Ground"."""
+    """Return the name of a step in a composite, "Ground"."""
     return step.name.replace("_", " ").capitalize()
 
 
@@ -191,7 +191,7 @@ def _default_text(tunable: Tunable, default: object) -> str:
 
 
 def outputs(stage: Stage) -> list:
-    """Return what a stage makes, one HTML text per output."""
+    """Describe the outputs of a stage, one HTML text each."""
     texts = [_result_text(stage, name, name.upper()) for name in stage.outputs]
     used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_optional and t.type in (int, float)]
     if used:
@@ -238,7 +238,7 @@ def _meaning(name: str) -> str:
 
 
 def _result_text(stage: Stage, of: str, name: str) -> str:
-    """Return what one output of a stage is, under the name that it has for users."""
+    """Describe one output of a stage, under the name that it has for users."""
     declared = stage.outputs[of]
     if isinstance(declared, Layer):
         attributes = _sublist([_field_text(field) for field in declared.fields])
@@ -275,7 +275,7 @@ def _dimensions(stage: Stage) -> str:
 
 
 def input_layer_text(input_layer: InputLayer) -> str:
-    """Return what a vector layer that is read is for, as HTML."""
+    """Describe a vector layer that is read, as HTML."""
     needed = "; may be left empty" if input_layer.optional else ""
     name, title = input_layer.name.upper(), html.escape(input_layer.title)
     kind = f"a file ({', '.join(input_layer.endings)})" if input_layer.read else f"a layer of {input_layer.objects}"

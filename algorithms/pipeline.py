@@ -84,7 +84,7 @@ class Pipeline:
     timed: bool = False
 
     def parameter(self, step: Step, tunable: str) -> str:
-        """Return what the composite calls a step's tunable: ``ground_cell_size``, shared ``min_area``."""
+        """Return the composite's name for a step's tunable: ``ground_cell_size``, shared ``min_area``."""
         return tunable if step.name in self.shared.get(tunable, ()) else f"{step.name}_{tunable}"
 
     @property

@@ -58,7 +58,7 @@ def written_to_points(
     smallest: float,
     report: Report,
 ) -> tuple[Any, ...]:
-    """Return what a stage that classifies buildings returns.
+    """Return the results of a stage that classifies buildings.
 
     That is class, entropy, mean entropy, confidence, reason and weakest evidence of its cluster for each point, and
     the report.
@@ -91,7 +91,7 @@ def written_to_points(
 
 
 def no_clusters(classification: np.ndarray, reason: Optional[np.ndarray], monitor: Monitor) -> tuple[Any, ...]:
-    """Return what a stage that classifies buildings returns where there are no clusters."""
+    """Return the results of a stage that classifies buildings where there are no clusters."""
     monitor.none_found("There are no clusters, so no buildings were found.")
     classes, why = _without_buildings(classification, reason)
     undefined = (np.full(len(classes), np.nan, np.float32) for _ in range(3))

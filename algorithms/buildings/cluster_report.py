@@ -13,7 +13,7 @@ from ..report.page import Row, build_page
 from ..stage import Measure, Report
 from .entropy_split import Split
 
-# What every stage that classifies buildings reports.
+# Values that every stage that classifies buildings reports.
 MEASURES = (
     Measure("clusters", "Clusters"),
     Measure("building_clusters", "Clusters called building"),

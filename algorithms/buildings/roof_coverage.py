@@ -91,7 +91,7 @@ def numbered(covered: np.ndarray, min_area: float, cell_size: float) -> tuple[np
 def mostly_roof(
     building: np.ndarray, refused: np.ndarray, cell: Cell, at_roof: np.ndarray, on_surface: np.ndarray, least: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return what :func:`numbered` does, without buildings with less than ``least`` of their roof on surfaces.
+    """Return numbers as :func:`numbered`, without buildings with less than ``least`` of their roof on surfaces.
 
     Parameters
     ----------

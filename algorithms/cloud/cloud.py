@@ -281,7 +281,7 @@ class Cloud:
         return of_file * self.crs.factors[:axes] - self.origin[:axes]
 
     def records(self, for_copc: bool = False) -> PointRecords:
-        """Return what makes the output's records."""
+        """Return the settings of the output's records."""
         convert = OF_COPC.__getitem__ if for_copc else int
         return PointRecords(self.points, self.header.layout, self._changes, self.crs, convert)
 

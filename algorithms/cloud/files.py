@@ -109,7 +109,7 @@ def read_cloud(
 
 
 def state_of(path: Path) -> tuple[int, int]:
-    """Return what shows whether a file has changed: its size, and when it was written (ns).
+    """Return the state of a file, which changes when it is written: its size, and when it was written (ns).
 
     Raises
     ------

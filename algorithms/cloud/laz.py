@@ -223,7 +223,7 @@ def _chunk_size(record: bytes) -> int:
 
 
 def _items(record: bytes) -> list[tuple]:
-    """Return type, size and version of what the points are compressed as."""
+    """Return type, size and version of the items that the points are compressed as."""
     n_items = struct.unpack_from("<H", record, _ITEMS_AT - 2)[0]
     return [_ITEM.unpack_from(record, _ITEMS_AT + i * _ITEM.size) for i in range(n_items)]
 

@@ -82,7 +82,7 @@ def _name(number: int, cloud: Cloud) -> str:
 
 
 def _records(cloud: Cloud, crs: Crs) -> PointRecords:
-    """Return what makes the cloud's records, its known dimensions with name, type and unit as in all the others."""
+    """Return the settings of the cloud's records, with name, type and unit of known dimensions as in all the others."""
     cloud, layout, factors = cloud.copy(), cloud.header.layout, cloud.crs.factors
     for name, dimension in DIMENSIONS.items():
         if dimension.standard or not cloud.has(name):

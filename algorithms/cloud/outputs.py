@@ -439,7 +439,7 @@ def os_errors_as_messages(path: Path) -> Iterator[None]:
 
 
 def _failure(path: Path, error: OSError) -> ValueError:
-    """Return an error that says why a file can't be written, and what to do."""
+    """Return an error with the reason why a file can't be written, and the remedy."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return DiskFullError(f"The disk is full: {path} was not written; free some space or choose another folder.")
     if isinstance(error, PermissionError) or error.errno == errno.EROFS:

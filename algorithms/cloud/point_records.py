@@ -160,7 +160,7 @@ def _has_numbers(field: ExtraField) -> bool:
 
 
 def _keyed(fields: tuple[ExtraField, ...]) -> list[tuple[_Key, ExtraField]]:
-    """Return fields with what distinguishes them from the others of files that are merged.
+    """Return fields under names that are unique among the files that are merged.
 
     That is the name, or name and type, and which one of that name it is: some files have several.
     """

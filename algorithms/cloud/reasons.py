@@ -103,7 +103,7 @@ class Evidence(IntEnum):
     SURROUNDINGS = 4
 
     def sentence(self, value: int, limit: int) -> str:
-        """Return what was measured and its limit: a number of points, or thousandths."""
+        """Return the measured value and its limit: a number of points, or thousandths."""
         form, as_words = _EVIDENCE[self]
         return form.format(as_words(value), as_words(limit))
 

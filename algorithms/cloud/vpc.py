@@ -91,7 +91,7 @@ def tiles_of(path: Path) -> dict[Path, Named]:
 
 
 def _content_of(page: Path) -> tuple[dict[str, Named], list[dict]]:
-    """Return the tiles that a page names, what it says of each, and its links to others."""
+    """Return the tiles that a page names, their properties, and its links to other pages."""
     content = read_json(page)
     try:
         leads = [link for link in content.get("links") or () if link.get("rel") in _LEADS]
@@ -127,7 +127,7 @@ def _page(page: Path, link: dict) -> Path:
 
 
 def _named(properties: Any) -> Named:
-    """Return what the properties of a STAC item say of its point cloud."""
+    """Return the facts on a point cloud in the properties of its STAC item."""
     found = properties if isinstance(properties, dict) else {}
     wkt, code = found.get("proj:wkt2"), found.get("proj:code") or found.get("proj:epsg")
     coded = f"EPSG:{code}" if isinstance(code, int) else code if isinstance(code, str) else ""

@@ -67,7 +67,7 @@ def overview() -> str:
 
 
 def run(algorithm: Pipeline, given: argparse.Namespace, monitor: Monitor) -> None:
-    """Read what the arguments name, compute what they ask for, and write it.
+    """Read the inputs, run the algorithm, and write its outputs.
 
     Raises
     ------

@@ -23,7 +23,7 @@ _MEASURES = (
     Measure("ground", "Common cells of ground"),
 )
 
-# What the report says of each measure.
+# Sentences of the report on each measure.
 _MEANINGS = {
     "shift_x": "Added to the eastings of the street scan.",
     "shift_y": "Added to its northings.",

@@ -280,7 +280,7 @@ def _from_scanner(
 
 
 def _kinds(columns: dict, side: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """Return what segments (m,) are of.
+    """Return the kinds of segments (m,).
 
     ``side`` (m,) is the number of the side of a line that each is on. ``limits`` are greatest height of ground and
     distance of facades (m).

@@ -19,7 +19,7 @@ _COMPARED = 20_000
 # The kinds of points by their number in the dimension.
 _KINDS = ("undefined", "linear", "planar", "volumetric")
 
-# What has shares of them, with its title: the cloud, and the neighborhoods tried.
+# Columns of shares, with their titles: the cloud, and the neighborhoods tried.
 _OF = {"cloud": "As classified", "nearest": "Nearest points", "optimal": "Optimal"}
 
 
@@ -43,7 +43,7 @@ def report_structure(
     n_neighbors: int = N_NEIGHBORS,
     monitor=None,
 ):
-    """Report what thinning left, and the shares of linear, planar and volumetric points in two neighborhoods.
+    """Report the points left by thinning, and the shares of linear, planar and volumetric points in two neighborhoods.
 
     In addition to the classes that points have, both neighborhoods of 'Compute features' are tried on some of the
     points: a number of nearest ones, and the number of least eigenentropy. A page shows the shares, how many points the

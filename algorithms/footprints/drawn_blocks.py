@@ -61,7 +61,7 @@ class Drawing:
     finer: Mapping[int, float] = field(default_factory=dict)
 
     def prices(self, building: int) -> Prices:
-        """Return what corners and directions of a building cost."""
+        """Return the costs of corners and directions of a building."""
         return Prices(_CORNER * (self.finer.get(building, 1.0) * self.scale) ** 3)
 
 
@@ -201,7 +201,7 @@ def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
 
 
 def _costs(cells: Subdivision, share: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Return what each label costs in each cell (cells, labels), m²: the area that is something else."""
+    """Return the cost of each label in each cell (cells, labels), m²: the area that is something else."""
     flat = share.reshape(len(share), -1)
     mean = np.array([flat[:, nodes].mean(axis=1) for nodes in _nodes_of(cells, lattice)], float)
     return cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)

@@ -107,7 +107,7 @@ def direction_weights(samples: np.ndarray, counts: Optional[np.ndarray] = None) 
 
 
 def weights_of_pieces(rings: list[RingPieces], counts: list[Optional[np.ndarray]]) -> np.ndarray:
-    """Return what :func:`direction_weights` does for some rings (r, 180), each with its ``counts``."""
+    """Return weights as :func:`direction_weights` for some rings (r, 180), each with its ``counts``."""
     weights = np.zeros((len(rings), N_STEPS))
     for length in _LENGTHS:
         rows = [row for row, ring in enumerate(rings) if ring.has(length)]

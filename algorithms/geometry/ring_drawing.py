@@ -117,7 +117,7 @@ def draw_ring(samples: np.ndarray, directions: np.ndarray, prices: Prices) -> li
 
 
 def _drawn(samples: np.ndarray, ways: _Ways) -> tuple[float, list[Edge]]:
-    """Return what the cheapest ring along some ways costs, m³, and its edges."""
+    """Return the cost of the cheapest ring along some ways, m³, and its edges."""
     corner, after = _Chain(samples, ways).sure_corner()
     chain = _Chain(np.roll(samples, -corner, axis=0), ways)
     cost, runs = chain.closed_runs(after)
@@ -160,7 +160,7 @@ class _Ways:
 
 
 def _turn_prices(turned: np.ndarray, prices: Prices) -> np.ndarray:
-    """Return what turns by angles (°, -180 to 180) cost, in multiples of a right-angled corner."""
+    """Return the costs of turns by angles (°, -180 to 180), in multiples of a right-angled corner."""
     size = np.abs(turned)
     # In proportion, from the price at 90° to that at 170°.
     sharp = 1 + (prices.sharp - 1) * np.clip((size - 90) / 80, 0.0, 1.0)
@@ -216,12 +216,12 @@ class _Chain:
     def _runs(self, start: np.ndarray, end: np.ndarray, length: int) -> tuple[float, list[tuple[int, int, int]]]:
         """Return the cost of the cheapest runs from the first sample over a length, and these: first, last sample, way.
 
-        ``start`` and ``end`` (k,) are what it costs to begin and to end by each way.
+        ``start`` and ``end`` (k,) are the costs to begin and to end by each way.
         """
         cost = np.full((length + 1, len(start)), np.inf)
         came, turned = np.zeros((2, length + 1, len(start)), np.int64)
         every, turn_to = np.arange(len(start)), np.ascontiguousarray(self.ways.turn.T)
-        # Samples that runs may begin at, ascending, and what it costs to begin there by each way (k, a).
+        # Samples that runs may begin at, ascending, and the costs to begin there by each way (k, a).
         firsts, begun = np.zeros(1, np.int64), start[:, None]
         for first in range(_SHORTEST, length + 1, _AT_ONCE):
             batch = np.arange(first, min(first + _AT_ONCE, length + 1))
@@ -258,7 +258,7 @@ class _Chain:
         return stays
 
     def _run_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        """Return what runs from samples (a,) to samples (b,) cost by each way (b, k, a), infinite where they can't be.
+        """Return the costs of runs from samples (a,) to samples (b,) by each way (b, k, a), infinite where forbidden.
 
         Of all other ways, only the one nearest to the line that fits best can be. What the runs cost, whether they can
         be or not, follows for each main way (b, m, a) and for the others (b, a).
@@ -272,14 +272,14 @@ class _Chain:
         return allowed, (fixed, free)
 
     def _fixed_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what runs from samples (a,) to samples (b,) by each main way cost (b, m, a), and which can be."""
+        """Return the costs (b, m, a) of runs from samples (a,) to samples (b,) by each main way, and which can be."""
         count = (ends[:, None] - firsts)[:, None]
         sums, squares, along = (of[ends, :, None] - of[firsts].T for of in (self.sums, self.squares, self.along))
         is_run = (along >= _ADVANCE * self.step * count) & (count >= _SHORTEST)
         return self.step * (squares - sums**2 / np.maximum(count, 1)), is_run
 
     def _free_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what runs along the lines that fit best cost (b, a), by which of the other ways, and which can be."""
+        """Return the costs (b, a) of runs along the best lines, by which of the other ways, and which can be."""
         count = np.maximum(ends[:, None] - firsts, 1)
         x, y, xx, yy, xy = self.moments[:, ends, None] - self.moments[:, None, firsts]
         xx, yy, xy = xx - x * x / count, yy - y * y / count, xy - x * y / count

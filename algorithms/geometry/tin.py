@@ -100,7 +100,7 @@ class Tin:
         return new_facet
 
     def _take(self, mesh: Triangulation) -> None:
-        """Take the facets of a triangulation of the nodes, and what follows from them."""
+        """Take the facets of a triangulation of the nodes, and derive the rest from them."""
         self._mesh = mesh
         self._weights, self._planes = self._barycentric(), self._gradients()
         # A facet of each node, -1 of those at the position of another.
@@ -177,7 +177,7 @@ class Tin:
         return np.stack([first, second, 1 - first - second])
 
     def _barycentric(self) -> np.ndarray:
-        """Return what turns plan coordinates into weights of a facet's first two nodes (f, 6): 2 x 2 and origin."""
+        """Return the maps from plan coordinates to weights of a facet's first two nodes (f, 6): 2 x 2 and origin."""
         a, b, c = np.swapaxes(self.nodes[self.facets, :2], 0, 1)
         u, v = a - c, b - c
         area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]

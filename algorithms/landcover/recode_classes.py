@@ -11,7 +11,7 @@ _ASPRS = "ASPRS"
 _WIRES = (PointClass.WIRE_CONDUCTOR, PointClass.TRANSMISSION_TOWER)
 _OTHER = int(PointClass.UNCLASSIFIED)
 
-# What agencies write for classes of ASPRS; classes that are not named keep their code.
+# Codes that agencies write for classes of ASPRS; other classes keep their code.
 CODES: dict[str, dict[int, int]] = {
     _ASPRS: {},
     # Civil works are 26; plants, noise and masts are "other", and wires keep 14.

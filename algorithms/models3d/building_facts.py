@@ -181,7 +181,7 @@ def face_rings(solid: Solid, face: int) -> list[np.ndarray]:
 
 
 def building_attributes(one: NamedModel) -> dict[str, Any]:
-    """Return what a model says of its building, by the fields of the layer but its number."""
+    """Return the attributes of a building by its model, without its number."""
     model = one.model
     roofs = faces_of(model.best, ROOF)
     area = sum(float(abs(solid.normals[face, 2])) for solid, face in roofs)
@@ -234,7 +234,7 @@ def _eave(solids: Sequence[Solid]) -> float:
 
 
 def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
-    """Return what a model says of one of its faces, by the fields of the face's layer but its number."""
+    """Return the attributes of a face by its model, without its number."""
     slope, azimuth = slope_and_azimuth(solid, face)
     area = face_area(solid, face)
     facts = {"building": one.name, "azimuth": azimuth, "area": area}

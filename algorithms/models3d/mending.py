@@ -446,7 +446,7 @@ class _Mending:
         return new
 
     def _level_plane(self, rows: np.ndarray, corners: np.ndarray, own: int) -> np.ndarray:
-        """Return the level plane (3,) at the height of some points, not above what corners may have."""
+        """Return the level plane (3,) at the height of some points, not above the limits of corners."""
         a, b, c = self.partition.coefficients[own]
         height = float(np.mean(self.positions[corners] @ [a, b]) + c)
         if len(rows):
@@ -460,9 +460,9 @@ class _Mending:
         return float(np.minimum(off, FARTHEST).mean()) * area if len(rows) else 0.0
 
     def _is_high(self, corners: np.ndarray, plane: np.ndarray) -> bool:
-        """Return whether a plane is above what one of some corners may have."""
+        """Return whether a plane is above the limit of one of some corners."""
         return bool((self._above(corners, plane) > 10**-DECIMALS).any())
 
     def _above(self, corners: np.ndarray, plane: np.ndarray) -> np.ndarray:
-        """Return how far (k,), m, a plane is above what corners may have."""
+        """Return how far (k,), m, a plane is above the limits of corners."""
         return self.positions[corners] @ plane[:2] + plane[2] - self.highest[corners]

@@ -33,12 +33,12 @@ class RULES:
 
 
 def fault_of(solid: Solid) -> str:
-    """Return what is wrong with a solid, "" where it is valid."""
+    """Return the first fault of a solid, "" where it is valid."""
     return next(iter(faults_of(solid).values()), "")
 
 
 def faults_of(solid: Solid) -> dict[int, str]:
-    """Return what is wrong with a solid by its faces, the first fault of each; empty where it is valid.
+    """Return the first fault of each face of a solid; empty where it is valid.
 
     Notes
     -----
@@ -137,7 +137,7 @@ class _Face:
         return (xyz - self.center) @ self.axes
 
     def fault(self) -> str:
-        """Return what is wrong with the face by itself, "" where nothing is."""
+        """Return a fault of the face by itself, "" without one."""
         if self.area < RULES.apart**2:
             return "a face has no area"
         if self.off > RULES.off_plane:
@@ -185,7 +185,7 @@ class _Face:
         return bool((parts & parts.T & apart).any())
 
     def _ring_fault(self) -> str:
-        """Return what is wrong with the exterior and the holes, "" where each hole lies inside by itself."""
+        """Return a fault of the exterior and the holes, "" where each hole lies inside by itself."""
         first = np.cumsum([0, *(len(ring) for ring in self.rings)])
         plans = [self.start[[*range(a, b), a]] for a, b in zip(first, first[1:])]
         areas = list(map(signed_area, plans))

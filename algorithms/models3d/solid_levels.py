@@ -26,7 +26,7 @@ _ON_OUTLINE = 0.005
 # Directions of lines whose spread is less than this share of the greatest one have no intersection to go to.
 _LEAST_TURN = 0.05
 
-# What is beyond the outline in place of a plane: the ground.
+# Number beyond the outline, in place of a plane: the ground.
 BASE = -1
 
 # Easting, northing and height (m).

@@ -176,7 +176,7 @@ def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
 
 
 def _keys_of_wide(xyz: np.ndarray, size: float) -> np.ndarray:
-    """Return what :func:`_keys` does, but number only voxels with points: all are more than int64 holds."""
+    """Return keys as :func:`_keys`, but number only voxels with points: all are more than int64 holds."""
     key, n_keys = np.zeros(len(xyz), np.int64), 1
     for column in xyz.T:
         index, n_index = _renumbered(voxel_index(column / size, size))

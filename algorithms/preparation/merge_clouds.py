@@ -138,12 +138,12 @@ def merge_clouds(
 
 
 def read_transforms(text: str, n_clouds: int) -> list[Optional[Transform]]:
-    """Return what the text says of each cloud, None for one that stays, as the first does.
+    """Return the transform of each cloud in the text, None for one that stays, as the first does.
 
     Raises
     ------
     ValueError
-        If it says something of a cloud that there is not, or what it says is no rigid transform.
+        If it names a cloud that is not given, or a transform that is not rigid.
     """
     parts = [part.strip() for part in text.split(";")] if text.strip() else []
     while parts and not parts[-1]:

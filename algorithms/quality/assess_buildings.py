@@ -47,7 +47,7 @@ _DENSE = 6.0
 # Side of a fine cell and of others, m.
 _FINE, _COARSE = 0.5, 1.0
 
-# What an object of the layer is, by its outcome.
+# Names of the objects of the layer, by their outcome.
 FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART = "found", "missed", "invented", "missed part", "invented part"
 _OBJECTS = Layer(
     "objects",
@@ -279,7 +279,7 @@ def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
 
 
 def _objects(grid: Grid, true: _Side, predicted: _Side, min_area: float) -> LayerFeatures:
-    """Return the layer of what was found, missed and invented, from both sides."""
+    """Return the layer of found, missed and invented buildings, from both sides."""
     kinds = (
         (FOUND, true, true.agreed[true.group]),
         (MISSED, true, (true.is_large & ~true.agreed)[true.group]),

@@ -35,7 +35,7 @@ _UNCLASSIFIED = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
 # Numbers that a class can have in LAS.
 _CODES = 256
 
-# What the map calls its colors.
+# Names of the colors of the map.
 _LEGEND = ("right", "another class called ground", "ground called another class", "other classes confused")
 
 

@@ -374,7 +374,7 @@ def _page(rings: list, table: dict, values: dict[str, float]) -> str:
 
 
 def _meanings(values: dict[str, float]) -> dict[str, dict[str, tuple[str, str]]]:
-    """Return name and meaning of what the page shows, by its tables."""
+    """Return names and meanings of the rows of the page, by its tables."""
     near = "Buildings of which every corner has been matched that near."
     square = (
         "Median share of a footprint's edges along two directions square to each other; "

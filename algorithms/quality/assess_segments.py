@@ -122,7 +122,7 @@ class Matches:
 
 
 def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> Matches:
-    """Return what became of segments, by their shared points.
+    """Return the outcomes of segments, by their shared points.
 
     Parameters
     ----------

@@ -160,7 +160,7 @@ class Overlap:
 
 
 def measure_overlap(first: BuildingMap, second: BuildingMap, shift: np.ndarray, monitor: Monitor) -> Overlap:
-    """Return what two layers of buildings share, the first one moved by ``shift`` (2,), m.
+    """Return the overlaps of two layers of buildings, the first one moved by ``shift`` (2,), m.
 
     Parameters
     ----------

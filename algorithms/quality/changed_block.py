@@ -125,7 +125,7 @@ class ChangedBlock:
         self.wanted[window][mask] = self.labels.setdefault(label, len(self.labels) + 1)
 
     def _add_parts(self) -> None:
-        """Find what the new outlines have and the map has not, and whose it is."""
+        """Find the parts that only the new outlines have, and the buildings that they belong to."""
         is_added = _opened((self.new >= 0) & (self.old < 0), self.radius)
         part = ndimage.label(is_added)[0]
         pairs, number = np.unique(np.stack([part, self.new])[:, is_added], axis=1, return_inverse=True)

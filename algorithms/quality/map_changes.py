@@ -64,7 +64,7 @@ class RULES:
 
 @dataclass
 class MapUpdate:
-    """Both maps, and what becomes of each building: arrays (n,) by the rows of the old map."""
+    """Both maps, and the outcome for each building: arrays (n,) by the rows of the old map."""
 
     rings: list  #: Rings of the old buildings, shifted where they were misdrawn
     outlines: list  #: Rings of the new outlines as the map would draw them

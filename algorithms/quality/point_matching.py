@@ -96,7 +96,7 @@ def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
 
 
 def _match_nearest(xyz: np.ndarray, reference_xyz: np.ndarray, found: np.ndarray) -> None:
-    """Match in place what rounding has put on either side of a border."""
+    """Match in place the points that rounding has put on either side of a border."""
     left = np.flatnonzero(found < 0)
     is_free = np.ones(len(reference_xyz), bool)
     is_free[found[found >= 0]] = False

@@ -56,7 +56,7 @@ _POSITION = re.compile(r'<span data-east="([-\d.]+)" data-north="([-\d.]+)">[^<]
 
 @dataclass(frozen=True)
 class Row:
-    """One figure: its name, its value as text, and a sentence that says what it means."""
+    """One figure: its name, its value as text, and a sentence with its meaning."""
 
     name: str
     value: str
@@ -90,7 +90,7 @@ def rows_of(
     measures : iterable of Measure
         Their declarations, which give the units.
     meanings : dict
-        What the page calls each, and a sentence that says what it means.
+        Its name on the page, and a sentence with its meaning.
     digits : int
         Digits of lengths.
     """
@@ -176,7 +176,7 @@ def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
 def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, str]) -> str:
     """Return the HTML of a map, north up, of the outcome of the topmost point of each pixel.
 
-    ``xyz`` (n, 3) is in m, ``outcome`` (n,) REST, HIT, MISS or FALSE; ``names`` are what the legend calls these four.
+    ``xyz`` (n, 3) is in m, ``outcome`` (n,) REST, HIT, MISS or FALSE; ``names`` are the legend's for these four.
     """
     low, high = plan_box(xyz)
     extent = high - low

@@ -53,7 +53,7 @@ def doubted(confidence: np.ndarray) -> np.ndarray:
 
 
 def _faults_of_whole(xyz: np.ndarray, classification: np.ndarray, density: float) -> list[str]:
-    """Return what is wrong with the extent of a whole cloud."""
+    """Return the fault of the extent of a whole cloud."""
     counted = without_noise(classification)
     # Cells twice as wide as the density's: few are empty where the cloud has no gaps.
     grid = grid_over(xyz[counted], 2 * float(np.sqrt(DENSITY.points_per_cell / density)))

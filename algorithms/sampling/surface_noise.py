@@ -177,7 +177,7 @@ class SurfaceSample:
         return _neighborhood(len(self), self.density(), self._on_lines, density, deviation)
 
     def measured(self) -> MeasuredSurfaces:
-        """Return what neighborhoods follow from, without the points: for the parts of a cloud that is worked on so."""
+        """Return the settings of neighborhoods, without the points: for the parts of a cloud that is worked on so."""
         return MeasuredSurfaces(len(self), self.density(), self._narrow_below)
 
     @cached_property

@@ -15,7 +15,7 @@ from .least_squares_planes import Planes, off_planes
 # Pairs of a chunk: with 700 bytes each for numbers derived from their planes, it stays in the caches.
 _CHUNK = 20_000
 
-# What it costs to merge the planes of pairs (k,), inf where they must not; costs only depend on the two planes.
+# Costs of merging the planes of pairs (k,), inf where they must not; costs only depend on the two planes.
 Cost = Callable[[Planes, np.ndarray, np.ndarray], np.ndarray]
 
 

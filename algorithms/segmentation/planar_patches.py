@@ -196,7 +196,7 @@ def _links(
 
 
 def _components(linked: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Return the number (n,) of the component of each point, from what :func:`_links` returns."""
+    """Return the number (n,) of the component of each point, from the links by :func:`_links`."""
     count = len(starts) - 1
     # The weights are of the type that the search for components would turn them to.
     graph = sparse.csr_matrix((np.ones(len(linked)), linked, starts), (count, count))

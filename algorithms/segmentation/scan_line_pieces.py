@@ -88,7 +88,7 @@ def pieces(
 def pieces_of_lines(
     points: np.ndarray, line: np.ndarray, direction: float, near: NearPoints, min_points: int, obstacle: float
 ) -> np.ndarray:
-    """Return what :func:`pieces` does for points (n, 3) in the order of :func:`slices`, with their lines (n,).
+    """Return pieces as :func:`pieces` for points (n, 3) in the order of :func:`slices`, with their lines (n,).
 
     Parameters
     ----------
