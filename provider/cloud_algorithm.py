@@ -112,7 +112,7 @@ class Read:
     reference: Optional[Cloud]
     layers: dict[str, LayerFeatures]
     place: Optional[Place]
-    survey: Optional[Survey] = None  #: In place of a cloud that is worked on block by block
+    surveys: list[Survey] = field(default_factory=list)  #: In place of clouds that are worked on part by part
 
 
 class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from qgis.core import QgsProcessingFeedback
 
+from ..algorithms.cloud.crs import common_crs
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.help import stage_help
 from ..algorithms.run import Results, run_stage
 from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, Stage
-from ..algorithms.tiling.features_in_blocks import LARGEST, measure_features
-from ..algorithms.tiling.survey import open_survey
+from ..algorithms.tiling.features_in_blocks import LARGEST, measure_features, run_in_windows
+from ..algorithms.tiling.survey import Survey, crs_of_survey, open_survey
 from .cloud_algorithm import CloudAlgorithm, Read
 from .crs_authority import crs_reader
 from .destinations import Made
@@ -62,20 +64,36 @@ class StageAlgorithm(CloudAlgorithm):
         return FeedbackMonitor(feedback, self.stage, self.job.tunables, log)
 
     def _read(self, given: Given, monitor: Monitor) -> Read:
-        """Read clouds and layers; of a large cloud the layer whose features are measured block by block."""
+        """Read clouds and layers; of a large cloud that is worked on part by part the layers alone."""
         job, stage = self.job, self.stage
-        if not stage.each or job.points <= LARGEST:
+        found = find_input_layers(given, stage.input_layers)
+        in_parts = stage.each or (stage.windowed and len(found) == len(stage.input_layers))
+        if not in_parts or job.points <= LARGEST:
             return super()._read(given, monitor)
         tell_sizes(job.paths, job.box, job.spacing, monitor)
-        survey = open_survey(job.paths, crs_reader(job.crs), monitor, job.box, job.spacing)
-        place, found = place_of_survey(survey), find_input_layers(given, stage.input_layers)
-        return Read([], None, read_input_layers(found, place, given.context, monitor), place, survey)
+        surveys = self._surveys(monitor)
+        place = place_of_survey(surveys[0])
+        return Read([], None, read_input_layers(found, place, given.context, monitor), place, surveys)
+
+    def _surveys(self, monitor: Monitor) -> list[Survey]:
+        """Return the cloud as a survey, and the reference, with the meters of the cloud, where one is given."""
+        job, read = self.job, crs_reader(self.job.crs)
+        surveys = [open_survey(job.clouds, read, monitor, job.box, job.spacing)]
+        if job.reference:
+            first, own = surveys[0].crs, crs_of_survey([job.reference], read)
+            leader = common_crs([first, own], [path.name for path in job.paths], monitor, whole=False)
+            shared = replace(own if own.identity else leader, horizontal=first.horizontal)
+            surveys.append(open_survey([job.reference], lambda _: shared, monitor, job.box, job.spacing))
+        return surveys
 
     def compute(self, read: Read, monitor: Monitor) -> Results:
         """Run the stage on what was read."""
-        if read.survey is not None:
-            layer = measure_features(self.stage, read.survey, read.layers[self.stage.each], monitor)
+        if read.surveys and self.stage.each:
+            layer = measure_features(self.stage, read.surveys[0], read.layers[self.stage.each], monitor)
             return Results(None, {self.stage.layers[0].name: layer})
+        if read.surveys:
+            found = run_in_windows(self.stage, read.surveys, {**read.layers}, monitor, **self.job.tunables)
+            return Results(None, found.layers, found.report, reports={REPORT: found.report})
         self._log_earlier_dimensions(read, monitor)
         cloud = read.clouds if self.stage.merges else read.clouds[0] if read.clouds else None
         made = run_stage(self.stage, cloud, read.reference, monitor, read.layers, **self.job.tunables)

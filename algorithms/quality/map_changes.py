@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Optional
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -42,6 +43,10 @@ OLD, BUILT = "old", "built"
 Label = tuple[str, int]
 
 
+# Fields of an update that decisions are made in: arrays by row, and what was drawn.
+_DECIDED = ("status", "confidence", "added", "removed", "rise", "drawn")
+
+
 @rules
 class RULES:
     """How changes are distinguished from errors of the map and of the survey."""
@@ -70,15 +75,14 @@ class MapUpdate:
     outlines: list  #: Rings of the new outlines as the map would draw them
     covered: list[list[int]]  #: For each new outline the rows of the old buildings that it overlaps
     is_new: np.ndarray  #: (k,), bool: new outlines that are of no old building
-    status: list[str]
+    status: np.ndarray  #: (n,), object: str
     confidence: np.ndarray
     added: np.ndarray
     removed: np.ndarray
     shift: np.ndarray  #: (n, 2), m
     rise: np.ndarray  #: (n,), m: rise of the roof since the earlier survey, NaN where unknown
-    drawn: dict[Label, list] = field(
-        default_factory=dict
-    )  #: Polygons of changed and new buildings, none where all fail
+    #: Polygons of changed and new buildings, none where all fail
+    drawn: dict[Label, list] = field(default_factory=dict)
 
     @classmethod
     def of(cls, old: BuildingMap, new: BuildingMap, fit: MapFit) -> MapUpdate:
@@ -91,7 +95,7 @@ class MapUpdate:
         touching = split_groups(np.where(overlap.shared > 0, overlap.other, -1), k)
         is_other = np.bincount(overlap.other, overlap.shared > RULES.there * overlap.area[overlap.one], k)
         is_new = (overlap.other_covered <= RULES.new) & (is_other == 0)
-        status = [MOVED if by.any() else UNCHANGED for by in fit.moved]
+        status = np.where(fit.moved.any(axis=1), MOVED, UNCHANGED).astype(object)
         covered = [overlap.one[rows].tolist() for rows in touching]
         zero, unknown = np.zeros(n), np.full(n, np.nan)
         return cls(rings, outlines, covered, is_new, status, zero, zero.copy(), zero.copy(), fit.moved, unknown)
@@ -111,12 +115,39 @@ class MapUpdate:
         """The new buildings: row of the outline, and rings."""
         return [(row, rings) for (kind, row), own in self.drawn.items() if kind == BUILT for rings in own]
 
-    def blocks(self, width: float) -> list[tuple[list[int], list[int]]]:
+    @cached_property
+    def boxes(self) -> np.ndarray:
+        """Boxes (n + k, 2, 2), m, of the old buildings and of the new outlines, in that order, which numbers them."""
+        return as_polygons([*self.rings, *self.outlines]).box
+
+    def windows(self, side: float, reach: float) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Yield numbers of those with their middles in a square of a side (m), and within a reach (m), and their box.
+
+        Together the squares hold each once.
+        """
+        corner = self.boxes[:, 0].min(axis=0, initial=np.inf)
+        squares, square = np.unique((self.boxes.mean(axis=1) - corner) // side, axis=0, return_inverse=True)
+        for own in split_groups(square.ravel(), len(squares)):
+            box = np.array([self.boxes[own, 0].min(axis=0) - reach, self.boxes[own, 1].max(axis=0) + reach])
+            yield own, meeting_boxes(box[None], self.boxes)[1], box
+
+    def blocks(self, width: float, near: np.ndarray) -> list[tuple[list[int], list[int]]]:
         """Return the rows of old buildings and of new outlines whose boxes lie within a width (m) of each other."""
-        boxes, n = as_polygons([*self.rings, *self.outlines]).box, len(self.rings)
-        pairs = meeting_boxes(boxes + np.array([[-width], [width]]), boxes)
-        count, group = components(*pairs, len(boxes))
-        return [(rows[rows < n].tolist(), (rows[rows >= n] - n).tolist()) for rows in split_groups(group, count)]
+        boxes, n = self.boxes[near], len(self.rings)
+        count, group = components(*meeting_boxes(boxes + np.array([[-width], [width]]), boxes), len(boxes))
+        blocks = [near[rows] for rows in split_groups(group, count)]
+        return [(rows[rows < n].tolist(), (rows[rows >= n] - n).tolist()) for rows in blocks]
+
+    def copied(self) -> MapUpdate:
+        """Return a copy in which other decisions can be made."""
+        return replace(self, **{name: getattr(self, name).copy() for name in _DECIDED})
+
+    def take(self, part: MapUpdate, own: np.ndarray) -> None:
+        """Take the decisions of a copy on some buildings and outlines, by their numbers."""
+        n, olds, numbers = len(self.rings), own[own < len(self.rings)], set(own.tolist())
+        for name in _DECIDED[:-1]:
+            getattr(self, name)[olds] = getattr(part, name)[olds]
+        self.drawn.update({one: of for one, of in part.drawn.items() if one[1] + n * (one[0] == BUILT) in numbers})
 
 
 @dataclass(frozen=True)
@@ -135,13 +166,13 @@ class SeenPoints:
         ground = xyz[classification == PointClass.GROUND]
         is_low = np.isin(classification, (PointClass.GROUND, PointClass.WATER, PointClass.ROAD_SURFACE))
         rest = np.flatnonzero(np.isin(classification, (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)))
-        _, nearest = spatial.cKDTree(ground[:, :2]).query(xyz[rest, :2])
-        is_low[rest] = xyz[rest, 2] <= ground[nearest, 2] + RULES.low
+        if len(ground):
+            _, nearest = spatial.cKDTree(ground[:, :2]).query(xyz[rest, :2])
+            is_low[rest] = xyz[rest, 2] <= ground[nearest, 2] + RULES.low
         return cls(xyz - np.append(fit.shift, 0.0), is_low, sampling.spacing)
 
 
-def roof_points(xyz: np.ndarray, classification: Optional[np.ndarray], fit: MapFit) -> np.ndarray:
-    """Return the points (k, 3), m, that may be of roofs in the order of their eastings, in the frame of the map."""
-    kinds = np.zeros(len(xyz)) if classification is None else classification
+def roof_points(xyz: np.ndarray, kinds: np.ndarray, fit: MapFit) -> np.ndarray:
+    """Return the points (k, 3), m, that may be of roofs by their classes (n,), by easting, in the frame of the map."""
     is_roof = kinds == PointClass.BUILDING
     return by_easting(xyz[is_roof if is_roof.any() else ~np.isin(kinds, NOISE)]) - np.append(fit.shift, 0.0)

@@ -14,7 +14,7 @@ from ..params import MIN_BUILDING_AREA
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Report, feature_names, stage, tunable
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, feature_names, stage, tunable
 from .building_maps import clean_map, refuse_elsewhere
 from .changed_block import ChangedBlock
 from .map_changes import COLORS, GONE, NEW, OLD, RULES, STATUS, MapUpdate, SeenPoints, roof_points
@@ -29,6 +29,16 @@ _FIELDS = (
     Field("shift_north", float, "how far it was shifted to the north", "m"),
     Field("height_change", float, "how far its roof has risen since the earlier survey, in the median", "m"),
 )
+
+# Side (m) of the squares in which buildings are decided on, which bounds the memory of their lattices.
+_SIDE = 400.0
+
+# How far (m) around its buildings others and points are seen: farther than a part that is added to one reaches.
+_REACH = 50.0
+
+# Coordinates (n, 3), m, and classes (n,) of some points of a survey.
+Points = tuple[np.ndarray, np.ndarray]
+
 _GONE_FIELDS = (Field("confidence", float, "share of it where points show the ground, 0 to 1"),)
 _MEASURES = (
     Measure("old_buildings", "Buildings in the old map"),
@@ -37,6 +47,55 @@ _MEASURES = (
     Measure("map_shift_north", "Shift of the points against the map northward", "m"),
     Measure("overhang", "How far roofs reach beyond the walls of the map", "m"),
 )
+
+
+def _update_in_windows(
+    read: Callable[[np.ndarray], list[Points]],
+    side: float,
+    old_map: LayerFeatures,
+    footprints: LayerFeatures,
+    *,
+    min_area: float,
+    least_width: Optional[float],
+    id_field: str,
+    sampling: CloudSampling,
+    monitor: Monitor,
+) -> tuple[LayerFeatures, LayerFeatures, Report]:
+    """Update a map square by square of a side (m), with the points that ``read`` returns in a box (2, 2), m.
+
+    These are of the survey, and of the earlier one. What is usual of the map is measured on all outlines, before.
+    """
+    # Refuses an attribute that the map does not have.
+    feature_names(old_map, id_field)
+    old = clean_map(old_map, "buildings of the old map", monitor)
+    new = clean_map(footprints, "new footprints", monitor)
+    refuse_elsewhere(old, new, "old map", "new footprints")
+    fit = fit_map(old, new)
+    if least_width is None:
+        least_width = float(np.clip(RULES.deviations * fit.deviation, RULES.least_width, RULES.most_width))
+        monitor.resolved(least_width=least_width)
+    start = MapUpdate.of(old, new, fit)
+    update, done, kinds = start.copied(), 0, np.zeros(0, np.uint8)
+    for own, near, box in start.windows(min(side, _SIDE), _REACH):
+        clouds, part = read(box + fit.shift), start.copied()
+        kinds = np.union1d(kinds, clouds[0][1])
+        points, roofs = SeenPoints.of(*clouds[0], fit, sampling), [roof_points(*one, fit) for one in clouds]
+        for olds, news in start.blocks(least_width, near):
+            ChangedBlock(part, points, olds, news, least_width, min_area).decide(roofs)
+        update.take(part, own)
+        done += len(own)
+        monitor.progress(done / len(start.boxes))
+    if len(kinds):
+        require_ground(kinds)
+    sure = footprints.columns.get("confidence", [np.nan] * len(footprints))
+    if not _new_ids(old_map, id_field, 0)[0]:
+        monitor.inform("The map has no attribute 'id' or 'fid': its buildings are numbered in a new one, 'id'.")
+    updated, gone = _layers(update, old_map, old.rows.tolist(), np.array(sure)[new.rows], id_field)
+    report = _report(update, updated, gone, fit)
+    monitor.inform(_summary(report.values))
+    if update.undrawn:
+        monitor.warn(f"New buildings left out, as no outline fits between the buildings of the map: {update.undrawn}.")
+    return updated, gone, report
 
 
 @stage(
@@ -62,6 +121,8 @@ _MEASURES = (
     reference_title="Earlier point cloud",
     reference="A survey before this one, to find roofs that have risen or fallen since.",
     cost=20.0,
+    reach=_REACH,
+    windowed=_update_in_windows,
 )
 def update_map(
     xyz,
@@ -91,7 +152,9 @@ def update_map(
     """Update a map of buildings from a classified cloud: what has not changed stays as it is, with ids and attributes.
 
     Every building gets a status. Parts that were added or torn down are drawn along the old walls where these are still
-    right. New buildings share the walls of those that they touch. Buildings that the points don't show stay.
+    right. New buildings share the walls of those that they touch. Buildings that the points don't show stay. Clouds of
+    any size will do: with more than 10 million points, surveys of many tiles too, they are read part by part where new
+    footprints are given, as from 'Detect buildings' in tiles.
 
     Parameters
     ----------
@@ -130,7 +193,8 @@ def update_map(
     -----
     The usual shift between the map and the new outlines, and how far these lie outside of its walls, are measured on
     all buildings and taken off the new outlines: new parts are drawn as the map draws its own. Buildings that touch
-    are shifted together where all their walls lie elsewhere, by more than the others'.
+    are shifted together where all their walls lie elsewhere, by more than the others'. Then points are read by squares
+    of ``_SIDE`` m or less, and seen ``_REACH`` m around the buildings of each: each building is decided on in one.
 
     A part was added where the new outlines cover what the map does not, and removed where they don't and points show
     the ground on at least ``RULES.shown`` of it. Both are at least ``least_width`` wide and have ``min_area``. A
@@ -158,35 +222,30 @@ def update_map(
     ([7], ['unchanged'], [8])
     """
     require_ground(classification)
-    # Refuses an attribute that the map does not have.
     feature_names(old_map, id_field)
-    old = clean_map(old_map, "buildings of the old map", monitor)
     if footprints is None:
         extracting = monitor.part(0.0, 0.5)
         footprints = extract_footprints(xyz, classification, cluster_id, sampling=sampling, monitor=extracting)
-    new = clean_map(footprints, "new footprints", monitor)
-    refuse_elsewhere(old, new, "old map", "new footprints")
-    fit = fit_map(old, new)
-    if least_width is None:
-        least_width = float(np.clip(RULES.deviations * fit.deviation, RULES.least_width, RULES.most_width))
-        monitor.resolved(least_width=least_width)
-    update = MapUpdate.of(old, new, fit)
-    points = SeenPoints.of(xyz, classification, fit, sampling)
-    roofs = [roof_points(xyz, classification, fit)]
-    roofs += [] if reference_xyz is None else [roof_points(reference_xyz, reference_classification, fit)]
-    blocks = update.blocks(least_width)
-    for number, (olds, news) in enumerate(blocks):
-        ChangedBlock(update, points, olds, news, least_width, min_area).decide(roofs)
-        monitor.progress(0.5 + 0.5 * (number + 1) / len(blocks))
-    sure = footprints.columns.get("confidence", [np.nan] * len(footprints))
-    if not _new_ids(old_map, id_field, 0)[0]:
-        monitor.inform("The map has no attribute 'id' or 'fid': its buildings are numbered in a new one, 'id'.")
-    updated, gone = _layers(update, old_map, old.rows.tolist(), np.array(sure)[new.rows], id_field)
-    report = _report(update, updated, gone, fit)
-    monitor.inform(_summary(report.values))
-    if update.undrawn:
-        monitor.warn(f"New buildings left out, as no outline fits between the buildings of the map: {update.undrawn}.")
-    return updated, gone, report
+    clouds = [(xyz, classification)]
+    if reference_xyz is not None:
+        unknown = np.zeros(len(reference_xyz))
+        clouds.append((reference_xyz, unknown if reference_classification is None else reference_classification))
+
+    def read(box: np.ndarray) -> list[Points]:
+        near = [((one[:, :2] >= box[0]) & (one[:, :2] < box[1])).all(axis=1) for one, _ in clouds]
+        return [(one[is_near], kinds[is_near]) for is_near, (one, kinds) in zip(near, clouds)]
+
+    return _update_in_windows(
+        read,
+        _SIDE,
+        old_map,
+        footprints,
+        min_area=min_area,
+        least_width=least_width,
+        id_field=id_field,
+        sampling=sampling,
+        monitor=monitor.part(0.5, 1.0),
+    )
 
 
 def _new_ids(old_map: LayerFeatures, id_field: str, count: int) -> tuple[str, list]:
@@ -215,7 +274,7 @@ def _layers(
     polygons = [update.drawn.get((OLD, row)) or [own] for row, own in enumerate(outlines)] + [[own] for own in new]
     zero, shift = [0.0] * len(new), np.where(np.array(same)[:, None], 0.0, update.shift)
     table = {
-        "status": update.status + [NEW] * len(new),
+        "status": [*update.status, *[NEW] * len(new)],
         "confidence": [*update.confidence, *(sure[row] for row, _ in update.built)],
         "added": [*update.added, *map(polygon_area, new)],
         "removed": [*update.removed, *zero],

@@ -1,12 +1,16 @@
-"""A stage that measures each feature of a layer, on surveys of any size: block by block, and each feature in one."""
+"""Stages that work on each feature of a layer, on surveys of any size: part by part, and each feature in one."""
 
 from __future__ import annotations
+
+from functools import partial
+from typing import Any, Optional
 
 import numpy as np
 
 from ..pipeline import Pipeline, Step
 from ..run import run_stage
-from ..stage import LayerFeatures, Monitor, ProgressOnly, Stage
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import LayerFeatures, Monitor, ProgressOnly, Stage, StageResults, given_layers
 from .block_plan import side_of_blocks
 from .blocks import feature_boxes, take_features
 from .survey import Survey, boxes_meet
@@ -41,8 +45,7 @@ def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor
     ValueError
         If there are none, or all are left out.
     """
-    alone = Pipeline(stage.name, stage.title, *("",) * 5, (Step(stage.name, stage.name),))
-    sampling = samplings_of(alone, survey, {}, monitor.part(0.0, 0.1), {stage.each: given})[""]
+    sampling = _sampling(stage, survey, monitor.part(0.0, 0.1), {stage.each: given})
     reach, boxes = stage.reach_of({}), feature_boxes(given) + survey.origin[:2]
     side = side_of_blocks(sampling.density, reach)
     features = LayerFeatures(given.geometries, {**given.columns, _ROW: list(range(len(given)))})
@@ -70,3 +73,50 @@ def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor
     columns = {name: [value for one in found for value in one.columns[name]] for name in found[0].columns}
     joined = LayerFeatures([geometry for one in found for geometry in one.geometries], columns)
     return take_features(joined, np.argsort(columns.pop(_ROW)))
+
+
+def run_in_windows(
+    stage: Stage, surveys: list[Survey], layers: dict[str, Optional[LayerFeatures]], monitor: Monitor, **tunables: Any
+) -> StageResults:
+    """Return the results of a stage that reads the points of surveys where it needs them (``windowed``).
+
+    Parameters
+    ----------
+    stage : Stage
+        The stage.
+    surveys : list of Survey
+        The points, and then a reference, where one is given.
+    layers : dict of str to LayerFeatures
+        Layers that it reads, by name, m from the origin of the first survey.
+    monitor : Monitor
+        Receives progress.
+    **tunables
+        Tunables by name.
+    """
+    given = given_layers(stage.name, stage.input_layers, layers)
+    chosen, sampling = stage.check(tunables), _sampling(stage, surveys[0], monitor.part(0.0, 0.1))
+    side, part = side_of_blocks(sampling.density, stage.reach_of(chosen)), monitor.part(0.1, 1.0)
+    return stage.unpack(
+        stage.windowed(partial(_points, surveys), side, **given, **chosen, sampling=sampling, monitor=part)
+    )
+
+
+def _sampling(stage: Stage, survey: Survey, monitor: Monitor, layers: Any = None) -> CloudSampling:
+    """Return how a survey was sampled, with what parts take of the whole."""
+    alone = Pipeline(stage.name, stage.title, *("",) * 5, (Step(stage.name, stage.name),))
+    return samplings_of(alone, survey, {}, monitor, layers)[""]
+
+
+def _points(surveys: list[Survey], box: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return coordinates and classes of the points of each survey in a box (2, 2), m from the origin of the first."""
+    origin, found = surveys[0].origin, []
+    for survey in surveys:
+        window = survey.window(box + origin[:2])
+        if window is None:
+            found.append((np.zeros((0, 3)), np.zeros(0, np.uint8)))
+            continue
+        cloud = window.cloud
+        cloud.origin = origin
+        used = ~cloud.withheld
+        found.append((cloud.get("xyz")[used], cloud.get("classification")[used]))
+    return found

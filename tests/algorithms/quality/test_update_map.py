@@ -7,6 +7,7 @@ from lidar_buildings.algorithms.geometry.line_segments import is_valid
 from lidar_buildings.algorithms.geometry.points_in_polygons import are_within
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
 from lidar_buildings.algorithms.geometry.rings import polygon_area, sides_of_rings
+from lidar_buildings.algorithms.quality import update_map as updating
 from lidar_buildings.algorithms.quality.map_changes import (
     CHANGED,
     DOUBTFUL,
@@ -158,7 +159,8 @@ def _grown(ring, by):
     return np.mean(ring[:-1], axis=0) + (ring - np.mean(ring[:-1], axis=0)) * [1 + by / 5, 1 + by / 4]
 
 
-def test_a_town_that_has_changed_since_a_map_with_errors_was_drawn():
+def changed_town():
+    """Return the buildings of a map with errors by key, what happened to each since, and the true ones now."""
     true, old, kinds = [], [], []
     rng = np.random.default_rng(2)
     for i in range(10):
@@ -180,15 +182,45 @@ def test_a_town_that_has_changed_since_a_map_with_errors_was_drawn():
             off = [of_corner.setdefault(tuple(corner), next(errors)) for corner in rings[0].tolist()]
             far = np.array([1.6, 1.2]) if kinds[number] == MOVED else np.zeros(2)
             old[number] = [rings[0] + off + far]
-    keys = [number for number, rings in enumerate(old) if rings is not None]
-    rows, gone, _ = updated([old[key] for key in keys], true, columns={"id": keys}, low=(-10, -10), high=(250, 140))
-    status = {key: rows[key][0]["status"] if key in rows else GONE for key in keys}
+    return {number: rings for number, rings in enumerate(old) if rings is not None}, kinds, true
+
+
+def test_a_town_that_has_changed_since_a_map_with_errors_was_drawn():
+    old, kinds, true = changed_town()
+    columns = {"id": list(old)}
+    rows, gone, _ = updated(list(old.values()), true, columns=columns, low=(-10, -10), high=(250, 140))
+    status = {key: rows[key][0]["status"] if key in rows else GONE for key in old}
     wanted = {"same": UNCHANGED, "row": UNCHANGED, "annex": CHANGED, "cut": CHANGED, GONE: GONE, MOVED: MOVED}
     assert {key: one for key, one in status.items() if one != wanted[kinds[key]]} == {}
     assert sum(own[0]["status"] == NEW for own in rows.values()) == kinds.count(NEW)
     for row, *_ in rows.values():
         best = max(iou(row["rings"], rings) for rings in true)
         assert best > (0.85 if row["status"] in (UNCHANGED, MOVED) else 0.88)
+
+
+def test_a_map_is_updated_square_by_square_as_at_once(monkeypatch):
+    """Whoever is decided on in one square is seen by others; what is usual of the map is measured on all."""
+    old, _, true = changed_town()
+    given = {"columns": {"id": list(old)}, "footprints": true, "low": (-10, -10), "high": (250, 140)}
+    whole, whole_gone, report = updated(list(old.values()), true, **given)
+    boxes, within = [], updating.SeenPoints.of
+    monkeypatch.setattr(updating, "_SIDE", 37.0)
+    monkeypatch.setattr(updating, "_REACH", 12.0)
+    monkeypatch.setattr(
+        updating.SeenPoints, "of", lambda xyz, *args: boxes.append(np.ptp(xyz, axis=0)) or within(xyz, *args)
+    )
+    rows, gone, parts = updated(list(old.values()), true, **given)
+    assert len(boxes) > 20
+    assert np.max(boxes) < 100
+    assert parts.values == report.values
+    assert gone.columns["id"] == whole_gone.columns["id"]
+    added = [key for key in whole if key not in old]
+    assert sorted(rows) == sorted(whole)
+    for key in set(whole) - set(added):
+        assert [one["status"] for one in rows[key]] == [one["status"] for one in whole[key]]
+        assert iou(rows[key][0]["rings"], whole[key][0]["rings"]) > 0.999
+    for key in added:
+        assert max(iou(rows[key][0]["rings"], whole[one][0]["rings"]) for one in added) > 0.999
 
 
 def test_buildings_of_the_map_neither_overlap_nor_part_where_one_is_drawn_anew():
