@@ -10,7 +10,7 @@ from ..geometry.grid import plan_box
 from ..geometry.groups import components, split_groups
 from ..geometry.level_lines import level_lines
 from ..geometry.line_segments import is_inside
-from ..geometry.polygon_overlap import meeting_boxes
+from ..geometry.polygon_overlap import in_squares, meeting_boxes
 from ..geometry.ring_directions import N_STEPS, RingPieces, direction_weights, main_directions, weights_of_pieces
 from ..geometry.rings import perimeter, signed_area
 from ..packages import spatial
@@ -22,6 +22,8 @@ _FEWEST = 12
 # Pieces closer than this (spacings) are drawn together, since edges move by up to two spacings.
 _TOGETHER = 4.0
 
+# Side (m) of the squares whose directions are found at once: pieces of a ring take hundreds of times its vertices.
+_SQUARE = 500.0
 
 # Distance (m) up to which the walls of neighbors count for directions: across a street.
 _NEIGHBORS = 30.0
@@ -98,15 +100,25 @@ def blocks_of(pieces: list[Piece], spacing: float) -> list[list[Piece]]:
     of_piece = np.repeat(np.arange(len(pieces)), [sum(map(len, piece.rings)) for piece in pieces])
     near = of_piece[spatial.cKDTree(samples).query_pairs(_TOGETHER * spacing, output_type="ndarray")]
     count, block = components(near[:, 0], near[:, 1], len(pieces))
-    return [[pieces[i] for i in np.flatnonzero(block == number)] for number in range(count)]
+    return [[pieces[i] for i in rows] for rows in split_groups(block, count)]
 
 
 def shared_directions(rings: list[list[np.ndarray]]) -> list[np.ndarray]:
     """Return the main directions (k,), °, of buildings, by samples along the rings of each.
 
-    The walls of other buildings around count, the nearer the more.
+    The walls of other buildings around count, the nearer the more. Memory: the buildings of a square.
     """
     boxes = np.array([plan_box(np.concatenate(own)) for own in rings]).reshape(-1, 2, 2)
+    directions = dict[int, np.ndarray]()
+    for own, near, _ in in_squares(boxes, _SQUARE, _NEIGHBORS):
+        is_own = np.isin(near, own)
+        found = _directions_near([rings[row] for row in near], boxes[near])
+        directions.update({row: found[at] for at, row in zip(np.flatnonzero(is_own).tolist(), near[is_own].tolist())})
+    return [directions[row] for row in range(len(rings))]
+
+
+def _directions_near(rings: list[list[np.ndarray]], boxes: np.ndarray) -> list[np.ndarray]:
+    """Return the main directions of buildings that are looked at together; ``boxes`` (n, 2, 2) are theirs, m."""
     pieces = [list(map(RingPieces, own)) for own in rings]
     weights = [sum(weights_of_pieces(own, [None] * len(own))) for own in pieces]
     one, other = meeting_boxes(boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]]), boxes)

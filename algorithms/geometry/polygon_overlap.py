@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..stage import Monitor
-from .groups import items
+from .groups import items, split_groups
 from .rings import signed_area
 
-# Pairs of edges that are compared at a time (150 bytes each).
+# Pairs of edges, or of boxes, that are compared at a time (150 bytes each).
 _PAIRS_AT_ONCE = 1_000_000
 
 
@@ -117,12 +118,29 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
     # A box that begins farther west than the greatest width of all ends before this one begins.
     widest = float((second[:, 1, 0] - second[:, 0, 0]).max())
     low = np.searchsorted(west, first[:, 0, 0] - widest)
-    one, step = items(np.searchsorted(west, first[:, 1, 0], side="right") - low)
-    other = order[low[one] + step]
-    meet = (first[one, 0] <= second[other, 1]).all(axis=1) & (second[other, 0] <= first[one, 1]).all(axis=1)
-    one, other = one[meet], other[meet]
+    count = np.searchsorted(west, first[:, 1, 0], side="right") - low
+    # Each strip from south to north has many: those of a country do not fit in memory at once.
+    part, found = np.cumsum(count) // _PAIRS_AT_ONCE, []
+    for rows in np.split(np.arange(len(first)), np.flatnonzero(np.diff(part)) + 1):
+        near, step = items(count[rows])
+        one, other = rows[near], order[low[rows[near]] + step]
+        meet = (first[one, 0] <= second[other, 1]).all(axis=1) & (second[other, 0] <= first[one, 1]).all(axis=1)
+        found.append((one[meet], other[meet]))
+    one, other = (np.concatenate(rows) for rows in zip(*found))
     by_both = np.lexsort((other, one))
     return one[by_both], other[by_both]
+
+
+def in_squares(boxes: np.ndarray, side: float, reach: float) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Yield rows of boxes (n, 2, 2) with middles in a square of a side (m), those within a reach (m), and their box.
+
+    The squares begin at the corner of all; together they hold each row once.
+    """
+    corner = boxes[:, 0].min(axis=0, initial=np.inf)
+    squares, square = np.unique((boxes.mean(axis=1) - corner) // side, axis=0, return_inverse=True)
+    for own in split_groups(square.ravel(), len(squares)):
+        box = np.array([boxes[own, 0].min(axis=0) - reach, boxes[own, 1].max(axis=0) + reach])
+        yield own, meeting_boxes(box[None], boxes)[1], box
 
 
 def _shared(

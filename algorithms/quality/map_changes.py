@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -119,17 +118,6 @@ class MapUpdate:
     def boxes(self) -> np.ndarray:
         """Boxes (n + k, 2, 2), m, of the old buildings and of the new outlines, in that order, which numbers them."""
         return as_polygons([*self.rings, *self.outlines]).box
-
-    def windows(self, side: float, reach: float) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Yield numbers of those with their middles in a square of a side (m), and within a reach (m), and their box.
-
-        Together the squares hold each once.
-        """
-        corner = self.boxes[:, 0].min(axis=0, initial=np.inf)
-        squares, square = np.unique((self.boxes.mean(axis=1) - corner) // side, axis=0, return_inverse=True)
-        for own in split_groups(square.ravel(), len(squares)):
-            box = np.array([self.boxes[own, 0].min(axis=0) - reach, self.boxes[own, 1].max(axis=0) + reach])
-            yield own, meeting_boxes(box[None], self.boxes)[1], box
 
     def blocks(self, width: float, near: np.ndarray) -> list[tuple[list[int], list[int]]]:
         """Return the rows of old buildings and of new outlines whose boxes lie within a width (m) of each other."""

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+from lidar_buildings.algorithms.footprints import outline_pieces
+from lidar_buildings.algorithms.footprints import regularize_polygons as regularize_module
+from lidar_buildings.algorithms.footprints.outline_pieces import sampled, shared_directions
 from lidar_buildings.algorithms.footprints.regularize_polygons import regularize_polygons
 from lidar_buildings.algorithms.geometry.cell_outlines import outline_cells
 from lidar_buildings.algorithms.geometry.grid import Grid
@@ -99,6 +102,30 @@ def test_round_towers_stay_round_and_courts_stay_open():
     (rings,), _, _ = drawn(traced([court]))
     assert corners(rings) == 8
     assert polis(rings, court) < CELL / 3
+
+
+def test_directions_are_found_square_by_square_as_at_once(monkeypatch):
+    """Memory would grow with the area; nothing else may depend on the squares."""
+    turns = np.random.default_rng(3).uniform(0, 90, 40)
+    houses = [[box(0, 0, 9, 7, turn) + [25 * (row % 8), 22 * (row // 8)]] for row, turn in enumerate(turns)]
+    samples = [[sampled(ring, 0.75)] for (ring,) in traced(houses, noise=0.2)]
+    whole = shared_directions(samples)
+    monkeypatch.setattr(outline_pieces, "_SQUARE", 45.0)
+    for one, other in zip(shared_directions(samples), whole):
+        np.testing.assert_array_equal(one, other)
+    assert len({len(one) for one in whole}) > 1
+
+
+def test_the_scale_of_many_outlines_is_measured_on_some(monkeypatch):
+    houses = [[box(0, 0, 9, 7, turn) + [16 * turn, 0]] for turn in range(0, 60, 2)]
+    whole = drawn(traced(houses))[2].values["tolerance"]
+    monkeypatch.setattr(regularize_module, "_MEASURED", 5)
+    measured = []
+    deviations = regularize_module.deviations
+    monkeypatch.setattr(regularize_module, "deviations", lambda *of: measured.append(1) or deviations(*of))
+    _, _, monitor = drawn(traced(houses))
+    assert len(measured) == 5
+    assert monitor.values["tolerance"] == pytest.approx(whole, rel=0.2)
 
 
 def test_other_noise_changes_little():
