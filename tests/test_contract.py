@@ -73,6 +73,7 @@ WITHOUT_UNIT = {
     "high",
     "deviations",
     "forest",
+    "min_doubtful_share",
     "min_roof_share",
     "min_share_around",
     "holes",

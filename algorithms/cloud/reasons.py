@@ -33,6 +33,7 @@ class Reason(IntEnum):
     WITHOUT_ENTROPY = 22
     UNLIKE_BUILDINGS = 23
     DELETED = 24
+    BY_CHANCE = 25
 
     @property
     def label(self) -> str:
@@ -88,6 +89,7 @@ _TEXTS = {
     Reason.VEHICLE: "Not a building: as wide, long and high as a car, a van or a caravan (matched images).",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
     Reason.UNLIKE_BUILDINGS: "Not a building: unlike the other buildings of the scene.",
+    Reason.BY_CHANCE: "Not a building: doubtful, in a scene without a sure building, as crowns are by chance.",
     Reason.DELETED: "Not a building: deleted by a reviewer.",
     Reason.WITHOUT_ENTROPY: "Undecided: the points have no extent, so their entropy is undefined.",
 }

@@ -51,7 +51,7 @@ _BUILDINGS = Layer(
         Field("id", int, "number of the building, from 1"),
         Field("status", str, f"{FOUND} or {MISSED}: a building of the old map; {NEW}: a footprint that isn't in it"),
         Field("building", str, "its attribute id in its own map, or its number there"),
-        Field("counterpart", str, "what it was compared with in the other map, separated by commas"),
+        Field("counterpart", str, "ids of its counterparts in the other map, separated by commas"),
         Field("area", float, "area", "m²"),
         Field("covered", float, "share of it that the other map has too, the shift taken off, 0 to 1"),
         Field("corners", int, "its corners"),

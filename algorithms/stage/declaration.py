@@ -66,7 +66,7 @@ class Stage:
     of_whole: tuple[str, ...] = ()
     #: Input layer of which it makes one feature each: in a large cloud they are worked on block by block
     each: str = ""
-    #: Does the same where all layers are given and a large cloud is read part by part: in place of arrays it gets a
+    #: Does the same where all layers are given and a large cloud is read part by part. In place of arrays it gets a
     #: function that reads coordinates and classes of each cloud in a box, and the side (m) of parts that fit in memory
     windowed: Any = None
     input_title: str = "Point cloud"  #: Label of the cloud that it reads

@@ -398,6 +398,7 @@ WHOLE = (
         _set("buildings.entropy_split:SPLIT", weight=1e9),
     ),
     Rule("refine: learned from the scene", tunables={"refine": {"learn": False}}),
+    Rule("refine: doubtful buildings of a scene without a sure one", tunables={"refine": {"min_doubtful_share": 0.0}}),
     Rule("complete: structures on roofs", tunables={"complete": {"structure_height": 0.0}}),
     Rule("complete: share of roof surfaces", tunables={"complete": {"min_roof_share": 0.0}}),
     Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),

@@ -226,8 +226,7 @@ def test_a_part_judges_as_the_whole_where_the_whole_was_learned(village):
     expected = village.refine(sampling=whole)[0]
     west = np.flatnonzero(village.xyz[:, 0] < 60)
     part = CloudSampling(lambda: village.xyz[west], corner=whole.corner)
-    (name, (table, learn)) = next(iter(whole.samples.items()))
-    part.of_whole[name] = learn(table)
+    part.of_whole.update({name: learn(table) for name, (table, learn) in whole.samples.items()})
     found = village.refine(west, sampling=part, density=whole.effective_density)[0]
     inside = village.xyz[west, 0] < 50
     np.testing.assert_array_equal(found[0][inside], expected[0][west][inside])
@@ -241,7 +240,7 @@ def test_a_house_less_leaves_the_sample_of_the_others_as_it_is(village, monkeypa
     for rows in (np.arange(len(village.xyz)), np.flatnonzero((village.xyz[:, :2] > 22.0).any(axis=1))):
         sampling = CloudSampling(lambda rows=rows: village.xyz[rows], corner=np.zeros(2))
         village.refine(rows, sampling=sampling, density=4.0)
-        tables.append(next(iter(sampling.samples.values()))[0])
+        tables.append(sampling.samples["building_likeness"][0])
     one, other = ({tuple(row) for row in np.round(table[:, 4:], 6).tolist()} for table in tables)
     assert len(one) > 250
     assert len(one & other) > 0.8 * len(one)
