@@ -175,6 +175,15 @@ SCENES = {
     "simulatetown": Scene(TOWN, color="classification", keeps_classes=True),
     "simulatevillage": Scene(VILLAGE, color="colors"),
     "simulatedronesite": Scene(("simulate_drone_site", {"size": 100.0}), color="colors"),
+    "updatemap": Scene(
+        VILLAGE, ("update_map",), color="classification", lines="updated_map buildings_gone", keeps_classes=True
+    ),
+    "regularizepolygons": Scene(
+        VILLAGE, ("regularize_polygons",), color="classification", lines="regularized", keeps_classes=True
+    ),
+    "computebuildingheights": Scene(
+        VILLAGE, ("compute_building_heights",), color="classification", lines="buildings", keeps_classes=True
+    ),
     "simulateflight": Scene(FLIGHT, color="classification", keeps_classes=True),
     "simulateplant": Scene(PLANT, **RACK),
     "simulatetree": Scene(TREE, color="segment_id", tilt=80.0, height=560),
@@ -199,13 +208,16 @@ def derived_scene(stage: Stage) -> Scene:
 
 def made(scene: Scene) -> Outcome:
     """Return the cloud of a scene after its steps, and the layers that these made."""
-    cloud = _simulated(scene.simulation[0], tuple(scene.simulation[1].items())).copy()
+    simulated = _simulated(scene.simulation[0], tuple(scene.simulation[1].items()))
+    cloud = simulated.cloud.copy()
     if not scene.keeps_classes and cloud.has("classification"):
         cloud.set("classification", np.zeros(len(cloud), np.uint8))
     if scene.pipeline:
         done = run_pipeline(PIPELINES[scene.pipeline], cloud)
         return Outcome(done.cloud, done.layers)
-    layers: dict[str, Any] = {}
+    # The true footprints and the map of a scene are given to steps that work on its true classes.
+    layers: dict[str, Any] = dict(simulated.layers) if scene.keeps_classes else {}
+    layers["polygons"] = layers.get("old_map")
     for step in scene.steps:
         name, tunables = (step, {}) if isinstance(step, str) else step
         stage = STAGES[name]
@@ -216,9 +228,9 @@ def made(scene: Scene) -> Outcome:
 
 
 @cache
-def _simulated(name: str, tunables: tuple[tuple[str, Any], ...]) -> Cloud:
-    """Return the cloud of a simulation, which several scenes share."""
-    return run_stage(STAGES[name], **dict(tunables)).cloud
+def _simulated(name: str, tunables: tuple[tuple[str, Any], ...]) -> Outcome:
+    """Return the results of a simulation, which several scenes share."""
+    return run_stage(STAGES[name], **dict(tunables))
 
 
 def drawn(scene: Scene) -> QImage:
