@@ -25,8 +25,15 @@ plt.style.use("dark_background")
 ax = plt.subplots(figsize=(8, 6))[1]
 ridge = np.array(buildings.columns["ridge_height"])
 color = plt.get_cmap("viridis")((ridge - np.nanmin(ridge)) / np.ptp(ridge[np.isfinite(ridge)]))
-for rings, one, high, kind in zip(buildings.geometries, color, ridge, buildings.columns["roof_type"]):
-    ax.fill(*rings[0].T, facecolor=one, edgecolor="white", linewidth=0.5)
-    ax.annotate(f"{high:.1f} m\n{kind}", rings[0].mean(axis=0), ha="center", va="center", fontsize=7)
+names = [kind or state for kind, state in zip(buildings.columns["roof_type"], buildings.columns["state"])]
+for rings, one, high, name in zip(buildings.geometries, color, ridge, names):
+    ax.fill(*rings[0].T, facecolor=one if np.isfinite(high) else "none", edgecolor="white", linewidth=0.5)
+    ax.annotate(
+        f"{high:.1f} m\n{name}" if np.isfinite(high) else name,
+        rings[0].mean(axis=0),
+        ha="center",
+        va="center",
+        fontsize=7,
+    )
 ax.set(aspect="equal", xlabel="m", ylabel="m")
 plt.tight_layout()
