@@ -9,8 +9,9 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..geometry.groups import split_groups
 from ..rules import rules
-from ..stage import Field
+from ..stage import Field, LayerFeatures
 from .building_models import BuildingModel
 from .mending import LARGE
 from .roof_points import RULES
@@ -150,6 +151,22 @@ class NamedModel:
         facts = {**record["model"], **{name: dict(record["model"][name]) for name in _OF_PLANES}}
         rings = [np.array(ring) for ring in record["rings"]]
         return cls(name, rings, BuildingModel(**facts, solids=solids), record["attributes"])
+
+    @classmethod
+    def of_triangles(cls, name: str, corners: np.ndarray) -> NamedModel:
+        """Return the patch of terrain of triangles with corners (f, 3, 3), m."""
+        vertices, rows = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+        faces = [[ring] for ring in rows.reshape(-1, 3).tolist()]
+        solid = Solid(vertices, faces, [TERRAIN] * len(faces), [-1] * len(faces))
+        return cls(name, [], BuildingModel(np.nan, TERRAIN, solids={TERRAIN: [solid]}), {})
+
+    @classmethod
+    def of_features(cls, features: LayerFeatures) -> list[NamedModel]:
+        """Return the patches of a layer of terrain."""
+        names, patch = np.unique(features.columns["patch"], return_inverse=True)
+        corners = np.array([exterior[:3] for (exterior,) in features.geometries])
+        rows = split_groups(patch, len(names))
+        return [cls.of_triangles(name, corners[own]) for name, own in zip(names.tolist(), rows)]
 
 
 def _plain_solid(solid: Solid) -> dict[str, Any]:

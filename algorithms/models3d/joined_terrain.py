@@ -16,7 +16,6 @@ from ..geometry.tiled_tin import TiledTin
 from ..packages import spatial
 from ..stage import Field, LayerFeatures, Monitor
 from .building_facts import NamedModel, face_rings, faces_of
-from .building_models import BuildingModel
 from .face_triangles import triangulate_face
 from .solid_faults import fault_of
 from .solids import DECIMALS, GROUND, ROOF, TERRAIN, Solid, edges_around
@@ -62,14 +61,7 @@ class Terrain:
 
     def models(self) -> list[NamedModel]:
         """Return the patches as items of files."""
-        found = []
-        for name, facets in self.patches.items():
-            used, rows = np.unique(facets, return_inverse=True)
-            faces = [[ring] for ring in rows.reshape(-1, 3).tolist()]
-            solid = Solid(self.nodes[used], faces, [TERRAIN] * len(faces), [-1] * len(faces))
-            model = BuildingModel(np.nan, TERRAIN, solids={TERRAIN: [solid]})
-            found.append(NamedModel(name, [], model, {}))
-        return found
+        return [NamedModel.of_triangles(name, self.nodes[facets]) for name, facets in self.patches.items()]
 
 
 def terrain_layer(patches: Iterable[NamedModel]) -> LayerFeatures:

@@ -46,6 +46,9 @@ from .solids import ROOF, WALL
 # Number of footprints without a model that a warning names.
 _NAMED = 5
 
+# Items of files: models of the footprints, and patches of terrain.
+_ITEMS = (NamedModel, "footprints", "terrain")
+
 
 @stage(
     "3D",
@@ -70,8 +73,8 @@ _NAMED = 5
         ),
     ),
     files=(
-        TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "footprints"),
-        TextFile("obj", "Wavefront OBJ", wavefront.FORMATS, wavefront.obj_pieces, NamedModel, "footprints"),
+        TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, *_ITEMS),
+        TextFile("obj", "Wavefront OBJ", wavefront.FORMATS, wavefront.obj_pieces, *_ITEMS),
     ),
     cost=70.0,
     reach=lambda tunables: PATCH if tunables["terrain_tolerance"] else 0.0,
@@ -166,8 +169,8 @@ def reconstruct_roofs(
 
     With a tolerance of the terrain, the lower edges of all walls are edges of its triangles, so that there is no gap,
     and the ground of a solid is in triangles, too. Where that is no valid solid, as where terrain lies above an eave,
-    its ground is level, as low as the lowest terrain at its walls. CityJSON has the terrain as ``TINRelief``, without
-    it in surveys in tiles; it has no geometry for the line where terrain and walls meet.
+    its ground is level, as low as the lowest terrain at its walls. CityJSON has the terrain as ``TINRelief``;
+    it has no geometry for the line where terrain and walls meet.
 
     Unlike in the publications, lines cut only the cells along which planes adjoin, so that the cost
     grows with the border of planes and not with the square of their number. A border costs its length and the

@@ -268,6 +268,10 @@ class FileItem(Protocol):
     def of_record(cls, record: dict[str, Any], name: str) -> Any:
         """Return the item of plain values, under a name."""
 
+    @classmethod
+    def of_features(cls, features: LayerFeatures) -> list[Any]:
+        """Return the items of features of the layer that the file has, too."""
+
 
 # A part of a file, or the name and the content of another one that belongs next to it.
 Piece = Union[str, bytes, tuple[str, bytes]]
@@ -281,7 +285,7 @@ class TextFile:
     its name, the preferred one first. ``write`` returns the text or bytes, in parts, of any number of items in
     a format and for a map; it goes through the items as often as it likes, and keeps none. Where runs in tiles make it,
     ``item`` is what they are, a class of :class:`FileItem`, and ``of`` the layer, made by the stage or given to it,
-    whose ``id`` is their name.
+    whose ``id`` is their name. Features of the layer ``also`` are items, too.
     """
 
     name: str
@@ -290,6 +294,7 @@ class TextFile:
     write: Callable[[Collection[Any], str, MapFrame], Iterator[Piece]]
     item: type[FileItem] = FileItem  # type: ignore[type-abstract]
     of: str = ""
+    also: str = ""
 
     def format_of(self, file_name: str) -> str:
         """Return the format by a file's extension.

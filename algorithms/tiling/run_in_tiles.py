@@ -141,7 +141,7 @@ class _Run:
             outcome.take(blocks)
             kept = self._join(blocks, outcome)
             steps.run_others()
-            self._pass_on(blocks, kept)
+            self._pass_on(blocks, kept, outcome.layers)
             view = steps.view()
             TileWriter(settings, outcome, self.by_index, view).write(executor, blocks)
             steps.run_paged(view)
@@ -173,14 +173,14 @@ class _Run:
         outcome.layers, kept = self._layers(blocks, self.monitor.part(WORKED, JOINED))
         return kept
 
-    def _pass_on(self, blocks: WorkedOn, kept: dict[str, np.ndarray]) -> None:
+    def _pass_on(self, blocks: WorkedOn, kept: dict[str, np.ndarray], layers: dict[str, LayerFeatures]) -> None:
         """Hand over rasters, text files and warnings."""
         settings, options, paths = self.settings, self.settings.options, [path for _, path in blocks.done]
         if options.take_raster:
             for mosaic in join_rasters(paths, blocks.found):
                 options.take_raster(self.survey, mosaic)
         if options.take_file:
-            for name, content in join_files(settings.pipeline, settings.steps, paths, kept).items():
+            for name, content in join_files(settings.pipeline, settings.steps, paths, kept, layers).items():
                 options.take_file(self.survey, name, content)
         self._warn_of_blocks(blocks.found)
 

@@ -98,8 +98,9 @@ def files_of(pipeline: Pipeline) -> dict[str, tuple[TextFile, str]]:
     found = {}
     for output in pipeline.outputs:
         if isinstance(output.declared, TextFile):
-            file = replace(output.declared, name=output.name)
-            found[output.name] = file, _named(names, output.step, file.of)
+            file = output.declared
+            also = names[output.step.name, file.also] if file.also else ""
+            found[output.name] = replace(file, name=output.name, also=also), _named(names, output.step, file.of)
     return found
 
 

@@ -69,8 +69,9 @@ def test_every_building_is_modelled_once_and_valid(survey):
     assert outcome.blocks == 4
     things = assert_valid_cityjson(texts["CityJSON"])["CityObjects"]
     ids = [str(number) for number in outcome.layers["footprints"].columns["id"]]
-    assert sorted(name.split("-")[0] for name in things) == ids == ["1", "2", "3"]
-    for thing in things.values():
+    houses = {name: thing for name, thing in things.items() if thing["type"] == "Building"}
+    assert sorted(name.split("-")[0] for name in houses) == ids == ["1", "2", "3"]
+    for thing in houses.values():
         assert [geometry["lod"] for geometry in thing["geometry"]] == ["1.2", "1.3", "2.2"]
         assert thing["attributes"]["roof_type"] == "gable"
         # 12 m by 10 m, 6 m high in the mean.
@@ -82,7 +83,9 @@ def test_models_stand_where_their_footprints_are(survey):
     whole = json.loads(texts["CityJSON"])
     places = np.array(whole["vertices"]) * whole["transform"]["scale"] + whole["transform"]["translate"]
     footprints = outcome.layers["footprints"]
-    named = {thing["attributes"]["building"]: thing for thing in whole["CityObjects"].values()}
+    named = {
+        thing["attributes"]["building"]: thing for thing in whole["CityObjects"].values() if thing["type"] == "Building"
+    }
     for name, rings in zip(footprints.columns["id"], footprints.geometries):
         shell = named[str(name)]["geometry"][-1]["boundaries"][0]
         own = places[[vertex for face in shell for ring in face for vertex in ring]]
@@ -103,7 +106,8 @@ def test_all_formats_have_all_buildings(survey):
     _, texts = survey
     head, *features = map(json.loads, texts["CityJSONSeq"].splitlines())
     assert head["type"] == "CityJSON"
-    assert sorted(feature["id"].split("-")[0] for feature in features) == ["1", "2", "3"]
+    assert sorted(feature["id"].split("-")[0] for feature in features)[:3] == ["1", "2", "3"]
+    assert [feature["id"][:7] for feature in features[3:]] == ["terrain"] * 4
     assert texts["Wavefront OBJ"].count("\no building_") == 3
 
 
@@ -126,6 +130,32 @@ def test_terrain_is_that_of_the_whole_cloud_without_seams(survey, whole):
     assert len(expected) > 50
     assert found == expected
     assert len(set(outcome.layers["terrain"].columns["patch"])) == 4
+
+
+def test_files_have_the_terrain_of_the_layer_once_and_its_vertices_are_those_of_walls(survey, whole):
+    outcome, texts = survey
+    read = json.loads(texts["CityJSON"])
+    places = np.array(read["vertices"]) * read["transform"]["scale"] + read["transform"]["translate"]
+    patches = [thing for thing in read["CityObjects"].values() if thing["type"] == "TINRelief"]
+    triangles = [ring for patch in patches for (ring,) in patch["geometry"][0]["boundaries"]]
+    found = sorted(sorted(places[ring].round(4).tolist()) for ring in triangles)
+    geometries = whole.layers["terrain"].geometries
+    assert len(patches) == 4
+    assert found == sorted(sorted((rings[0][:3] + whole.cloud.origin).round(4).tolist()) for rings in geometries)
+    edges = {edge for ring in triangles for edge in zip(ring, ring[1:] + ring[:1])}
+    assert len(edges) == 3 * len(triangles), "a triangle is there twice"
+    solids = [thing["geometry"][-1] for thing in read["CityObjects"].values() if thing["type"] == "Building"]
+    grounds = [
+        ring
+        for solid in solids
+        for (ring, *_), number in zip(solid["boundaries"][0], solid["semantics"]["values"][0])
+        if solid["semantics"]["surfaces"][number]["type"] == "GroundSurface"
+    ]
+    below = {edge for ring in grounds for edge in zip(ring, ring[1:] + ring[:1])}
+    border = {edge for edge in below if edge[::-1] not in below}
+    assert len(border) >= 12
+    # Grounds look down, terrain up: the same way along their common edges.
+    assert border <= edges, "a gap between wall and terrain"
 
 
 def test_models_are_kept_as_text_to_the_last_bit(whole):
