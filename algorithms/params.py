@@ -56,8 +56,8 @@ POINT_SOURCE = tunable(
     "automatic",
     "Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by "
     "planarity within half a meter of each point and by color, and low buildings are looked for. 'automatic' "
-    "takes a cloud for matched images that has no second returns, at least 8 points per m² and no points beneath "
-    "crowns.",
+    "takes a cloud for matched images that has no second returns, no points beneath crowns, and at least 8 points "
+    "per m², or 4 and colors.",
     label="Source of the points",
     choices=("automatic", "laser scanner", "matched images"),
 )

@@ -131,7 +131,8 @@ def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampl
     """
     used = counted(cloud)
     corner = _corner(cloud) if corner is None else corner
-    return CloudSampling(lambda: cloud.get("xyz").compress(used, axis=0), not has_several_returns(cloud), corner)
+    single = not has_several_returns(cloud)
+    return CloudSampling(lambda: cloud.get("xyz").compress(used, axis=0), single, corner, has_colors(cloud))
 
 
 def _corner(cloud: Cloud) -> np.ndarray:
@@ -143,6 +144,11 @@ def _corner(cloud: Cloud) -> np.ndarray:
 def has_several_returns(cloud: Cloud) -> bool:
     """Whether a pulse of a cloud is known to have more than one return."""
     return cloud.has("number_of_returns") and int(cloud.get("number_of_returns").max(initial=0)) > 1
+
+
+def has_colors(cloud: Cloud) -> bool:
+    """Whether points of a cloud are known to have colors."""
+    return cloud.has("red") and bool(cloud.get("red").any())
 
 
 def counted(cloud: Cloud) -> np.ndarray:

@@ -10,7 +10,7 @@ from ..geometry.grid import plan_box
 from ..geometry.groups import components, split_groups
 from ..geometry.level_lines import level_lines
 from ..geometry.line_segments import is_inside
-from ..geometry.polygon_overlap import in_squares, meeting_boxes
+from ..geometry.polygon_overlap import SQUARE, in_squares, meeting_boxes
 from ..geometry.ring_directions import N_STEPS, RingPieces, direction_weights, main_directions, weights_of_pieces
 from ..geometry.rings import perimeter, signed_area
 from ..packages import spatial
@@ -21,9 +21,6 @@ _FEWEST = 12
 
 # Pieces closer than this (spacings) are drawn together, since edges move by up to two spacings.
 _TOGETHER = 4.0
-
-# Side (m) of the squares whose directions are found at once: pieces of a ring take hundreds of times its vertices.
-_SQUARE = 500.0
 
 # Distance (m) up to which the walls of neighbors count for directions: across a street.
 _NEIGHBORS = 30.0
@@ -103,14 +100,15 @@ def blocks_of(pieces: list[Piece], spacing: float) -> list[list[Piece]]:
     return [[pieces[i] for i in rows] for rows in split_groups(block, count)]
 
 
-def shared_directions(rings: list[list[np.ndarray]]) -> list[np.ndarray]:
+def shared_directions(rings: list[list[np.ndarray]], side: float = SQUARE) -> list[np.ndarray]:
     """Return the main directions (k,), °, of buildings, by samples along the rings of each.
 
-    The walls of other buildings around count, the nearer the more. Memory: the buildings of a square.
+    The walls of other buildings around count, the nearer the more. Memory: the buildings of a
+    square with ``side`` (m), since pieces of a ring take hundreds of times its vertices.
     """
     boxes = np.array([plan_box(np.concatenate(own)) for own in rings]).reshape(-1, 2, 2)
     directions = dict[int, np.ndarray]()
-    for own, near, _ in in_squares(boxes, _SQUARE, _NEIGHBORS):
+    for own, near, _ in in_squares(boxes, _NEIGHBORS, side):
         is_own = np.isin(near, own)
         found = _directions_near([rings[row] for row in near], boxes[near])
         directions.update({row: found[at] for at, row in zip(np.flatnonzero(is_own).tolist(), near[is_own].tolist())})

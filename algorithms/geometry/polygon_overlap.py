@@ -14,6 +14,9 @@ from .rings import signed_area
 # Pairs of edges, or of boxes, that are compared at a time (150 bytes each).
 _PAIRS_AT_ONCE = 1_000_000
 
+# Side (m) of the squares whose polygons are worked on at once, where nothing but memory depends on it.
+SQUARE = 500.0
+
 
 @dataclass(frozen=True)
 class Polygons:
@@ -131,7 +134,9 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
     return one[by_both], other[by_both]
 
 
-def in_squares(boxes: np.ndarray, side: float, reach: float) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def in_squares(
+    boxes: np.ndarray, reach: float, side: float = SQUARE
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Yield rows of boxes (n, 2, 2) with middles in a square of a side (m), those within a reach (m), and their box.
 
     The squares begin at the corner of all; together they hold each row once.

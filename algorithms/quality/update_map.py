@@ -77,7 +77,7 @@ def _update_in_windows(
         monitor.resolved(least_width=least_width)
     start = MapUpdate.of(old, new, fit)
     update, done, kinds = start.copied(), 0, np.zeros(0, np.uint8)
-    for own, near, box in in_squares(start.boxes, min(side, _SIDE), _REACH):
+    for own, near, box in in_squares(start.boxes, _REACH, min(side, _SIDE)):
         clouds, part = read(box + fit.shift), start.copied()
         kinds = np.union1d(kinds, clouds[0][1])
         points, roofs = SeenPoints.of(*clouds[0], fit, sampling), [roof_points(*one, fit) for one in clouds]

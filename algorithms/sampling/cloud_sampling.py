@@ -14,7 +14,7 @@ from ..neighborhoods.wide_in_plan import Wide
 from .closed_surface import seen_through_share
 from .density import effective_density, point_density
 from .height_resolution import height_resolution, rounding_deviation
-from .kinds import IMAGES, LASER, CloudKind
+from .kinds import IMAGES, LASER, SCENE, CloudKind
 from .surface_noise import SURFACES, SurfaceSample, plane_roughness
 
 # Measurements, each with its name and unit in the log.
@@ -32,7 +32,7 @@ _MEASURES = {
 # second returns, see :func:`.closed_surface.seen_through_share`.
 _MOST_SEEN_THROUGH = 0.02
 
-# Least density (points/m²) at which the share seen through distinguishes them: nine points share a cell then.
+# Least density (points/m²) at which the share seen through alone distinguishes them, as it does for few crowns, too.
 _LEAST_DENSITY = 8.0
 
 # Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
@@ -63,6 +63,8 @@ class CloudSampling:
         Whether no pulse is known to have more than one return. Clouds matched from images never have.
     corner : ndarray of shape (2,), optional
         Least easting and northing of the whole, m, where cells begin; of ``points``, unless given.
+    has_colors : bool
+        Whether points have colors, as those of images have.
 
     Attributes
     ----------
@@ -82,10 +84,14 @@ class CloudSampling:
     """
 
     def __init__(
-        self, points: Callable[[], np.ndarray], single_returns: bool = False, corner: Optional[np.ndarray] = None
+        self,
+        points: Callable[[], np.ndarray],
+        single_returns: bool = False,
+        corner: Optional[np.ndarray] = None,
+        has_colors: bool = False,
     ) -> None:
         self._points = points
-        self.single_returns = single_returns
+        self.single_returns, self.has_colors = single_returns, has_colors
         self.of_whole: dict[str, Any] = {}
         self.found: dict[str, float] = {}
         self.samples: dict[str, tuple[np.ndarray, Learn]] = {}
@@ -203,7 +209,22 @@ class CloudSampling:
         """Whether the cloud holds one surface seen from above, from matched images: measured, or by its source."""
         if source != "automatic":
             return source == "matched images"
-        return self.single_returns and self.density >= _LEAST_DENSITY and self.seen_through <= _MOST_SEEN_THROUGH
+        return self.density >= (self.density_of_images if self.has_colors else _LEAST_DENSITY) and self._is_closed
+
+    @property
+    def density_of_images(self) -> float:
+        """Density (points/m²) that the rules of images need: a point per half meter, over which roofs are planar."""
+        return 1 / SCENE.least_cell**2
+
+    @property
+    def lacks_points_of_images(self) -> bool:
+        """Whether the cloud looks matched from images, but is too thin for the rules of such clouds."""
+        return self.has_colors and self.density < self.density_of_images and self._is_closed
+
+    @property
+    def _is_closed(self) -> bool:
+        """Whether hardly any pulse is known to pass through a crown."""
+        return self.single_returns and self.seen_through <= _MOST_SEEN_THROUGH
 
     def kind(self, source: str = "automatic") -> CloudKind:
         """Return the kind of the cloud: measured, or by its source."""
@@ -231,7 +252,7 @@ class CloudSampling:
 
     def without_points(self) -> CloudSampling:
         """Return the sampling as numbers alone, all measured: for blocks of a survey, in other processes."""
-        alone = CloudSampling(_no_points, self.single_returns, self.corner)
+        alone = CloudSampling(_no_points, self.single_returns, self.corner, self.has_colors)
         alone.__dict__.update({name: getattr(self, name) for name in _MEASURES})
         alone.__dict__["_surfaces"] = self._surfaces.measured()
         alone.of_whole = dict(self.of_whole)

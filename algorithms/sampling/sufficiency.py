@@ -40,6 +40,9 @@ def why_doubtful(xyz: np.ndarray, classification: np.ndarray, sampling: CloudSam
             f"it has {sampling.effective_density:.2g} points per m² where it is thin, and {SUFFICIENCY.density:g} are "
             "needed"
         )
+    if sampling.lacks_points_of_images:
+        needed = f"{sampling.density_of_images:g} points per m²"
+        faults.append(f"it looks matched from images, and has {sampling.density:.2g} instead of {needed}")
     if not sampling.of_whole:
         faults += _faults_of_whole(xyz, classification, sampling.density)
     if not faults:

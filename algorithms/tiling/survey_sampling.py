@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.cloud import Cloud
 from ..pipeline import Pipeline
-from ..run import counted, has_several_returns, run_pipeline
+from ..run import counted, has_colors, has_several_returns, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling, Learn
 from ..stage import Monitor, ProgressOnly
 from .survey import Survey
@@ -170,5 +170,5 @@ def _enough(clouds: list[Cloud]) -> list[Cloud]:
 def _sampling_of(clouds: list[Cloud], corner: np.ndarray) -> CloudSampling:
     """Return how several parts of a survey with a south-western ``corner`` (2,) were sampled, all measures taken."""
     together = np.concatenate([cloud.get("xyz")[counted(cloud)] for cloud in clouds])
-    sampling = CloudSampling(lambda: together, not any(has_several_returns(cloud) for cloud in clouds), corner)
-    return sampling.without_points()
+    single, colored = not any(map(has_several_returns, clouds)), all(map(has_colors, clouds))
+    return CloudSampling(lambda: together, single, corner, colored).without_points()

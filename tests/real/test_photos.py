@@ -11,6 +11,7 @@ from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline, sampling_of
+from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.benchmarks.drone import largest_false, mapped_cells
 from lidar_buildings.tests.real.clouds import (
     WITH_BUILDINGS,
@@ -48,6 +49,36 @@ def test_matched_images_are_distinguished_from_laser_scanners():
     assert all(sampling_of(read_cloud(path_of(name))).is_closed_surface() for name in WITH_IMAGES)
     for name in (*WITH_BUILDINGS, *WITHOUT_BUILDINGS):
         assert not sampling_of(read_cloud(path_of(name))).is_closed_surface()
+
+
+def thinned(name, density):
+    """Return a cloud with ``density`` points per m², and the rows that it has of the whole."""
+    cloud = read_cloud(path_of(name))
+    share = density / sampling_of(cloud).density
+    rows = np.flatnonzero(np.random.default_rng(0).random(len(cloud)) < share)
+    return cloud.take(rows), rows
+
+
+def test_they_are_distinguished_with_few_points_too():
+    assert all(sampling_of(thinned(name, 4.5)[0]).is_closed_surface() for name in WITH_IMAGES)
+
+
+def test_too_few_points_of_images_are_said():
+    warned = Monitor()
+    run_pipeline(PIPELINES["detect_buildings"], thinned(TOWN, 2.0)[0], warned, wanted=("output",))
+    assert any(
+        "it looks matched from images" in one and one.endswith(" instead of 4 points per m².")
+        for one in warned.warnings
+    )
+
+
+def test_a_town_is_found_at_six_points_per_square_meter():
+    """By the rules of laser clouds its F was 80.2 %."""
+    cloud, rows = thinned(TOWN, 6.0)
+    cloud.set("classification", np.zeros(len(cloud), np.uint8))
+    found = run_pipeline(PIPELINES["detect_buildings"], cloud, wanted=("output",)).cloud
+    called, true = (classes == PointClass.BUILDING for classes in (found.get("classification"), truth(TOWN)[rows]))
+    assert 2 * np.sum(called & true) / (called.sum() + true.sum()) > 0.88
 
 
 def test_houses_are_mapped_whole():

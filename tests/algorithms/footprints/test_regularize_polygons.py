@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from lidar_buildings.algorithms.footprints import outline_pieces
 from lidar_buildings.algorithms.footprints import regularize_polygons as regularize_module
 from lidar_buildings.algorithms.footprints.outline_pieces import sampled, shared_directions
 from lidar_buildings.algorithms.footprints.regularize_polygons import regularize_polygons
@@ -104,14 +103,13 @@ def test_round_towers_stay_round_and_courts_stay_open():
     assert polis(rings, court) < CELL / 3
 
 
-def test_directions_are_found_square_by_square_as_at_once(monkeypatch):
+def test_directions_are_found_square_by_square_as_at_once():
     """Memory would grow with the area; nothing else may depend on the squares."""
     turns = np.random.default_rng(3).uniform(0, 90, 40)
     houses = [[box(0, 0, 9, 7, turn) + [25 * (row % 8), 22 * (row // 8)]] for row, turn in enumerate(turns)]
     samples = [[sampled(ring, 0.75)] for (ring,) in traced(houses, noise=0.2)]
     whole = shared_directions(samples)
-    monkeypatch.setattr(outline_pieces, "_SQUARE", 45.0)
-    for one, other in zip(shared_directions(samples), whole):
+    for one, other in zip(shared_directions(samples, side=45.0), whole):
         np.testing.assert_array_equal(one, other)
     assert len({len(one) for one in whole}) > 1
 

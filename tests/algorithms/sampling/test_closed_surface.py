@@ -34,6 +34,14 @@ def test_crowns_decide(is_closed):
     assert CloudSampling(lambda: xyz, single_returns=True).is_closed_surface() == is_closed
 
 
+def test_colors_decide_where_points_are_fewer():
+    closed, open_ = (scene(np.random.default_rng(4), is_closed)[::4] for is_closed in (True, False))
+    for xyz, has_colors in ((closed, True), (closed, False), (open_, True)):
+        sampling = CloudSampling(lambda xyz=xyz: xyz, single_returns=True, has_colors=has_colors)
+        assert sampling.is_closed_surface() == (xyz is closed and has_colors)
+    assert not CloudSampling(lambda: closed[::2], single_returns=True, has_colors=True).is_closed_surface()
+
+
 def test_second_returns_and_few_points_are_of_laser_scanners():
     xyz = scene(np.random.default_rng(4), True)
     assert not CloudSampling(lambda: xyz).is_closed_surface()
