@@ -17,7 +17,7 @@ from .exported_models import KINDS, ExportedModel, Face
 from .textures import Atlas, atlas_of, png
 
 # Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows, doors and terrain, as in the styles of layers.
-_COLORS = dict(
+COLORS = dict(
     zip(KINDS, ((178, 72, 54), (226, 216, 196), (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108)))
 )
 
@@ -67,7 +67,7 @@ def glb(
     rows.sort(key=lambda row: KINDS.index(row[1].kind))
     file = _File()
     is_textured = any(face.texture is not None for _, face in rows)
-    atlas = atlas_of([_image(face) for _, face in rows]) if is_textured else None
+    atlas = atlas_of([image_of(face) for _, face in rows]) if is_textured else None
     primitives = _primitives(rows, placed, np.asarray(middle, float), file, atlas)
     of_models = [{"name": model.name, **model.facts} for model in models]
     of_faces = [{"kind": face.kind, **({} if face.kind in (GROUND, TERRAIN) else face.facts)} for _, face in rows]
@@ -87,9 +87,9 @@ def glb(
     return file.packed(root)
 
 
-def _image(face: Face) -> np.ndarray:
+def image_of(face: Face) -> np.ndarray:
     """Return the image on a face, one texel of the color of its kind where it has none."""
-    return np.array([[_COLORS[face.kind]]], np.uint8) if face.texture is None else face.texture.image
+    return np.array([[COLORS[face.kind]]], np.uint8) if face.texture is None else face.texture.image
 
 
 def _images(raw: bytes, file: _File) -> dict[str, Any]:
@@ -104,7 +104,7 @@ def _images(raw: bytes, file: _File) -> dict[str, Any]:
 
 def _material(kind: str, is_textured: bool) -> dict[str, Any]:
     # glTF stores linear light; screens and styles use the sRGB curve.
-    shares = ((np.array(_COLORS[kind]) / 255 + 0.055) / 1.055) ** 2.4
+    shares = ((np.array(COLORS[kind]) / 255 + 0.055) / 1.055) ** 2.4
     surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.9}
     if is_textured:
         surface["baseColorTexture"] = {"index": 0}
@@ -168,7 +168,7 @@ def _primitives(
         part = slice(ends[first], ends[last])
         of_vertex = np.repeat(np.arange(first, last), np.diff(ends[first : last + 1]))
         triangles = [
-            np.array(_triangles(corners[row], rows[row][1]), np.int64).reshape(-1) + ends[row] - ends[first]
+            np.array(triangles_of(corners[row], rows[row][1]), np.int64).reshape(-1) + ends[row] - ends[first]
             for row in range(first, last)
         ]
         normals = np.array([_normal(positions[ends[row] :], rows[row][1]) for row in range(first, last)])
@@ -204,7 +204,8 @@ def _features(count: int, number: int) -> dict[str, Any]:
     }
 
 
-def _triangles(corners: np.ndarray, face: Face) -> list[list[int]]:
+def triangles_of(corners: np.ndarray, face: Face) -> list[list[int]]:
+    """Return the triangles of a face, numbers of its ``corners`` (n, 3) each."""
     rings = face.numbered_rings
     return rings if len(corners) == 3 else triangulate_face(corners, rings)
 
