@@ -14,7 +14,7 @@ from ..neighborhoods.wide_in_plan import Wide
 from .closed_surface import seen_through_share
 from .density import effective_density, point_density
 from .height_resolution import height_resolution, rounding_deviation
-from .kinds import IMAGES, LASER, SCENE, CloudKind
+from .kinds import IMAGES, LASER, CloudKind
 from .surface_noise import SURFACES, SurfaceSample, plane_roughness
 
 # Measurements, each with its name and unit in the log.
@@ -213,8 +213,8 @@ class CloudSampling:
 
     @property
     def density_of_images(self) -> float:
-        """Density (points/m²) that the rules of images need: a point per half meter, over which roofs are planar."""
-        return 1 / SCENE.least_cell**2
+        """Density (points/m²) that the rules of images need: a point in a square as wide as the least surface."""
+        return 1 / SURFACES.least_reach**2
 
     @property
     def lacks_points_of_images(self) -> bool:
