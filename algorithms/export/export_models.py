@@ -14,6 +14,7 @@ from ..stage import InputLayer, MapFrame, Piece, TextFile, stage, tunable
 from .cityjson_faces import ENDINGS, read_cityjson
 from .exported_models import ExportedModel, exported_models
 from .gltf import glb
+from .textured_cityjson import cityjson_pieces
 from .textured_obj import obj_pieces
 from .textures import textured
 from .tileset import tileset_pieces
@@ -67,6 +68,7 @@ def _layer(name: str, title: str, text: str) -> InputLayer:
         TextFile("page", "Web page", {"HTML": (".html",)}, page_pieces),
         TextFile("tileset", "Tileset", {"3D Tiles": (".json",)}, tileset_pieces),
         TextFile("obj", "OBJ", {"Wavefront OBJ": (".obj",)}, obj_pieces),
+        TextFile("surfaces", "CityJSON with images", {"CityJSON": (".city.json", ".json")}, cityjson_pieces),
     ),
 )
 def export_models(
@@ -101,8 +103,9 @@ def export_models(
     GLB is one file that Blender, PowerPoint and games open: meters, the axis y up, roofs, walls, grounds, windows,
     doors and terrain in colors. The web page shows it in any browser, from a disk or a mail, without a server or a
     connection; a click shows the attributes of a building. A tileset (3D Tiles 1.1) is for Cesium, QGIS's tiled scenes
-    and other globes: GLB files next to its JSON, simple levels of detail far away. In these, buildings and faces keep
-    their attributes. OBJ is for modelling programs: its materials, and the image of colors, are files next to it.
+    and other globes: GLB files next to its JSON, simple levels of detail far away. OBJ is for modelling programs;
+    CityJSON with images has faces in place of solids. Their materials and images are files next to them. Buildings and
+    faces keep their attributes, but in OBJ.
 
     Parameters
     ----------
@@ -117,7 +120,7 @@ def export_models(
 
     Returns
     -------
-    glb, page, tileset, obj : list of ExportedModel
+    glb, page, tileset, obj, surfaces : list of ExportedModel
         The models for the files.
 
     Raises
@@ -171,4 +174,4 @@ def export_models(
     n_patches = sum(model.best[0].kind == TERRAIN for model in models)
     faces = sum(len(model.best) for model in models)
     monitor.inform(f"{len(models) - n_patches} buildings and {n_patches} patches of terrain with {faces} faces.")
-    return models, models, models, models
+    return models, models, models, models, models

@@ -40,20 +40,20 @@ def cityjson_pieces(models: Collection[NamedModel], called: str, frame: MapFrame
     """
     low, high = _extent(models, frame)
     translate = np.floor(low)
-    head = _head(low, high, translate, frame.crs, len(models) > 0)
+    head = head_of(low, high, translate, frame.crs, len(models) > 0)
     names = object_names(models, frame)
     if called == CITYJSON_SEQ:
-        yield _dumped({**head, "CityObjects": {}, "vertices": []}) + "\n"
+        yield dumped({**head, "CityObjects": {}, "vertices": []}) + "\n"
         for one, name in zip(models, names):
-            vertices = _Vertices(translate, frame)
+            vertices = Vertices(translate, frame)
             feature = {"type": "CityJSONFeature", "id": name, "CityObjects": {name: _building(one, vertices)}}
-            yield _dumped({**feature, "vertices": vertices.rows}) + "\n"
+            yield dumped({**feature, "vertices": vertices.rows}) + "\n"
         return
-    vertices = _Vertices(translate, frame)
-    yield _dumped(head)[:-1] + ',"CityObjects":{'
+    vertices = Vertices(translate, frame)
+    yield dumped(head)[:-1] + ',"CityObjects":{'
     for number, (one, name) in enumerate(zip(models, names)):
-        yield ("," if number else "") + f"\n{json.dumps(name)}:{_dumped(_building(one, vertices))}"
-    yield '\n},"vertices":' + _dumped(vertices.rows) + "}\n"
+        yield ("," if number else "") + f"\n{json.dumps(name)}:{dumped(_building(one, vertices))}"
+    yield '\n},"vertices":' + dumped(vertices.rows) + "}\n"
 
 
 def _extent(models: Iterable[NamedModel], frame: MapFrame) -> tuple[np.ndarray, np.ndarray]:
@@ -99,7 +99,8 @@ def unique_names(names: Iterable[str]) -> Iterator[str]:
         yield free
 
 
-def _head(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is_filled: bool) -> dict[str, Any]:
+def head_of(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is_filled: bool) -> dict[str, Any]:
+    """Return the members of a file but its objects, for vertices from ``low`` (3,) to ``high`` (3,), map units."""
     metadata: dict[str, Any] = {}
     if is_filled:
         metadata["geographicalExtent"] = np.round([*low, *high], _DIGITS).tolist()
@@ -114,7 +115,7 @@ def _head(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is
     }
 
 
-class _Vertices:
+class Vertices:
     """The vertices of a file or feature, each position once."""
 
     def __init__(self, translate: np.ndarray, frame: MapFrame) -> None:
@@ -134,7 +135,7 @@ class _Vertices:
         return found
 
 
-def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
+def _building(one: NamedModel, vertices: Vertices) -> dict[str, Any]:
     """Return the city object of a building with a geometry for each level of detail, or of terrain."""
     if one.is_terrain:
         (solid,) = one.model.best
@@ -161,7 +162,7 @@ def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
             }
         )
     facts = in_units(building_attributes(one), BUILDING_FIELDS, vertices.frame)
-    attributes = {**_plain(facts), **_plain(one.attributes or {})}
+    attributes = {**plain_facts(facts), **plain_facts(one.attributes or {})}
     return {"type": "Building", "attributes": attributes, "geometry": geometry}
 
 
@@ -173,14 +174,14 @@ def in_units(facts: dict[str, Any], fields: Iterable[Field], frame: MapFrame) ->
     return {name: value * units[name] if units.get(name, 1.0) != 1.0 else value for name, value in facts.items()}
 
 
-def _shell(one: NamedModel, solid: Solid, vertices: _Vertices, is_best: bool) -> tuple[list, list[dict[str, Any]]]:
+def _shell(one: NamedModel, solid: Solid, vertices: Vertices, is_best: bool) -> tuple[list, list[dict[str, Any]]]:
     """Return the faces of a solid as rings of vertices, and what each of them is."""
     numbers = vertices.numbers(solid.vertices)
     shell = [[[numbers[v] for v in ring] for ring in rings] for rings in solid.faces]
     surfaces = []
     for face, kind in enumerate(solid.kinds):
         facts = (
-            _plain(in_units(face_attributes(one, solid, face), ROOF_FIELDS, vertices.frame))
+            plain_facts(in_units(face_attributes(one, solid, face), ROOF_FIELDS, vertices.frame))
             if is_best and kind == ROOF
             else {}
         )
@@ -208,7 +209,7 @@ def _numbered(surface: dict[str, Any], start: int) -> dict[str, Any]:
     return {**surface, **parent, **children}
 
 
-def _plain(facts: dict[str, Any]) -> dict[str, Any]:
+def plain_facts(facts: dict[str, Any]) -> dict[str, Any]:
     """Return attributes as JSON has them: rounded, null where undefined."""
 
     def plain(value: Any) -> Any:
@@ -217,5 +218,6 @@ def _plain(facts: dict[str, Any]) -> dict[str, Any]:
     return {name: plain(value) for name, value in facts.items()}
 
 
-def _dumped(value: Any) -> str:
+def dumped(value: Any) -> str:
+    """Return a value as JSON without blanks."""
     return json.dumps(value, separators=(",", ":"), allow_nan=False, ensure_ascii=False)

@@ -10,10 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.export.textured_cityjson import cityjson_pieces as textured_pieces
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces
 from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
+from lidar_buildings.tests.algorithms.export.test_textures import exported, points
 
 jsonschema = pytest.importorskip("jsonschema", reason="the package jsonschema is not installed")
 
@@ -85,6 +87,13 @@ def test_terrain_passes_the_schema(called):
     assert objects["terrain 0 0"]["type"] == "TINRelief"
     kinds = ["cityjson", *["cityjsonfeature"] * 2]
     assert [error for whole, kind in zip(wholes, kinds) for error in errors(whole, kind)] == []
+
+
+def test_faces_with_images_pass_the_schema():
+    pieces = textured_pieces(exported(*points()), CITYJSON, MapFrame(np.asarray, "EPSG:7415"))
+    whole = json.loads("".join(piece for piece in pieces if isinstance(piece, str)))
+    assert len(whole["appearance"]["textures"]) == 1
+    assert errors(whole, "cityjson") == []
 
 
 def test_the_schema_finds_faults(models):
