@@ -37,5 +37,5 @@ class Given:
         )
 
     def title(self, name: str) -> str:
-        """Return what the dialog calls a parameter."""
+        """Return the name of a parameter in the dialog."""
         return self.algorithm.parameterDefinition(name).description()

@@ -167,7 +167,7 @@ def warn_at_start(iface: Any) -> Callable[[], None]:
 class _StartMessage:
     """The message that packages are missing.
 
-    The object has to live as long as its button: Python takes what only a signal refers to for garbage.
+    The object has to live as long as its button: Python removes objects that only a signal refers to.
     """
 
     def __init__(self, iface: Any) -> None:

@@ -31,7 +31,7 @@ def used_name(tunable: Tunable) -> str:
 
 
 def label(tunable: Tunable) -> str:
-    """Return the label with its unit, and where it may be empty what that means."""
+    """Return the label with its unit, and the meaning of an empty field where it may be empty."""
     facts = [tunable.param.unit] if tunable.param.unit else []
     if tunable.is_optional:
         facts.append(f"empty = {tunable.param.unset}")

@@ -43,7 +43,7 @@ class Plugin:
         self._add("The toolbox entry 'Open in Model Designer'", self._add_designer)
 
     def _add(self, what: str, add: Callable[[], Callable[[], None]]) -> None:
-        """Add something optional to the desktop, and keep what takes it away; where it fails, the log says so.
+        """Add an optional part to the desktop, and keep the call that removes it; where it fails, the log says so.
 
         Modules of QGIS's own plugins move between its versions, and the algorithms need none of them.
         """

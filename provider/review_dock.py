@@ -46,7 +46,7 @@ from .review_views import PointViews, clouds_for
 from .styles import RUN
 from .view3d import look_at, view_angles
 
-# Columns of the list: attributes, and what they are called.
+# Columns of the list: attributes and their titles.
 _COLUMNS = {
     "id": "Building",
     CONFIDENCE: "Confidence",

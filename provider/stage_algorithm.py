@@ -102,7 +102,7 @@ class StageAlgorithm(CloudAlgorithm):
         return Results(made.cloud, made.layers, made.report, made.rasters, made.files, reports=reports)
 
     def numbers(self, results: Results, values: dict[str, Any]) -> dict[str, Any]:
-        """Return the measures, and what automatic tunables took, by the names of their outputs."""
+        """Return the measures, and the values of automatic tunables, by the names of their outputs."""
         numbers = {}
         for tunable in automatic_numbers(self.stage):
             given = self.job.tunables[tunable.name]

@@ -40,7 +40,7 @@ _LONGEST_NAME, _MOST_DIMENSIONS = 31, 300
 _SCALE = 0.001
 # Names of standard fields that differ from laspy's names in capitals.
 _NAMES = {"ScanAngleRank": "scan_angle", "ScanAngle": "scan_angle", "Infrared": "nir", "ScanChannel": "scanner_channel"}
-# Compact form of a name: without what PDAL and laspy write in different ways.
+# Compact form of a name: without characters that PDAL and laspy write differently.
 _FLAT = str.maketrans("", "", "_")
 
 
@@ -132,7 +132,7 @@ class Ept:
         return np.full(3, _SCALE), np.floor(self.bounds.mean(axis=0))
 
     def _layout(self) -> Layout:
-        """Return the layout of records that hold what binary nodes do."""
+        """Return the layout of records that hold the dimensions of binary nodes."""
         names = {name for name, *_ in self.fields}
         if not names >= set("XYZ"):
             raise truncated(self.path, "its schema has no X, Y and Z")

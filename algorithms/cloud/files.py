@@ -336,7 +336,7 @@ def write_cloud(
     path : str or Path
         In an existing folder; none of the cloud's own files.
     monitor : Monitor, optional
-        Receives progress, and warnings about what the format changed.
+        Receives progress, and warnings about changes by the format.
     copc_beside : bool
         Also write x.copc.laz next to x.las or x.laz, for QGIS to show.
 

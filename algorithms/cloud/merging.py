@@ -34,7 +34,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     xyz : ndarray of shape (n, 3), float64, or None
         New coordinates of all points (m, relative to the common origin); None where none were moved.
     monitor : Monitor, optional
-        Receives warnings about what can't be merged.
+        Receives warnings about parts that can't be merged.
 
     Raises
     ------

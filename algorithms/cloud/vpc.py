@@ -310,7 +310,7 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
     """Return one header for all points of several files or clouds: with the finest scale and all fields.
 
     The headers have true bounds, in one coordinate system; ``what`` is their name in sentences to the user ("tiles").
-    The monitor receives warnings about what can't be merged.
+    The monitor receives warnings about parts that can't be merged.
 
     Raises
     ------

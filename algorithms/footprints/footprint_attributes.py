@@ -1,4 +1,4 @@
-"""Attributes of footprints: sizes, heights of the roof above the ground, and what was measured of the building."""
+"""Attributes of footprints: sizes, heights of the roof above the ground, and measures of the building."""
 
 from __future__ import annotations
 

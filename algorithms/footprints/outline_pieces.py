@@ -1,4 +1,4 @@
-"""Pieces of buildings on the lattice: what each building has more of than anything else, with the rings around it."""
+"""Pieces of buildings on the lattice: areas where each building has the largest share, with the rings around them."""
 
 from __future__ import annotations
 

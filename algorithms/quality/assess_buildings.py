@@ -186,7 +186,7 @@ def assess_buildings(
 
 
 def _true_classes(xyz, reference_xyz, reference_classification, reference_map, classification, monitor) -> np.ndarray:
-    """Return the true class (n,) of each point of the input; what lies in no polygon of a map keeps its class."""
+    """Return the true class (n,) of each point of the input; points in no polygon of a map keep their class."""
     if reference_xyz is None and reference_map is None:
         raise ValueError(
             "There is no reference; give a point cloud (REFERENCE) or polygons of the buildings (REFERENCE_MAP)."

@@ -114,7 +114,7 @@ class Matches:
 
     #: (k + 1,), int64: for each segment of the reference (k) the correct one of the input, 0 for none
     counterpart: np.ndarray
-    #: is_over, is_under, is_missed, (k + 1,), bool: what else became of it
+    #: is_over, is_under, is_missed, (k + 1,), bool: its other outcomes
     is_over: np.ndarray
     is_under: np.ndarray
     is_missed: np.ndarray

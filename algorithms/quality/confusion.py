@@ -1,4 +1,4 @@
-"""Confusion matrices: what was called what, and the figures that follow."""
+"""Confusion matrices: counts by true and found class, and the figures from them."""
 
 from __future__ import annotations
 

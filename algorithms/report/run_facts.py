@@ -26,7 +26,7 @@ def draw_facts(rows: Iterable[Row]) -> str:
 def draw_steps(steps: Iterable[StepFacts], of_seconds: str = "") -> str:
     """Return the HTML of the steps with their seconds, then of the parameters of each.
 
-    ``of_seconds`` says of what the seconds are.
+    ``of_seconds`` names the work that took the seconds.
     """
     steps = list(steps)
     times = [

@@ -246,7 +246,7 @@ def _smoothest(planes: LocalPlanes, is_seed: np.ndarray) -> np.ndarray:
 
 
 def _first_planes(planes: LocalPlanes, surface: np.ndarray, criteria: Criteria) -> Planes:
-    """Let seeds take what their own planes hold, and return the planes of their points."""
+    """Let seeds take the points of their own planes, and return the planes of their points."""
     _join(planes, np.flatnonzero(surface < 0).astype(np.int32), surface, partial(planes.hold, criteria), Monitor())
     members = np.flatnonzero(surface >= 0).astype(np.int32)
     return planes_of(planes.xyz, surface[members], int(surface.max()) + 1, members)

@@ -1,1 +1,1 @@
-"""Planes, cylinders, spheres and trees: what a cloud consists of, as shapes with measures."""
+"""Planes, cylinders, spheres and trees: parts of a cloud, as shapes with measures."""

@@ -112,7 +112,7 @@ class CylinderSearch:
     shift : ndarray of shape (n,)
         How far (m) each was moved along x from where it lies in ``evidence.positions``.
     evidence : Evidence
-        Noise, tolerance and spacing, and what makes points a cylinder's.
+        Noise, tolerance and spacing, and the criteria of a cylinder's points.
     min_seen : float
         Least share of the circumference with points.
     min_points : int

@@ -106,7 +106,7 @@ def segment_tree(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Branches from 1, stems before what grows from them; 0 is leaves and everything else.
+        Numbers from 1, stems before their branches; 0 is leaves and everything else.
     branches : LayerFeatures
         Middles of stems and branches, from the base to the tip.
 

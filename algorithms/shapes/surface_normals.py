@@ -24,7 +24,7 @@ _MOST_POINTS = 80
 # Ratio of the two larger variances below which points lie on one line, and the plane through them is undefined.
 _LINE = 1e-8
 
-# Of each sampling: what its normals were measured on, and the normals. They go with the sampling.
+# Of each sampling: the points that its normals were measured on, and the normals. They go with the sampling.
 _KEPT: WeakKeyDictionary[CloudSampling, tuple[tuple, np.ndarray]] = WeakKeyDictionary()
 
 NORMAL_POINTS = tunable(

@@ -1,4 +1,4 @@
-"""Beams and what they meet: ground, solids, leaves and wires, each in closed form or to a hundredth of a millimeter."""
+"""Beams and the surfaces that they meet: ground, solids, leaves, wires, exactly or to 0.01 mm."""
 
 from __future__ import annotations
 

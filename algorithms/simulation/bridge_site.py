@@ -1,4 +1,4 @@
-"""Bridges and what looks like them, each on a lot: terrain, decks, parapets, piers, quays, cars and trees."""
+"""Bridges and objects that look like them, each on a lot: terrain, decks, parapets, piers, quays, cars and trees."""
 
 from __future__ import annotations
 

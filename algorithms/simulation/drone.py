@@ -210,7 +210,7 @@ def bearing(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _half_widths(elevation: np.ndarray, radius: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Return half of what balls take up in azimuth and elevation (n, 2) (rad)."""
+    """Return half of the angles that balls take up in azimuth and elevation (n, 2) (rad)."""
     half = np.arcsin(np.minimum(radius / distance, 1.0))
     high = np.where(radius < distance, half, np.pi)
     # Balls that hide the zenith, the nadir or the drone are in every azimuth: half a turn to both sides.

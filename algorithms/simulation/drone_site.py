@@ -78,7 +78,7 @@ def _free_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Gener
 
 
 def _clear(scene: Scene, rect: Rect) -> None:
-    """Take away what grows or parks where a building is put."""
+    """Remove plants and vehicles where a building is put."""
     scene.crowns[:] = [row for row in scene.crowns if not rect.contains(row[0], row[1], row[3] + 0.5)]
     scene.solids[:] = [
         solid

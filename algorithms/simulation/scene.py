@@ -16,7 +16,7 @@ from .solids import Rect, Solid, flat, rectangles
 
 @dataclass(frozen=True)
 class Building:
-    """One building: what it is, its outline, and the solids that it is made of."""
+    """One building: its kind, its outline, and the solids that it is made of."""
 
     object_id: int  #: The ``segment_id`` of its points
     kind: str  #: Shape of its roof or its plan, such as "gable" or "L", or its use, such as "hall"

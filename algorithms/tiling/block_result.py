@@ -78,7 +78,7 @@ class BlockResult:
 
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:
-        """Return what :meth:`write` wrote, but for items; without the points, large arrays are left out, too."""
+        """Return a result as :meth:`write` wrote it, without its items; without points, also without large arrays."""
         # The file is closed here: numpy leaves it open if it can't read it.
         with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
@@ -103,7 +103,7 @@ class BlockResult:
 
     @classmethod
     def is_complete(cls, path: Path, counts: Sequence[int]) -> bool:
-        """Whether a file holds what :meth:`write` wrote, of files with these numbers of points.
+        """Whether a file holds a result of :meth:`write`, of files with these numbers of points.
 
         One that is missing, cut off, damaged or somebody else's does not.
         """

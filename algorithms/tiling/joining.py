@@ -163,7 +163,7 @@ class References:
 
     @classmethod
     def of(cls, results: list[BlockResult], name: str) -> References:
-        """Return what points of blocks refer to by a dimension, before any number is known."""
+        """Return the objects that points of blocks refer to by a dimension, before any number is known."""
         kinds = [(one.used.get(name, _NO_NUMBERS), one.counts.get(name, _NO_NUMBERS)) for one in results]
         return cls([dict(zip(used.tolist(), counts.tolist())) for used, counts in kinds])
 
@@ -280,7 +280,7 @@ def join_belonging(
     numbers : list of ndarray
         What the cluster numbers of each block become.
     column : str
-        The field with the number of what a feature belongs to.
+        The field with the number of the object that a feature belongs to.
     kept : ndarray of shape (m, 3), int64
         From :func:`join_features` of the other layer.
     """
@@ -299,7 +299,7 @@ def join_belonging(
 
 
 def new_names(kept: np.ndarray) -> dict[tuple[int, str], int]:
-    """Return what features are called now by their block and what they were called there, of ``kept`` (m, 3)."""
+    """Return the present numbers of features, by their block and their number there, of ``kept`` (m, 3)."""
     return {(block, str(one)): number for block, one, number in kept.tolist()}
 
 

@@ -150,7 +150,7 @@ class Processes(Executor):
 
 
 class _Process:
-    """One process: a connection to it, and what it writes where it can't start."""
+    """One process: a connection to it, and its messages where it can't start."""
 
     def __init__(self, python: str, search_path: list[str]) -> None:
         own, other = Pipe()
@@ -302,7 +302,7 @@ def _not_started(python: str, why: str) -> str:
 
 
 def _drained(calls: SimpleQueue) -> list:
-    """Return what waits in a queue, which is empty afterwards."""
+    """Return the items of a queue, and empty it."""
     found = []
     while True:
         try:

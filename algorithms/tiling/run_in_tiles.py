@@ -130,7 +130,7 @@ class _Run:
         self.layers = {name: one for name, one in found if name in wanted and one is not None}
 
     def all(self) -> TilesOutcome:
-        """Sample, work on the blocks, join what they found, write the tiles."""
+        """Sample, work on the blocks, join their objects, write the tiles."""
         settings = self.settings
         folders = {source.path.parent for source in self.survey.sources if not is_on_web(source.path)}
         plan = self._plan()
@@ -164,7 +164,7 @@ class _Run:
         return _Plan(samplings, side, halo)
 
     def _join(self, blocks: WorkedOn, outcome: TilesOutcome) -> dict[str, np.ndarray]:
-        """Give what goes on in the next block one number, and join layers; return the features kept of each."""
+        """Give objects that go on in the next block one number, and join layers; return the features kept of each."""
         of_features = feature_numbers(self.settings.pipeline, blocks.found)
         paths = [path for _, path in blocks.done]
         blocks.numbers[:] = join_numbers(
@@ -187,7 +187,7 @@ class _Run:
     def _cut_large_files(self, side: float) -> None:
         """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place.
 
-        Of a COPC file each block reads what it needs.
+        Of a COPC file each block reads the nodes that it needs.
         """
         large = [source for source in self.survey.sources if source.header.count > self.settings.options.largest_file]
         self.by_index = [source.path for source in large if has_octree(source.path, source.header)]

@@ -138,7 +138,7 @@ def _same_spheres(features: LayerFeatures, layer: Layer, one: np.ndarray, other:
 def _shared_lines(
     features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the length (n,) of each axis, and what pairs (k,) share of one axis with one radius (m)."""
+    """Return the length (n,) of each axis, and the length that pairs (k,) share of one axis with one radius (m)."""
     start, end = np.moveaxis(np.reshape([line[[0, -1]] for line in features.geometries], (-1, 2, 3)), 1, 0)
     length, radius = np.linalg.norm(end - start, axis=1), _radius(features, layer)
     is_longer = length[one] >= length[other]
@@ -165,7 +165,7 @@ def _radius(features: LayerFeatures, layer: Layer) -> np.ndarray:
 def _shared_in_space(
     features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray, monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the area (n,) of each plane in space, and what pairs (k,) share in one plane (m²): nothing in two."""
+    """Return the area (n,) of each plane in space, and the area that pairs (k,) share in one plane (m²), 0 in two."""
     area, normal = _areas(features.geometries)
     tolerance = _tolerance(features, layer)
     is_larger = area[one] >= area[other]

@@ -269,7 +269,7 @@ def open_survey(
     read : callable
         As for :func:`.read_cloud`.
     monitor : Monitor, optional
-        Receives warnings about what can't be merged.
+        Receives warnings about parts that can't be merged.
     extent : ndarray of shape (2, 2), optional
         As :attr:`Survey.extent`; files that lie wholly outside are no part of the survey.
     spacing : ndarray of shape (3,), optional

@@ -45,7 +45,7 @@ class TileWriter:
         self.settings, self.outcome, self.by_index, self.view = settings, outcome, by_index, view
 
     def write(self, executor: Any, blocks: WorkedOn) -> None:
-        """Write the tiles; add them to the outcome, and what went wrong."""
+        """Write the tiles; add them and their errors to the outcome."""
         settings, outcome = self.settings, self.outcome
         tasks = self._tasks(blocks, self._final_numbers(blocks))
         part = settings.monitor.part(JOINED, 1.0)

@@ -25,7 +25,7 @@ from .workers import Workers
 # writing.
 SAMPLED, CUT, WORKED, JOINED = 0.05, 0.1, 0.88, 0.9
 
-# What finds the layers that a composite is given, and what takes the rasters and text files that it makes.
+# Functions that find the given layers of a composite, and that take its rasters and text files.
 FindLayers = Callable[[Survey], dict[str, Optional[LayerFeatures]]]
 TakeRaster = Callable[[Survey, RasterMosaic], None]
 TakeFile = Callable[[Survey, str, FileContent], None]
@@ -115,7 +115,7 @@ class WorkedOn:
 
 @dataclass
 class TilesOutcome:
-    """The results of a survey: the tiles written, layers in meters from ``survey.origin``, reports, what went wrong.
+    """The results of a survey: the tiles written, layers in meters from ``survey.origin``, reports, errors.
 
     ``side`` is the side of the blocks, m.
 
@@ -137,7 +137,7 @@ class TilesOutcome:
     values: dict[str, list] = field(default_factory=dict)
 
     def take(self, blocks: WorkedOn) -> None:
-        """Take over which blocks failed, what blocks cost, and the values that they found."""
+        """Take over failed blocks, the costs of blocks, and the values that they found."""
         self.blocks = len(blocks.done) + len(blocks.failed)
         self.failures = [f"Block {block.name}: {why}" for block, why in blocks.failed]
         found: dict[str, set] = {}

@@ -29,7 +29,7 @@ class TileTask:
     number: int  #: Its number in the survey
     target: Path  #: The tile
     results: tuple[Path, ...]  #: Results of the blocks that have its points
-    becomes: tuple[Path, ...]  #: Files with the final numbers of what each of these blocks found
+    becomes: tuple[Path, ...]  #: Files with the final numbers of the objects of each of these blocks
     stop: Path  #: A file whose existence ends the work
     crs: Crs  #: CRS of the survey, which files that name none get
     extent: Optional[np.ndarray] = None  #: (2, 2): extent of the survey, in coordinates of the file; None is all
@@ -96,7 +96,7 @@ def write_tile(task: TileTask) -> Tile:
 def _results_of_blocks(
     task: TileTask, position: Optional[np.ndarray], count: int
 ) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
-    """Return the mask of points (n,) of a tile that stay, what blocks wrote for them, and how many blocks have."""
+    """Return the mask of points (n,) of a tile that stay, their values by blocks, and the number of these blocks."""
     stays = np.ones(count, bool)
     values: dict[str, np.ndarray] = {}
     worked_on = 0

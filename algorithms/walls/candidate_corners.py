@@ -61,7 +61,7 @@ def candidate_corners(
 
 
 def _outcomes(outline: WallOutline, rings: list[list[WallEdge]], position: np.ndarray) -> list[str]:
-    """Return what became of the positions where two lines cross."""
+    """Return the outcome of each position where two lines cross."""
     cells, inside = outline.cells, outline.inside
     corners = spatial.cKDTree([edge.start for ring in rings for edge in ring])
     is_kept = corners.query(position)[0] < _SAME

@@ -120,7 +120,7 @@ class OutlineCells:
 
 
 def _edge_costs(cells: Arrangement, lines: list[WallLine], near: list[np.ndarray], scale: Scale) -> np.ndarray:
-    """Return what edges (e,) cost: their length as far as nothing is seen of it."""
+    """Return the costs of edges (e,): the length of which nothing is seen."""
     edges, seen = cells.edges, np.zeros(len(cells.edges.line))
     for number, own in members(edges.line + 1).items():
         along = near[number - 1][:, 0]
@@ -133,7 +133,7 @@ def _edge_costs(cells: Arrangement, lines: list[WallLine], near: list[np.ndarray
 def _cell_costs(
     cells: Arrangement, cover: RoofCover, overhang: float, max_overhang: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return what each cell (cells,) costs inside an outline and outside, by the roof."""
+    """Return the cost of each cell (cells,) inside an outline and outside, by the roof."""
     positions, depth = cover.positions, cover.depth
     size = max(1, _AT_ONCE // max(1, len(cells.points)))
     parts = [positions[start : start + size] for start in range(0, len(positions), size)]

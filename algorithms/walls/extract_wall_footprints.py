@@ -265,7 +265,7 @@ def _large_parts(parts: list[list[list[WallEdge]]], min_area: float) -> list[lis
 
 
 def _disjoint_parts(outlined: list[_Outlined], min_area: float) -> list[list[list[list[WallEdge]]]]:
-    """Return the parts of each house without what other houses have more roof points in, as each was outlined alone.
+    """Return the parts of each house, outlined alone, without pieces in which others have more roof points.
 
     What is left of a part has the area (m²) of the smallest building at least.
     """

@@ -262,7 +262,7 @@ class CornerPairs:
         return self.cells.positions[self.at]
 
     def outline(self) -> tuple[list[np.ndarray], np.ndarray]:
-        """Return rings (m, 2), m, around what edges enclose, and which corners (c,) are vertices of them.
+        """Return rings (m, 2), m, around areas that edges enclose, and which corners (c,) are vertices of them.
 
         Inside are the cells from which a way outside passes an odd number of edges at least; further in are courtyards.
         """

@@ -46,7 +46,7 @@ def points_near(walls: np.ndarray, line: WallLine, scale: Scale) -> np.ndarray:
 
 
 def edge_between(start: np.ndarray, end: np.ndarray, line: WallLine, near: np.ndarray, scale: Scale) -> WallEdge:
-    """Return an edge between two corners (2,), m, on a line, with what the points near it say.
+    """Return an edge between two corners (2,), m, on a line, with the evidence of the points near it.
 
     Parameters
     ----------

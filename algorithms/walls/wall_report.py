@@ -15,7 +15,7 @@ from .candidate_corners import CORNER
 # Source of a footprint that is an outline of walls.
 WALL = "wall"
 
-# What each number is, and what it means.
+# Name and meaning of each number.
 _ROWS = {
     "original_points": ("Points before thinning", "Of which the points of the cloud were made."),
     "points": ("Points", "In the cloud that footprints were made of."),
