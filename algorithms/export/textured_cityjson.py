@@ -29,8 +29,8 @@ def cityjson_pieces(models: Collection[ExportedModel], called: str, frame: MapFr
     textured = [face for model in models for face in model.best if face.texture is not None]
     corners = [face.corners for model in models for faces in model.levels.values() for face in faces]
     positions = frame.to_map(np.concatenate(corners))
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    vertices = Vertices(np.floor(low), frame)
+    extent = positions.min(axis=0), positions.max(axis=0)
+    vertices = Vertices(np.floor(extent[0]), frame)
     look = _Look(textured)
     names = unique_names(model.name for model in models)
     objects = {name: _object(model, vertices, look) for name, model in zip(names, models)}
@@ -43,7 +43,7 @@ def cityjson_pieces(models: Collection[ExportedModel], called: str, frame: MapFr
             "vertices-texture": look.places,
             "default-theme-texture": _THEME,
         }
-    head = head_of(low, high, vertices.translate, frame.crs, is_filled=True)
+    head = head_of(extent, vertices.translate, frame.crs)
     yield dumped({**head, **appearance, "CityObjects": objects, "vertices": vertices.rows}) + "\n"
 
 

@@ -38,9 +38,9 @@ def cityjson_pieces(models: Collection[NamedModel], called: str, frame: MapFrame
     ----------
     CityJSON Specifications 2.0.1, sections 2 to 6; CityJSONSeq, RFC 8142 without record separators. [cityjson2024]
     """
-    low, high = _extent(models, frame)
-    translate = np.floor(low)
-    head = head_of(low, high, translate, frame.crs, len(models) > 0)
+    extent = _extent(models, frame)
+    translate = np.floor(extent[0])
+    head = head_of(extent, translate, frame.crs)
     names = object_names(models, frame)
     if called == CITYJSON_SEQ:
         yield dumped({**head, "CityObjects": {}, "vertices": []}) + "\n"
@@ -99,11 +99,11 @@ def unique_names(names: Iterable[str]) -> Iterator[str]:
         yield free
 
 
-def head_of(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is_filled: bool) -> dict[str, Any]:
-    """Return the members of a file but its objects, for vertices from ``low`` (3,) to ``high`` (3,), map units."""
+def head_of(extent: tuple[np.ndarray, np.ndarray], translate: np.ndarray, crs: str) -> dict[str, Any]:
+    """Return the members of a file but its objects; ``extent`` are the ends (3,) of its vertices, map units."""
     metadata: dict[str, Any] = {}
-    if is_filled:
-        metadata["geographicalExtent"] = np.round([*low, *high], _DIGITS).tolist()
+    if np.any(extent[1] > extent[0]):
+        metadata["geographicalExtent"] = np.round(extent, _DIGITS).reshape(-1).tolist()
     authority = re.fullmatch(r"([A-Za-z]+):(\w+)", crs)
     if authority:
         metadata["referenceSystem"] = f"https://www.opengis.net/def/crs/{authority[1].upper()}/0/{authority[2]}"

@@ -10,7 +10,7 @@ from lidar_buildings.algorithms.export.export_models import export_models
 from lidar_buildings.algorithms.export.textured_cityjson import cityjson_pieces
 from lidar_buildings.algorithms.geometry.polygons import area_vector
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
-from lidar_buildings.tests.algorithms.export.test_textures import BLUE, RED, ROOF, WALL, decoded, points
+from lidar_buildings.tests.colored_models import BLUE, RED, ROOF, WALL, decoded, points
 
 FRAME = MapFrame(lambda local: local + [85_000.25, 446_000.5, 0.0], "EPSG:7415", file="town")
 

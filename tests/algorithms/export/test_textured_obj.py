@@ -8,7 +8,7 @@ from lidar_buildings.algorithms.export.export_models import export_models
 from lidar_buildings.algorithms.export.textured_obj import obj_pieces
 from lidar_buildings.algorithms.geometry.polygons import area_vector
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
-from lidar_buildings.tests.algorithms.export.test_textures import BLUE, RED, decoded, exported, points
+from lidar_buildings.tests.colored_models import BLUE, RED, decoded, exported, points
 
 
 class Obj:

@@ -15,7 +15,7 @@ from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ,
 from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
-from lidar_buildings.tests.algorithms.export.test_textures import exported, points
+from lidar_buildings.tests.colored_models import exported, points
 
 jsonschema = pytest.importorskip("jsonschema", reason="the package jsonschema is not installed")
 
