@@ -24,6 +24,7 @@
       <category value="22" label="Undecided: without entropy" color="80,80,80,255" pointSize="0" render="true"/>
       <category value="23" label="Not a building: unlike buildings" color="238,119,51,255" pointSize="0" render="true"/>
       <category value="24" label="Not a building: deleted" color="204,51,17,255" pointSize="0" render="true"/>
+      <category value="25" label="Not a building: by chance" color="119,119,51,255" pointSize="0" render="true"/>
     </categories>
   </renderer>
   <blendMode>0</blendMode>
