@@ -115,7 +115,7 @@ class Pipeline:
         return chosen
 
     def reach(self, tunables: dict[str, Any]) -> float:
-        """Return how far (m) from a point others may lie that decide on it: the sum of the reaches of all steps."""
+        """Return the distance (m) within which points decide on one another: the sum of the reaches of all steps."""
         return sum(step.stage.reach_of(chosen) for step, chosen in self.by_step(tunables))
 
     def cloud_of(self, step: Step) -> Optional[str]:

@@ -125,7 +125,7 @@ def run_stage(
 
 
 def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampling:
-    """Return how those points of a cloud were sampled that are now neither withheld nor noise.
+    """Return the sampling of the points of a cloud that are neither withheld nor noise now.
 
     Cells begin at the ``corner`` (2,), m; None is the cloud's.
     """

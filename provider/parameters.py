@@ -72,7 +72,7 @@ def _number(tunable: Tunable) -> QgsProcessingParameterDefinition:
 
 
 def _decimals(tunable: Tunable) -> int:
-    """Return how many decimals the spin box needs for the default and the bounds, at least 3."""
+    """Return the number of decimals of the spin box for the default and the bounds, at least 3."""
     numbers = (tunable.default, tunable.param.low, tunable.param.high)
     exponents = [Decimal(repr(float(number))).as_tuple().exponent for number in numbers if number is not None]
     return max([3, *(-exponent for exponent in exponents if isinstance(exponent, int))])

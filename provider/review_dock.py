@@ -349,5 +349,5 @@ class ReviewDock(QDockWidget):
 
 
 def _nothing() -> str:
-    """Return what to do where the list is empty."""
+    """Return the advice of an empty list."""
     return "No building is listed; choose a layer of footprints, or list all."

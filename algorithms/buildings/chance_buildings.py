@@ -40,7 +40,7 @@ def without_chance(
     sampling : CloudSampling
         Of the cloud; of a part of a survey it says whether the doubtful buildings of the whole are chance.
     monitor : Monitor
-        Is told how many buildings are removed.
+        Receives a message with the number of removed buildings.
 
     Returns
     -------

@@ -104,7 +104,7 @@ def _supported(confidence: np.ndarray, size: np.ndarray) -> np.ndarray:
 
 
 def support(size: np.ndarray) -> np.ndarray:
-    """Return how much clusters with ``size`` (m,) times the points of the smallest building are sure, 0 to 1."""
+    """Return the sureness (0 to 1) of clusters with ``size`` (m,) times the points of the smallest building."""
     return size**2 / (size**2 + HALF_SUPPORT**2)
 
 

@@ -29,7 +29,7 @@ class Coverage:
     raised: np.ndarray  #: (n,), bool: points that belong to a building if their cell does
 
     def refusal(self, owner: np.ndarray) -> np.ndarray:
-        """Return why points are of no building, as :class:`~..cloud.reasons.Reason`; 0 for points of one.
+        """Return the reasons of points of no building, as :class:`~..cloud.reasons.Reason`; 0 for points of one.
 
         ``owner`` (n,) is the building of each point, 0 for none.
         """

@@ -192,7 +192,7 @@ def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None, spaci
 def sizes_within(
     path: Union[str, Path], box: Optional[np.ndarray] = None, spacing: Optional[np.ndarray] = None
 ) -> list[tuple[Path, tuple[int, int]]]:
-    """Return how many points and bytes of a file on the web, or of each such tile, are read.
+    """Return the numbers of points and bytes read of a file on the web, or of each such tile.
 
     They are those for a box (2, 2) and a spacing (3,), as of :func:`read_cloud`.
 

@@ -315,7 +315,7 @@ def open_chunks(path: Path, header: Header, stream: BinaryIO) -> tuple[np.ndarra
 
 
 def first_records(path: Path, header: Header, stream: BinaryIO) -> list[int]:
-    """Return where the records lie that chunks begin with, which are not compressed; without lazrs just the first.
+    """Return the offsets (bytes) of the uncompressed first records of chunks; without lazrs of the first chunk only.
 
     Raises
     ------

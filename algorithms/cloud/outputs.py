@@ -146,7 +146,7 @@ class ResultFiles:
         self._entries: list[_Entry] = []
 
     def beside(self, target: Path, companions: Iterable[Path] = ()) -> Path:
-        """Return where to write the file that becomes ``target``: under the same name, in a new folder.
+        """Return a path in a new folder, with the same name, for the file that becomes ``target``.
 
         A link at the target is replaced, never followed: whoever may write into the folder could lead it to any file.
         Whatever else is written into the working folder goes to the folder of the target too.

@@ -182,7 +182,7 @@ def _tile(path: Path, href: str) -> Path:
 
 
 def _meanings(href: str) -> list[str]:
-    """Return what an href may mean: a name as it is, as QGIS writes and reads it; a path of Windows; and a URI."""
+    """Return the possible readings of an href: a name as it is, as in QGIS; a path of Windows; and a URI."""
     path = _FILE.sub("", href.replace("\\", "/"))
     return [href, *(_BEFORE_DRIVE.sub("", one) for one in (path, unquote(path).replace("\\", "/")))]
 
@@ -273,8 +273,8 @@ def read_tiles(
     monitor : Monitor
         Receives progress.
     box : ndarray of shape (2, 2), optional
-        Least and greatest easting and northing in the coordinates of the tiles: only points within, or those of the
-        headers' spacing among them, are kept, and tiles are read only where their headers meet it.
+        Least and greatest easting and northing in the coordinates of the tiles: only points within are kept, thinned
+        where the headers ask for a spacing, and only tiles whose headers meet the box are read.
 
     Raises
     ------

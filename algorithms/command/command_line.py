@@ -63,7 +63,7 @@ def overview() -> str:
     lines = ["usage: lidar-buildings ALGORITHM CLOUD [options]; with --help in place of CLOUD its options", ""]
     summaries = {name: one.summary for some in (PIPELINES, STAGES) for name, one in some.items()}
     lines += [f"  {dashed(name):30} {summary}" for name, summary in summaries.items()]
-    return "\n".join([*lines, "", f"Shorter: {short}. lidar-buildings --version tells the version."])
+    return "\n".join([*lines, "", f"Shorter: {short}. lidar-buildings --version prints the version."])
 
 
 def run(algorithm: Pipeline, given: argparse.Namespace, monitor: Monitor) -> None:

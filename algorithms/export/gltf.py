@@ -230,7 +230,7 @@ def _property_table(name: str, rows: list[dict[str, Any]], file: _File) -> tuple
 
 
 def _property(values: list, file: _File) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return how an attribute is declared, and where its values are; numbers are such if all are."""
+    """Return the declaration of an attribute and the places of its values; it is numeric if all values are numbers."""
     present = [value for value in values if value is not None]
     if all(isinstance(value, (int, float)) for value in present):
         is_whole = all(isinstance(value, int) and abs(value) < 2**31 for value in present)

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 
 import numpy as np
 
-from ..models3d.solids import DECIMALS
+from ..models3d.wavefront import object_line, vertex_lines
 from ..stage import MapFrame, Piece
 from .exported_models import KINDS, ExportedModel
 from .gltf import COLORS, image_of, triangles_of
@@ -35,12 +35,12 @@ def obj_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) 
     for row, (model, face) in enumerate(faces):
         if model is not building:
             building, kind = model, ""
-            yield "o " + re.sub(r"[^\w.-]+", "_", model.name) + "\n"
+            yield object_line(model.name)
         if face.kind != kind:
             kind = face.kind
             yield f"usemtl {kind}\n"
         corners = face.corners
-        yield "".join(f"v {x:.{DECIMALS}f} {y:.{DECIMALS}f} {z:.{DECIMALS}f}\n" for x, y, z in corners.tolist())
+        yield vertex_lines(corners)
         if atlas is not None:
             places = atlas.coordinates(row, face.texture, corners)
             yield "".join(f"vt {across:.6f} {1 - down:.6f}\n" for across, down in places.tolist())

@@ -65,7 +65,7 @@ def report_structure(
 
     Notes
     -----
-    About ``_COMPARED`` points, every so many in the order of the cloud, are compared, with all others as neighbors.
+    About ``_COMPARED`` points at equal steps in the order of the cloud are compared, with all others as neighbors.
     'Downsample to voxels' leaves points from west to east; of clouds in another order other points are compared. The
     seconds of all steps are in the log of 'Interpret structure' and on its page.
 

@@ -133,5 +133,5 @@ def _directions_near(rings: list[list[np.ndarray]], boxes: np.ndarray) -> list[n
 
 
 def _off_box(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return how far (m) positions (n, 2) are off a box (2, 2), 0 inside."""
+    """Return the distances (m) of positions (n, 2) from a box (2, 2), 0 inside."""
     return np.hypot(*np.maximum(box[0] - positions, positions - box[1]).clip(0.0).T)

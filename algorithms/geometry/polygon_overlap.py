@@ -178,7 +178,7 @@ def _below_both(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _height(edges: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return where the lines of edges (k, 2, 2) are at ``x`` (k,); anything for vertical ones, which have no width."""
+    """Return the ordinates of the lines of edges (k, 2, 2) at ``x`` (k,); any for vertical ones, without a width."""
     (x0, y0), (x1, y1) = edges[:, 0].T, edges[:, 1].T
     run = np.where(x1 == x0, 1.0, x1 - x0)
     return y0 + (x - x0) / run * (y1 - y0)

@@ -331,7 +331,7 @@ def _joined(lines: list, breaks: list[np.ndarray], step: float) -> list[Edge]:
 
 
 def _corner(before: tuple, after: tuple, at: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return where one line ends and the next begins: where they cross, or next to the break that parts their runs."""
+    """Return the corner between two lines: their crossing, or a position next to the break between their runs."""
     (p, u, _), (q, v, _) = before, after
     sine = float(u[0] * v[1] - u[1] * v[0])
     offset = q - p

@@ -253,7 +253,7 @@ class _NodeRaster:
 
 
 def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] = None) -> np.ndarray:
-    """Return how far each node, or each of a sample of them, lies above the plane of its neighbors.
+    """Return the height of each node, or of a sample of them, above the plane of its neighbors.
 
     Parameters
     ----------

@@ -391,7 +391,7 @@ class _Mending:
         return self._take(cell, self._neighbors(cell))
 
     def off(self) -> float:
-        """Return how far the roof is off its points, the sum of their heights (m) over or under it."""
+        """Return the sum of the distances (m) of points above and below the roof."""
         return float(np.fmin(np.abs(self.partition.above(self.xyz)[0]), FARTHEST).sum())
 
     def _neighbors(self, part: np.ndarray) -> list[int]:
@@ -454,7 +454,7 @@ class _Mending:
         return np.array([0.0, 0.0, min(height, float(self.highest[corners].min()))])
 
     def _loss(self, rows: np.ndarray, area: float, plane: np.ndarray) -> float:
-        """Return how much a plane leaves out of a part (m³) by the heights of its points."""
+        """Return the volume (m³) of a part that a plane leaves out, by the heights of its points."""
         a, b, c = plane
         off = np.abs(self.xyz[rows, 2] - self.xyz[rows, :2] @ [a, b] - c)
         return float(np.minimum(off, FARTHEST).mean()) * area if len(rows) else 0.0
@@ -464,5 +464,5 @@ class _Mending:
         return bool((self._above(corners, plane) > 10**-DECIMALS).any())
 
     def _above(self, corners: np.ndarray, plane: np.ndarray) -> np.ndarray:
-        """Return how far (k,), m, a plane is above the limits of corners."""
+        """Return the heights (k,), m, of a plane above the limits of corners."""
         return self.positions[corners] @ plane[:2] + plane[2] - self.highest[corners]

@@ -261,6 +261,6 @@ class Levels:
 
 
 def turns_around(heights: list[float]) -> int:
-    """Return how often a ring of heights changes between up and down."""
+    """Return the number of changes between up and down in a ring of heights."""
     steps = [b - a for a, b in zip(heights, [*heights[1:], heights[0]]) if abs(b - a) > 1e-9]
     return sum(a * b < 0 for a, b in zip(steps, [*steps[1:], *steps[:1]]))

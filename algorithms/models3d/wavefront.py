@@ -36,12 +36,22 @@ def obj_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> 
     yield f"# offset {offset[0]:.0f} {offset[1]:.0f} 0\n"
     number = 1
     for one, name in zip(models, object_names(models, frame)):
-        yield "o " + re.sub(r"[^\w.-]+", "_", name if one.is_terrain else f"building_{name}") + "\n"
+        yield object_line(name if one.is_terrain else f"building_{name}")
         for solid in one.model.best:
             positions = frame.to_map(solid.vertices) - offset
-            yield "".join(f"v {x:.{DECIMALS}f} {y:.{DECIMALS}f} {z:.{DECIMALS}f}\n" for x, y, z in positions.tolist())
+            yield vertex_lines(positions)
             yield from _faces(solid, number)
             number += len(positions)
+
+
+def object_line(name: str) -> str:
+    """Return the line that begins an object; its name is without blanks."""
+    return "o " + re.sub(r"[^\w.-]+", "_", name) + "\n"
+
+
+def vertex_lines(positions: np.ndarray) -> str:
+    """Return the lines of vertices at positions (n, 3)."""
+    return "".join(f"v {x:.{DECIMALS}f} {y:.{DECIMALS}f} {z:.{DECIMALS}f}\n" for x, y, z in positions.tolist())
 
 
 def _faces(solid: Solid, number: int) -> Iterator[str]:

@@ -194,7 +194,7 @@ def _renumbered(key: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 def _positions(points: np.ndarray, size: float) -> np.ndarray:
-    """Return where points lie in their voxels, int64 (m, 3), in steps."""
+    """Return the positions of points in their voxels, int64 (m, 3), in steps."""
     scaled = points / size
     scaled -= voxel_index(scaled, size)
     scaled *= _STEPS

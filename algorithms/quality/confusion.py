@@ -6,7 +6,7 @@ import numpy as np
 
 
 def confusion(true: np.ndarray, called: np.ndarray, count: int) -> np.ndarray:
-    """Return how many items (count, count), int64, of each true class (rows) got each class (columns), both from 0."""
+    """Return the confusion matrix (count, count), int64: true classes in rows, found ones in columns, both from 0."""
     return np.bincount(true.astype(np.int64) * count + called, minlength=count**2).reshape(count, count)
 
 

@@ -42,7 +42,7 @@ def counted_points(
 
 
 def match_points(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
-    """Return where each point is in the reference, which may hold the points in another order.
+    """Return the row of each point in the reference, which may hold the points in another order.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ ROUGHNESS = (
 
 
 def plane_roughness(noise: float, density: float) -> float:
-    """Return how far points of one roof or wall may lie off its plane (one standard deviation, m).
+    """Return the standard deviation (m) of the points of one roof or wall from its plane.
 
     Parameters
     ----------

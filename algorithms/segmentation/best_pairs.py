@@ -96,7 +96,7 @@ def _adjacent(one: np.ndarray, other: np.ndarray, price: np.ndarray, n: int) -> 
 
 
 def common_deviation(planes: Planes, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return how far (root mean square, m) points of either of two planes lie off their common plane at most."""
+    """Return the larger distance (root mean square, m) of the points of two planes from their common plane."""
     deviation = np.empty(len(one))
 
     def work(rows: np.ndarray) -> None:

@@ -39,7 +39,7 @@ NORMAL_POINTS = tunable(
 
 
 def normal_points(sampling: CloudSampling) -> int:
-    """Return how many nearest points make normals good to 3°.
+    """Return the number of nearest points that makes normals good to 3°.
 
     The slope of a plane fitted to k points with the deviation s that fill a disk of radius r is off by 2 s / (r
     sqrt(k)), and r is sqrt(k / (pi density)).

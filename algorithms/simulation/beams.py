@@ -48,7 +48,7 @@ class Beams:
         return self.origin[which] + ranges[:, None] * self.direction[which]
 
     def echoes(self, which, ranges: np.ndarray, classification: np.ndarray, object_id: np.ndarray) -> Echoes:
-        """Return what beams meet at ranges (m)."""
+        """Return the surfaces that beams meet at ranges (m)."""
         numbers = object_id.astype(np.int32)
         return Echoes(self.pulse[which], ranges, self.direction[which], classification.astype(np.uint8), numbers)
 
@@ -105,7 +105,7 @@ class World:
         return ends.min(axis=1) - _WIRE_REACH, ends.max(axis=1) + _WIRE_REACH
 
     def surfaces(self, beams: Beams, beam: np.ndarray, solid: np.ndarray) -> Echoes:
-        """Return what ends each beam, in their order: ground, water or a solid that it may meet (pairs beam, solid)."""
+        """Return the end of each beam, in order: on ground, water or a solid that it may meet (pairs beam, solid)."""
         ranges = self.ground(beams)
         x, y, _ = beams.at(slice(None), ranges).T
         classes = np.where(self.relief.is_water(x, y), PointClass.WATER, PointClass.GROUND)

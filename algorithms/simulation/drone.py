@@ -86,7 +86,7 @@ class Flight:
     phases: np.ndarray  #: (6, 3): phases (rad) of the waves that it sways in: east, north, up, roll, pitch, heading
 
     def positions(self, time: np.ndarray) -> np.ndarray:
-        """Return where the scanners are (n, 3) (m) at times (n,) (s)."""
+        """Return the positions (n, 3) (m) of the scanners at times (n,) (s)."""
         share = time / self.duration
         height = self.climb * np.clip(np.minimum(share / _CLIMB, (1 - share) / _LANDING), 0.0, 1.0)
         made = self.foot + _DRIFT * self._sway(time, slice(0, 3))
@@ -227,12 +227,12 @@ def in_time_order(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
 
 
 def pulses_per_line(angular_step: float) -> int:
-    """Return how many pulses a scanner sends in the angle that it sees, one every ``angular_step`` (°)."""
+    """Return the number of pulses in the scanner's field of view, one every ``angular_step`` (°)."""
     return int(FIELD / angular_step + 1e-9) + 1
 
 
 def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:
-    """Return what each beam meets first, of those that meet anything within reach; order of the beams."""
+    """Return the first hit of each beam that meets anything within reach, in the order of the beams."""
     ends = world.surfaces(beams, *world.met("solids", beams))
     leaves = world.leaves(beams, *world.met("crowns", beams), rng)
     echoes = join([ends, leaves])

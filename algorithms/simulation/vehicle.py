@@ -37,7 +37,7 @@ class Drive:
     speed: float
 
     def positions(self, time: np.ndarray) -> np.ndarray:
-        """Return where the scanners are (n, 3) (m) at times (n,) (s)."""
+        """Return the positions (n, 3) (m) of the scanners at times (n,) (s)."""
         return self.start + self.speed * time[:, None] * self.way
 
     def scanned(self, scene: Scene, scan: LineScan, monitor: Monitor) -> dict[str, np.ndarray]:

@@ -156,7 +156,7 @@ class Stage:
         return {name: t.check(tunables[name]) if name in tunables else t.default for name, t in self.tunables.items()}
 
     def reach_of(self, tunables: dict[str, Any]) -> float:
-        """Return how far (m) from a point others may lie that the stage decides on it by, with these tunables."""
+        """Return the distance (m) within which points decide on one another in the stage, with these tunables."""
         return self.reach(self.check(tunables)) if callable(self.reach) else self.reach
 
     def unpack(self, returned: Any) -> StageResults:

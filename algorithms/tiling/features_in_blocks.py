@@ -23,7 +23,7 @@ _ROW = "row of the layer"
 
 
 def measure_features(stage: Stage, survey: Survey, given: LayerFeatures, monitor: Monitor) -> LayerFeatures:
-    """Return what a stage makes of the features of a layer that touch a survey, in their order.
+    """Return the results of a stage for the features of a layer that touch a survey, in their order.
 
     The values don't depend on the blocks where nothing beyond the reach of the stage decides on a feature. One run
     gives the same, but for measures that are taken on parts of large surveys, see :func:`.samplings_of`. Memory: the
@@ -102,7 +102,7 @@ def run_in_windows(
 
 
 def _sampling(stage: Stage, survey: Survey, monitor: Monitor, layers: Any = None) -> CloudSampling:
-    """Return how a survey was sampled, with what parts take of the whole."""
+    """Return the sampling of a survey, with the values that parts take of the whole."""
     alone = Pipeline(stage.name, stage.title, *("",) * 5, (Step(stage.name, stage.name),))
     return samplings_of(alone, survey, {}, monitor, layers)[""]
 

@@ -168,7 +168,7 @@ class References:
         return cls([dict(zip(used.tolist(), counts.tolist())) for used, counts in kinds])
 
     def count_of(self, key: tuple[int, int]) -> int:
-        """Return how many points of a block, by its position, have a number there."""
+        """Return the number of points of a block, by its position, that have a number there."""
         return self.counts[key[0]].get(key[1], 0)
 
 

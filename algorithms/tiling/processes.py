@@ -214,7 +214,7 @@ class _Process:
             raise CannotStart(_not_started(self._python, why)) from None
 
     def call(self, function: Callable, arguments: tuple) -> Any:
-        """Return what a function returns there, or raise what it raises.
+        """Return the result of a function there, or raise its error.
 
         Raises
         ------

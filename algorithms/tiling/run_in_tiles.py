@@ -247,7 +247,7 @@ class _Run:
         return WorkedOn(done, lost, [BlockResult.read(path, with_points=False) for _, path in done])
 
     def _task(self, block: Block, plan: _Plan) -> BlockTask:
-        """Return what a worker is given for a block; its result is kept under a name for all that it depends on."""
+        """Return the task of a worker for a block; its result is kept under a name for all that it depends on."""
         settings, halo, samplings = self.settings, plan.halo, plan.samplings
         around = block.box + MOST_HALOS * halo * np.array([[-1], [1]])
         near, layers = self.survey.near(around), self._layers_in(around)
@@ -344,7 +344,7 @@ def _minutes(seconds: float) -> str:
 
 @cache
 def _version() -> str:
-    """Return what identifies a state of the program: a digest of its source."""
+    """Return the identity of a state of the program: a digest of its source."""
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).resolve().parents[1].rglob("*.py")):
         digest.update(path.read_bytes())

@@ -184,7 +184,7 @@ def _shared_in_space(
 
 
 def _tolerance(features: LayerFeatures, layer: Layer) -> np.ndarray:
-    """Return how far (n,) another plane may lie off the plane of a feature and be the same, m."""
+    """Return the distances (n,), m, up to which another plane is the same as that of a feature."""
     return _DEVIATIONS * np.asarray(features.columns[layer.deviation], float) + _LEAST
 
 
@@ -196,6 +196,6 @@ def _areas(geometries: list) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _off(rings: list, normal: np.ndarray, others: list) -> float:
-    """Return how far (root mean square, m) the corners of a polygon lie off the plane of another one."""
+    """Return the distance (root mean square, m) of the corners of a polygon from the plane of another one."""
     corners = others[0][:-1] - rings[0][:-1].mean(axis=0)
     return float(np.sqrt(np.mean((corners @ normal) ** 2)))

@@ -168,7 +168,7 @@ def _enough(clouds: list[Cloud]) -> list[Cloud]:
 
 
 def _sampling_of(clouds: list[Cloud], corner: np.ndarray) -> CloudSampling:
-    """Return how several parts of a survey with a south-western ``corner`` (2,) were sampled, all measures taken."""
+    """Return the sampling of several parts of a survey with a south-western ``corner`` (2,), all measures taken."""
     together = np.concatenate([cloud.get("xyz")[counted(cloud)] for cloud in clouds])
     single, colored = not any(map(has_several_returns, clouds)), all(map(has_colors, clouds))
     return CloudSampling(lambda: together, single, corner, colored).without_points()

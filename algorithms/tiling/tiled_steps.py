@@ -110,7 +110,7 @@ def _named(names: dict[tuple[str, str], str], step: Step, layer: str) -> str:
 
 
 def why_whole(pipeline: Pipeline) -> str:
-    """Return why a composite works on whole clouds only; "" where it can be run in tiles."""
+    """Return the reason why a composite works on whole clouds only; "" where it can be run in tiles."""
     if not pipeline.reads_cloud:
         return "it reads no cloud"
     steps = in_blocks(pipeline).steps

@@ -232,7 +232,7 @@ def run_all(
 
 
 def _why_failed(error: BaseException) -> str:
-    """Return why a task failed, in a sentence; raise errors that all other work would meet, too."""
+    """Return the cause of a failed task, in a sentence; raise errors that all other work would meet, too."""
     if isinstance(error, DiskFullError):
         raise error
     if isinstance(error, (ValueError, OSError, MemoryError)):

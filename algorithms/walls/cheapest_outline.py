@@ -87,7 +87,7 @@ class OutlineCells:
         return float(self.cost[self.is_cut(inside)].sum() + area + self.corners(inside) @ self.corner_cost)
 
     def corners(self, inside: np.ndarray) -> np.ndarray:
-        """Return how many corners (crossings,) an outline has at each crossing."""
+        """Return the number of corners (crossings,) of an outline at each crossing."""
         left_before, right_before, left_after, right_after = inside[self.arrangement.around].T
         before, after = left_before != right_before, left_after != right_after
         is_touched_twice = before & after & (left_before != left_after)

@@ -195,13 +195,13 @@ def extract_wall_footprints_2022(
 
 
 def _min_points(walls: dict[int, np.ndarray]) -> int:
-    """Return how many points a line has at least, from the wall points (n, 2), m, of each building."""
+    """Return the least number of points of a line, from the wall points (n, 2), m, of each building."""
     around = sum(2 * float(np.ptp(xy, axis=0).sum()) for xy in walls.values())
     return max(_LEAST_POINTS, round(_SHORTEST * sum(map(len, walls.values())) / max(around, 1.0)))
 
 
 def _min_density(lines: dict[int, list[WallLine]], width: float) -> float:
-    """Return how dense (1/m²) points are in the buffer of an edge at least, from the lines of each building."""
+    """Return the least density (1/m²) of points in the buffer of an edge, from the lines of each building."""
     along = [len(line.points) / (2 * width * np.ptp(line.along)) for own in lines.values() for line in own]
     return _DENSE * float(np.median(along)) if along else 1.0
 
@@ -237,7 +237,7 @@ class Buffer:
     min_density: float  #: Points per m² at which the connection is an edge
 
     def count(self, xy: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[int, float]:
-        """Return how many points (n, 2), m, lie in the rectangle between two corners, and per m² of it."""
+        """Return the number of points (n, 2), m, in the rectangle between two corners, and their density per m²."""
         length = float(np.hypot(*(end - start)))
         if length <= 2 * self.ends:
             return 0, 0.0
