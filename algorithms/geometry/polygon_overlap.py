@@ -137,15 +137,16 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
 def in_squares(
     boxes: np.ndarray, reach: float, side: float = SQUARE
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield rows of boxes (n, 2, 2) with middles in a square of a side (m), those within a reach (m), and their box.
+    """Return rows of boxes (n, 2, 2) with middles in a square of a side (m), those within a reach (m), and their box.
 
     The squares begin at the corner of all; together they hold each row once.
     """
     corner = boxes[:, 0].min(axis=0, initial=np.inf)
     squares, square = np.unique((boxes.mean(axis=1) - corner) // side, axis=0, return_inverse=True)
-    for own in split_groups(square.ravel(), len(squares)):
-        box = np.array([boxes[own, 0].min(axis=0) - reach, boxes[own, 1].max(axis=0) + reach])
-        yield own, meeting_boxes(box[None], boxes)[1], box
+    groups = split_groups(square.ravel(), len(squares))
+    around = [[boxes[own, 0].min(axis=0) - reach, boxes[own, 1].max(axis=0) + reach] for own in groups]
+    one, near = meeting_boxes(np.reshape(around, (-1, 2, 2)), boxes)
+    return zip(groups, np.split(near, np.searchsorted(one, np.arange(1, len(groups)))), np.array(around))
 
 
 def _shared(

@@ -76,14 +76,16 @@ def _update_in_windows(
         least_width = float(np.clip(RULES.deviations * fit.deviation, RULES.least_width, RULES.most_width))
         monitor.resolved(least_width=least_width)
     start = MapUpdate.of(old, new, fit)
-    update, done, kinds = start.copied(), 0, np.zeros(0, np.uint8)
+    update, part, done, kinds = start.copied(), start.copied(), 0, np.zeros(0, np.uint8)
     for own, near, box in in_squares(start.boxes, _REACH, min(side, _SIDE)):
-        clouds, part = read(box + fit.shift), start.copied()
+        clouds = read(box + fit.shift)
         kinds = np.union1d(kinds, clouds[0][1])
         points, roofs = SeenPoints.of(*clouds[0], fit, sampling), [roof_points(*one, fit) for one in clouds]
         for olds, news in start.blocks(least_width, near):
             ChangedBlock(part, points, olds, news, least_width, min_area).decide(roofs)
         update.take(part, own)
+        part.take(start, near)
+        part.drawn.clear()
         done += len(own)
         monitor.progress(done / len(start.boxes))
     if len(kinds):
