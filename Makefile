@@ -36,7 +36,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install new-stage pictures demo test test-core test-pythons check lint bench fuzz docs package clean
+.PHONY: help install new-stage pictures demo test test-slow test-all test-core test-pythons check lint bench fuzz docs package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -47,8 +47,13 @@ install: ## QGIS, the Python packages and the plugin, where they are missing
 demo: install ## find the buildings of a simulated town, or of TILE, and draw them (in demo/)
 	@scripts/offscreen.sh $(PYTHON) scripts/demo.py $(if $(TILE),"$(TILE)")
 
-test: install $(VENV)/made lint docs ## check the code, build the documentation, then run every test, on all cores
-	@scripts/offscreen.sh $(VENV)/bin/python -m pytest $(ON_ALL_CORES)
+test: install $(VENV)/made lint docs ## check the code, build the documentation, then run every test but the slow ones, on all cores
+	@scripts/offscreen.sh $(VENV)/bin/python -m pytest $(ON_ALL_CORES) -m "not slow"
+
+test-slow: install $(VENV)/made ## the slow tests: more real clouds, more draws, the scanners of the plugin repository
+	@scripts/offscreen.sh $(VENV)/bin/python -m pytest $(ON_ALL_CORES) -m slow
+
+test-all: test test-slow ## every test
 
 test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but requirements-dev.txt and what those name
 	@$(CORE_PYTHON) -m pytest -p no:pytest_qgis $(ON_ALL_CORES) $(CORE_TESTS)

@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
+from lidar_buildings.tests.shared_results import SHARED_RESULTS
+
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "lidar_buildings"
 
@@ -36,11 +38,19 @@ def pytest_ignore_collect(collection_path):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_setupnodes(config, specs):
-    """Give the QGIS of each worker settings of its own: two that write one file of settings disturb each other."""
+    """Give all workers a folder for what they share, and the QGIS of each settings of its own.
+
+    Two that write one file of settings disturb each other.
+    """
+
+    def folder(prefix: str) -> str:
+        made = tempfile.mkdtemp(prefix=prefix)
+        config.add_cleanup(lambda: shutil.rmtree(made, ignore_errors=True))
+        return made
+
+    shared = folder("shared-results-")
     for spec in specs:
-        folder = tempfile.mkdtemp(prefix="qgis-settings-")
-        config.add_cleanup(lambda folder=folder: shutil.rmtree(folder, ignore_errors=True))
-        spec.env["QGIS_CUSTOM_CONFIG_PATH"] = folder
+        spec.env.update({SHARED_RESULTS: shared, "QGIS_CUSTOM_CONFIG_PATH": folder("qgis-settings-")})
 
 
 def pytest_collect_file(file_path):

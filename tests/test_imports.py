@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -67,10 +68,20 @@ def imported(source: str) -> Iterator[str]:
                 yield str(node.args[0].value)
 
 
-def packages_of(path: Path) -> set[str]:
+@cache
+def names_in(path: str) -> tuple[str, ...]:
+    """Return what a file imports."""
+    return tuple(imported((ROOT / path).read_text(encoding="utf-8")))
+
+
+def packages_of(path: str) -> set[str]:
     """Return the packages that a file imports by absolute name."""
-    names = imported(path.read_text(encoding="utf-8"))
-    return {name.split(".")[0] for name in names if not name.startswith(".")}
+    return {name.split(".")[0] for name in names_in(path) if not name.startswith(".")}
+
+
+def importers_of(packages: set[str], paths: list[str], but: str = "") -> list[str]:
+    """Return the files that import one of some packages, ``but`` one that may."""
+    return [path for path in paths if path != but and packages_of(path) & packages]
 
 
 def sources(*folders: str) -> list[str]:
@@ -113,17 +124,21 @@ def room_of(module: str) -> str:
 def modules_imported(path: str) -> Iterator[str]:
     """Yield the modules of the core that one of its modules imports, ``"geometry.grid"``."""
     package = Path(path).with_suffix("").parts[1:-1]
-    for name in imported((ROOT / path).read_text(encoding="utf-8")):
+    for name in names_in(path):
         level = len(name) - len(name.lstrip("."))
         if level:
             yield ".".join([*package[: len(package) - level + 1], name[level:]])
 
 
-@pytest.mark.parametrize("path", [path for path in CORE if path.count("/") > 1 or not path.endswith("__init__.py")])
-def test_rooms_import_only_from_earlier_rooms(path):
-    own = room_of(".".join(Path(path).with_suffix("").parts[1:]))
-    below = ROOMS[: ROOMS.index(own) + 1]
-    assert not [module for module in modules_imported(path) if room_of(module) not in below]
+def test_rooms_import_only_from_earlier_rooms():
+    found = [
+        f"{path} imports {module}"
+        for path in CORE
+        if path != "algorithms/__init__.py"
+        for module in modules_imported(path)
+        if ROOMS.index(room_of(module)) > ROOMS.index(room_of(".".join(Path(path).with_suffix("").parts[1:])))
+    ]
+    assert not found
 
 
 # Modules that measure the density of some points: of parts of a cloud that are sampled otherwise than the whole.
@@ -167,22 +182,20 @@ def test_no_room_is_too_large():
     assert max(rooms.values()) <= LARGEST_ROOM * whole, max(rooms, key=lambda room: rooms[room])
 
 
-@pytest.mark.parametrize("stage", STAGES.values(), ids=list(STAGES))
-def test_module_of_a_stage_has_its_name(stage):
-    module = stage.function.__module__.rsplit(".", 1)[1]
-    assert module == stage.name
+def test_module_of_a_stage_has_its_name():
+    assert {stage.function.__module__.rsplit(".", 1)[1]: stage for stage in STAGES.values()} == dict(STAGES)
 
 
-@pytest.mark.parametrize("stage", STAGES.values(), ids=list(STAGES))
-def test_tests_of_a_stage_have_its_name_and_its_folder(stage):
-    room = stage.function.__module__.split(".")[-2]
-    assert (ROOT / "tests" / "algorithms" / room / f"test_{stage.name}.py").is_file()
+def test_tests_of_a_stage_have_its_name_and_its_folder():
+    room = {stage.name: stage.function.__module__.split(".")[-2] for stage in STAGES.values()}
+    tests = {name: ROOT / "tests" / "algorithms" / room[name] / f"test_{name}.py" for name in room}
+    assert not [name for name, path in tests.items() if not path.is_file()]
 
 
-@pytest.mark.parametrize("path", [path for path in sources("tests/algorithms") if "/" in path])
-def test_folders_of_tests_are_rooms_of_the_core(path):
+def test_folders_of_tests_are_rooms_of_the_core():
     """A room that moves takes its tests with it."""
-    assert (ROOT / path).parent.relative_to(ROOT / "tests") in {(ROOT / core).parent.relative_to(ROOT) for core in CORE}
+    rooms = {Path("tests", path).parent for path in CORE}
+    assert {Path(path).parent for path in sources("tests/algorithms")} <= rooms
 
 
 def test_there_are_sources_to_read():
@@ -190,58 +203,53 @@ def test_there_are_sources_to_read():
     assert "provider/plugin.py" in PLUGIN
 
 
-@pytest.mark.parametrize("path", ["__init__.py", *CORE])
-def test_only_the_provider_knows_qgis(path):
-    assert not packages_of(ROOT / path) & QGIS
+def test_only_the_provider_knows_qgis():
+    assert not importers_of(QGIS, ["__init__.py", *CORE])
 
 
-@pytest.mark.parametrize("path", TESTS_OF_CORE)
-def test_tests_of_the_core_need_no_qgis(path):
+def test_tests_of_the_core_need_no_qgis():
     """The core is tested where there is no QGIS; a second opinion of QGIS's libraries has its place in tests/qgis."""
-    names = set(imported((ROOT / path).read_text(encoding="utf-8")))
-    assert not packages_of(ROOT / path) & QGIS
-    assert not [name for name in names if "provider" in name.split(".")]
+    assert not importers_of(QGIS, TESTS_OF_CORE)
+    assert not [path for path in TESTS_OF_CORE if any("provider" in name.split(".") for name in names_in(path))]
 
 
-@pytest.mark.parametrize("path", TESTS)
-def test_no_module_of_tests_is_a_library(path):
+def test_no_module_of_tests_is_a_library():
     """What two modules share is in one that has no tests, where it can be found."""
-    nodes = ast.walk(ast.parse((ROOT / path).read_text(encoding="utf-8")))
-    names = [
-        f"{getattr(node, 'module', '')}.{alias.name}"
-        for node in nodes
-        if isinstance(node, IMPORTS)
-        for alias in node.names
-    ]
-    assert not [name for name in names if ".test_" in name]
+    assert not [path for path in TESTS if any(".test_" in name for name in aliases_in(path))]
 
 
-@pytest.mark.parametrize("path", [path for path in PLUGIN if path != "algorithms/cloud/laspy_library.py"])
-def test_only_one_module_imports_the_libraries_of_point_clouds(path):
-    assert not packages_of(ROOT / path) & POINT_CLOUD_FILES
+def aliases_in(path: str) -> list[str]:
+    """Return every name that a file imports, ``"module.name"``."""
+    nodes = [node for node in ast.walk(ast.parse((ROOT / path).read_text("utf-8"))) if isinstance(node, IMPORTS)]
+    return [f"{getattr(node, 'module', '')}.{alias.name}" for node in nodes for alias in node.names]
 
 
-@pytest.mark.parametrize("path", [path for path in PLUGIN if path != "algorithms/packages.py"])
-def test_scipy_and_scikit_learn_come_through_packages_only(path):
-    assert not packages_of(ROOT / path) & NUMERICAL
+def test_only_one_module_imports_the_libraries_of_point_clouds():
+    assert not importers_of(POINT_CLOUD_FILES, PLUGIN, but="algorithms/cloud/laspy_library.py")
 
 
-@pytest.mark.parametrize("path", CORE)
-def test_core_does_not_import_the_provider(path):
-    names = imported((ROOT / path).read_text(encoding="utf-8"))
-    assert not [name for name in names if "provider" in name.lstrip(".").split(".")]
+def test_scipy_and_scikit_learn_come_through_packages_only():
+    assert not importers_of(NUMERICAL, PLUGIN, but="algorithms/packages.py")
 
 
-@pytest.mark.parametrize("path", CORE)
-def test_core_imports_nothing_but_what_the_readme_names(path):
+def test_core_does_not_import_the_provider():
+    assert not [path for path in CORE if any("provider" in name.lstrip(".").split(".") for name in names_in(path))]
+
+
+def test_core_imports_nothing_but_what_the_readme_names():
+    found = {path: packages_of(path) - allowed_in(path) - set(sys.stdlib_module_names) for path in CORE}
+    assert not {path: packages for path, packages in found.items() if packages}
+
+
+def allowed_in(path: str) -> set[str]:
+    """Return the packages that a module of the core may import besides those of Python."""
     allowed = {"numpy"} | (POINT_CLOUD_FILES if path == "algorithms/cloud/laspy_library.py" else set())
     # Needed by nobody who names no vector format but GeoJSON.
     allowed |= NUMERICAL | {"pyogrio"} if path == "algorithms/packages.py" else set()
     # Where it is installed, it knows codes of coordinate reference systems; QGIS has its own.
     allowed |= {"pyproj"} if path == "algorithms/cloud/authority.py" else set()
     # Needed by nobody who doesn't name a scheduler.
-    allowed |= {"distributed"} if path == "algorithms/tiling/workers.py" else set()
-    assert not packages_of(ROOT / path) - allowed - set(sys.stdlib_module_names)
+    return allowed | ({"distributed"} if path == "algorithms/tiling/workers.py" else set())
 
 
 @pytest.mark.parametrize("absent", [POINT_CLOUD_FILES | NUMERICAL, QGIS])
@@ -265,26 +273,35 @@ OF_PACKAGE = {
 }
 
 
+@cache
+def uses(module: str) -> tuple[set[str], list[str]]:
+    """Return the packages that a module of the core uses itself, and the modules that it imports."""
+    path = Path("algorithms", *module.split(".")).with_suffix(".py")
+    path = path if (ROOT / path).is_file() else path.with_suffix("") / "__init__.py"
+    if not (ROOT / path).is_file():
+        return set(), []
+    aliases = [name.removeprefix("packages.") for name in aliases_in(str(path)) if name.startswith("packages.")]
+    return {OF_PACKAGE[name] for name in aliases if name in OF_PACKAGE}, list(modules_imported(str(path)))
+
+
 def packages_used(module: str) -> set[str]:
     """Return the packages that a module of the core and all that it imports use."""
     found, open_ones, seen = set(), [module], set()
     while open_ones:
-        path = Path("algorithms", *open_ones.pop().split(".")).with_suffix(".py")
-        path = path if (ROOT / path).is_file() else path.with_suffix("") / "__init__.py"
-        if path in seen or not (ROOT / path).is_file():
-            continue
-        seen.add(path)
-        for node in ast.walk(ast.parse((ROOT / path).read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and node.level and node.module == "packages":
-                found |= {OF_PACKAGE[alias.name] for alias in node.names if alias.name in OF_PACKAGE}
-        open_ones += modules_imported(str(path))
+        one = open_ones.pop()
+        if one not in seen:
+            seen.add(one)
+            packages, imports = uses(one)
+            found |= packages
+            open_ones += imports
     return found
 
 
-@pytest.mark.parametrize("stage", STAGES.values(), ids=lambda stage: stage.name)
-def test_a_stage_names_the_packages_that_it_uses(stage):
-    module = stage.function.__module__.split(".algorithms.")[1]
-    assert set(stage.packages) == packages_used(module)
+def test_a_stage_names_the_packages_that_it_uses():
+    module = {name: stage.function.__module__.split(".algorithms.")[1] for name, stage in STAGES.items()}
+    assert {name: set(STAGES[name].packages) for name in module} == {
+        name: packages_used(module[name]) for name in module
+    }
 
 
 def test_composites_run_without_scikit_learn():
@@ -338,7 +355,7 @@ def test_names_of_the_stage_package_are_imported_from_the_package_itself():
         path
         for path in sources("algorithms", "provider", "tests")
         if not path.startswith("algorithms/stage/")
-        for name in imported((ROOT / path).read_text(encoding="utf-8"))
+        for name in names_in(path)
         if any(name.endswith(f"stage.{part}") for part in parts)
     ]
     assert not deep

@@ -62,6 +62,7 @@ def test_make_package_scans_the_zip():
     assert planned.index("scripts/package.py") < planned.index("scripts/scan.py")
 
 
+@pytest.mark.slow
 def test_the_scanners_of_the_plugin_repository_find_nothing(made):
     assert scan.findings(made) == []
 

@@ -12,6 +12,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.tests.real.clouds import DATA, DELFT, detected, path_of, truth
+from lidar_buildings.tests.shared_results import made_once
 
 MAP = DATA / "footprints" / "delft-bgt.gpkg"
 
@@ -40,7 +41,11 @@ def footprints(kind, in_blocks=False):
     else:
         cloud = read_cloud(path_of(DELFT))
         cloud.set("classification", truth(DELFT))
-    return run_stage(STAGES["extract_footprints"], cloud, merge_touching=in_blocks).layers["footprints"], cloud
+
+    def extracted():
+        return run_stage(STAGES["extract_footprints"], cloud, merge_touching=in_blocks).layers["footprints"]
+
+    return made_once(f"footprints {kind} {in_blocks}", extracted), cloud
 
 
 @functools.cache

@@ -7,11 +7,13 @@ import importlib.util
 import os
 import time
 import warnings
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
+import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud
@@ -21,6 +23,7 @@ from lidar_buildings.algorithms.run import run_pipeline, run_stage
 from lidar_buildings.algorithms.sampling.density import point_density
 from lidar_buildings.algorithms.stage import LayerFeatures
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.tests.shared_results import made_once
 
 # A folder next to the checkout, or wherever the variable says: clouds with their truth, in folders by subject.
 DATA = Path(os.environ.get("LIDAR_BUILDINGS_DATA", Path(__file__).resolve().parents[3] / "shared" / "data"))
@@ -38,6 +41,9 @@ WITH_BUILDINGS = (
     "buildings/amsterdam-centre-10",
 )
 WITHOUT_BUILDINGS = ("buildings/ign-forest-none", "buildings/ign-bridge-none")
+
+# Of these, those that take long and show what a quicker one shows too.
+SLOW = ("buildings/ahn3-delft-4", "buildings/ign-stbarth", "buildings/ign-bridge-none")
 
 # Clouds matched from a drone's images: no returns, closed crowns.
 WITH_IMAGES = ("photo/uk-photo-100", "photo/brighton-beach")
@@ -80,6 +86,11 @@ class Result:
         return len(np.unique(np.floor(plan / cell), axis=0)) * cell**2
 
 
+def each(names: Iterable[str], slow: Collection[str] = SLOW) -> list:
+    """Return clouds as parameters of a test, the slow ones marked."""
+    return [pytest.param(name, marks=[pytest.mark.slow] if name in slow else []) for name in names]
+
+
 def path_of(name: str) -> Path:
     """Return the file of ``<folder>/<cloud>``."""
     return DATA / f"{name}.laz"
@@ -92,13 +103,13 @@ def truth(name: str) -> np.ndarray:
 
 
 def detected(name: str, pipeline: str = "detect_buildings") -> Result:
-    """Run a chain; once per session, since it takes its time. Don't change what it returns."""
+    """Run a chain; once per run of the tests, since it takes its time. Don't change what it returns."""
     return _detected(name, pipeline)
 
 
 @functools.cache
 def _detected(name: str, pipeline: str) -> Result:
-    return run_on(read_cloud(path_of(name)), pipeline)
+    return made_once(f"{pipeline} of {name}", lambda: run_on(read_cloud(path_of(name)), pipeline))
 
 
 def run_on(cloud: Cloud, pipeline: str = "detect_buildings") -> Result:

@@ -17,7 +17,16 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.quality.report_buildings import SURE
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.tests.benchmarks.review import false_buildings
-from lidar_buildings.tests.real.clouds import WITH_BUILDINGS, WITHOUT_BUILDINGS, detected, path_of, score, truth
+from lidar_buildings.tests.real.clouds import (
+    SLOW,
+    WITH_BUILDINGS,
+    WITHOUT_BUILDINGS,
+    detected,
+    each,
+    path_of,
+    score,
+    truth,
+)
 
 # F-score per point (%): detect_buildings, and the chain of 2019 on the same cloud.
 REACHED = {
@@ -51,6 +60,9 @@ QUICK = [name for name in REACHED if name not in ("buildings/ahn3-delft", "build
 BY_CHANCE = "buildings/ign-stbarth-4"
 
 SMALL = "buildings/ahn-amsterdam-1"
+
+# Clouds on which the chain of 2019 takes longest.
+SLOW_IN_2019 = (*SLOW, "buildings/amsterdam-centre-10", "buildings/ign-chalet")
 
 # Dimensions that the chain writes or leaves, and those that identify points.
 WRITTEN = (
@@ -99,28 +111,28 @@ def f_score(name, pipeline="detect_buildings"):
     return score("buildings", name, detected(name, pipeline))["points"]["F"]
 
 
-@pytest.mark.parametrize("name", REACHED)
+@pytest.mark.parametrize("name", each(REACHED))
 def test_buildings_are_found_as_well_as_before(name):
     assert f_score(name) >= max(REACHED[name][0] - MARGIN, FLOORS[name])
 
 
-@pytest.mark.parametrize("name", REACHED)
+@pytest.mark.parametrize("name", each(REACHED, SLOW_IN_2019))
 def test_default_is_better_than_the_chain_of_2019(name):
     published = f_score(name, "detect_buildings_2019") if name in QUICK else REACHED[name][1]
     assert f_score(name) > published
 
 
-@pytest.mark.parametrize("name", [name for name in QUICK if name != BY_CHANCE])
+@pytest.mark.parametrize("name", each((name for name in QUICK if name != BY_CHANCE), SLOW_IN_2019))
 def test_chain_of_2019_does_not_get_worse(name):
     assert f_score(name, "detect_buildings_2019") >= REACHED[name][1] - MARGIN
 
 
-@pytest.mark.parametrize("name", REACHED_WITHOUT_BUILDINGS)
+@pytest.mark.parametrize("name", each(REACHED_WITHOUT_BUILDINGS))
 def test_little_is_called_building_where_there_is_none(name):
     assert detected(name).area <= REACHED_WITHOUT_BUILDINGS[name] + AREA_MARGIN
 
 
-@pytest.mark.parametrize("name", [*REACHED, *REACHED_WITHOUT_BUILDINGS])
+@pytest.mark.parametrize("name", each([*REACHED, *REACHED_WITHOUT_BUILDINGS]))
 def test_footprints_cover_what_is_called_building(name):
     result = detected(name)
     footprints = result.layers["footprints"]
@@ -185,7 +197,10 @@ def sorted_values(cloud, names):
     return values[np.lexsort(values.T[::-1])]
 
 
-@pytest.mark.parametrize(("name", "doubtful"), [("ahn3-delft-4", 18), ("amsterdam-centre-10", 5)])
+@pytest.mark.parametrize(
+    ("name", "doubtful"),
+    [pytest.param("ahn3-delft-4", 18, marks=pytest.mark.slow), ("amsterdam-centre-10", 5)],
+)
 def test_all_false_buildings_are_among_the_few_doubtful_ones(name, doubtful):
     """By the evidence alone 60 and 10 were doubtful, and one false building of each cloud was not."""
     result = detected(f"buildings/{name}")

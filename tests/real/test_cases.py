@@ -62,7 +62,7 @@ def test_two_lists_of_extra_bytes_become_one(case, tmp_path, laspy):
 
 
 @pytest.mark.parametrize("name", ["forest_megaplot_e.laz", "forest_megaplot_e_hills.laz"])
-@pytest.mark.parametrize("keep", [1.0, 0.5])
+@pytest.mark.parametrize("keep", [pytest.param(1.0, marks=pytest.mark.slow), 0.5])
 def test_a_forest_has_no_buildings(case, name, keep):
     """About 6,000 m² of crowns were called buildings in both."""
     cloud = read_cloud(case(name))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
-from lidar_buildings.tests.real.clouds import detected, truth
+from lidar_buildings.tests.real.clouds import WITHOUT_BUILDINGS, detected, each, truth
 
 MARGIN = 1.0
 
@@ -23,7 +23,12 @@ def f_score(name: str, classes: tuple) -> float:
 # Of the plants of the chalet's meadow, most under 0.2 m, two thirds are ground to the filter.
 @pytest.mark.parametrize(
     ("name", "reached"),
-    [("ign-forest-none", 98.6), ("ign-bridge-none", 94.3), ("ign-chalet", 87.0), ("ign-stbarth-4", 88.8)],
+    [
+        ("ign-forest-none", 98.6),
+        pytest.param("ign-bridge-none", 94.3, marks=pytest.mark.slow),
+        ("ign-chalet", 87.0),
+        ("ign-stbarth-4", 88.8),
+    ],
 )
 def test_vegetation_is_found_as_well_as_before(name, reached):
     assert f_score(f"buildings/{name}", VEGETATION) >= reached - MARGIN
@@ -34,7 +39,10 @@ def test_every_point_has_been_looked_at():
 
 
 # Canals under 30 m wide, of which most pulses are lost. At 4 points per m² the points at the foot of the quays count.
-@pytest.mark.parametrize(("name", "reached"), [("ahn3-delft-4", 94.6), ("amsterdam-centre-10", 98.8)])
+@pytest.mark.parametrize(
+    ("name", "reached"),
+    [pytest.param("ahn3-delft-4", 94.6, marks=pytest.mark.slow), ("amsterdam-centre-10", 98.8)],
+)
 def test_canals_are_found_as_well_as_before(name, reached):
     assert f_score(f"buildings/{name}", (PointClass.WATER,)) >= reached - MARGIN
 
@@ -45,6 +53,6 @@ def test_no_water_is_found_where_there_is_none(name):
 
 
 # A tower crane on the hillside hangs its jib as wires do; the other clouds have neither wires nor cranes.
-@pytest.mark.parametrize("name", ["ign-forest-none", "ign-bridge-none", "ahn3-delft-4", "amsterdam-centre-10"])
+@pytest.mark.parametrize("name", each((*WITHOUT_BUILDINGS, "buildings/ahn3-delft-4", "buildings/amsterdam-centre-10")))
 def test_no_wires_are_found_where_there_are_none(name):
-    assert not (detected(f"buildings/{name}").classification == PointClass.WIRE_CONDUCTOR).any()
+    assert not (detected(name).classification == PointClass.WIRE_CONDUCTOR).any()

@@ -6,9 +6,7 @@ A better result is pasted, a worse one is explained.
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.tests.real.clouds import DELFT, detected
+from lidar_buildings.tests.real.clouds import each
 
 pytest.importorskip("qgis.core")
 from qgis.core import QgsGeometry
@@ -28,18 +26,19 @@ from lidar_buildings.tests.real.base_map import (
 # which lie 0.27 m (median) outside of the walls that the map shows.
 REACHED = {"truth": (0.927, 0.40, 0.43), "chain": (0.902, 0.59, 0.61)}
 MARGIN, CORNER_MARGIN = 0.01, 0.1
+each_kind = pytest.mark.parametrize("kind", each(REACHED, slow=["truth"]))
 
 # Least values for the stage to serve its purpose, whatever was reached.
 LEAST_IOU, MOST_CORNER = {"truth": 0.90, "chain": 0.85}, (0.65, 0.65)
 
 
-@pytest.mark.parametrize("kind", REACHED)
+@each_kind
 def test_footprints_cover_what_is_building(kind):
     reached = cell_iou(kind)
     assert reached >= max(REACHED[kind][0] - MARGIN, LEAST_IOU[kind])
 
 
-@pytest.mark.parametrize("kind", REACHED)
+@each_kind
 @pytest.mark.parametrize(("level", "least"), [(0, 8), (1, 8)])
 def test_corners_are_those_of_the_map(kind, level, least):
     matched, distances = map_distances(kind, level)
@@ -49,8 +48,7 @@ def test_corners_are_those_of_the_map(kind, level, least):
 
 def test_houses_of_rows_are_those_of_the_map():
     """Of 118 houses of 20 m² or more, 58 are found one to one; with rows in one piece it is 5."""
-    cloud = detected(DELFT).cloud
-    found = run_stage(STAGES["extract_footprints"], cloud).layers["footprints"]
+    found, cloud = footprints("chain")
     made = [polygon([cloud.to_map(ring) for ring in rings]) for rings in found.geometries]
     assert all(one.isGeosValid() for one in made)
     assert QgsGeometry.unaryUnion(made).area() == pytest.approx(sum(one.area() for one in made), rel=1e-9)
@@ -62,7 +60,7 @@ def test_houses_of_rows_are_those_of_the_map():
     assert np.median(distances) <= 0.65
 
 
-@pytest.mark.parametrize("kind", REACHED)
+@each_kind
 def test_footprints_are_valid_and_do_not_overlap(kind):
     found, _ = footprints(kind)
     made = [polygon(rings) for rings in found.geometries]

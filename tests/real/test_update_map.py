@@ -88,7 +88,7 @@ def changed_map(true, same, found, ground, rng):
     return made, kinds
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_changes_of_delfts_base_map_are_found_and_nothing_else_is_touched(seed):
     found, cloud = footprints("chain")
     true = rings_of_map(cloud)
