@@ -92,8 +92,8 @@ def segment_tin_planes(
 
     Examples
     --------
-    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
-    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> x, y = np.mgrid[0:16:0.5, 0:16:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 8) < 5) & (abs(y - 8) < 4), 5.0, 0.0)
     >>> xyz = np.column_stack([x, y, z])
     >>> ids = segment_tin_planes(xyz, np.zeros(len(xyz)))
     >>> int(ids.max())

@@ -15,7 +15,7 @@ from lidar_buildings.algorithms.stages import STAGES
 # Tests of the provider add others to them.
 NAMES = tuple(PIPELINES)
 TOWN = "simulate_town", {"size": 80.0, "density": 3.0, "forest": 0.0, "trees": 0.0}
-VILLAGE = "simulate_village", {"size": 60.0, "density": 60.0, "trees": 0.0, "seed": 3}
+VILLAGE = "simulate_village", {"size": 60.0, "density": 30.0, "trees": 0.0, "seed": 3}
 SCENES = {
     "map_footprints": VILLAGE,
     "map_footprints_2022": VILLAGE,

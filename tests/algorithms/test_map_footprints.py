@@ -33,7 +33,7 @@ def turned(arrays, layers, angle, shift):
     ("tunables", "angle"),
     [
         ({"density": 50.0, "noise": 0.05, "seed": 2}, 0.0),
-        ({"density": 70.0, "noise": 0.03, "seed": 3}, 0.7),
+        pytest.param({"density": 70.0, "noise": 0.03, "seed": 3}, 0.7, marks=pytest.mark.slow),
     ],
 )
 def test_buildings_are_found_and_their_corners_are_where_they_are(tunables, angle):
@@ -53,6 +53,7 @@ def test_buildings_are_found_and_their_corners_are_where_they_are(tunables, angl
     assert made.report.values["found"] == len(true) - round(0.1 * len(true))
 
 
+@pytest.mark.slow
 def test_the_published_chain_finds_most_of_the_corners():
     """Ours closes all outlines; corners that both have are as near to the true ones."""
     arrays, true, old_map = village(size=100.0, density=75.0, noise=0.02, seed=2)

@@ -184,6 +184,7 @@ def test_styles_draw_at_their_heights_in_3d(provider, stem):
     assert not symbol.dataDefinedProperties().hasActiveProperties()
 
 
+@pytest.mark.slow
 def test_a_block_from_street_and_air_is_in_qgis_what_it_is_in_memory(provider, context, log, out):
     """Two files, 1.2 m off each other, become one CityJSON with windows; the shift is an output."""
     air, street = (seen_from(view)[0] for view in ("airplane", "vehicle"))

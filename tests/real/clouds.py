@@ -43,7 +43,7 @@ WITH_BUILDINGS = (
 WITHOUT_BUILDINGS = ("buildings/ign-forest-none", "buildings/ign-bridge-none")
 
 # Of these, those that take long and show what a quicker one shows too.
-SLOW = ("buildings/ahn3-delft-4", "buildings/ign-stbarth", "buildings/ign-bridge-none")
+SLOW = ("buildings/ahn3-delft-4", "buildings/ign-stbarth", "buildings/ign-chalet", "buildings/ign-bridge-none")
 
 # Clouds matched from a drone's images: no returns, closed crowns.
 WITH_IMAGES = ("photo/uk-photo-100", "photo/brighton-beach")

@@ -61,7 +61,9 @@ def test_two_lists_of_extra_bytes_become_one(case, tmp_path, laspy):
         np.testing.assert_array_equal(again[name], cloud.points[f"extra{number}"])
 
 
-@pytest.mark.parametrize("name", ["forest_megaplot_e.laz", "forest_megaplot_e_hills.laz"])
+@pytest.mark.parametrize(
+    "name", ["forest_megaplot_e.laz", pytest.param("forest_megaplot_e_hills.laz", marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("keep", [pytest.param(1.0, marks=pytest.mark.slow), 0.5])
 def test_a_forest_has_no_buildings(case, name, keep):
     """About 6,000 m² of crowns were called buildings in both."""

@@ -90,6 +90,7 @@ def test_houses_are_mapped_whole():
     assert correctness > 98
 
 
+@pytest.mark.slow
 def test_buildings_are_found_without_color():
     cloud = read_cloud(path_of(TOWN))
     for name in ("red", "green", "blue"):

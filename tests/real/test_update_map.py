@@ -11,6 +11,7 @@ from qgis.core import QgsVectorLayer
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.geometry.line_segments import is_valid
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
+from lidar_buildings.algorithms.models3d.model_inputs import by_easting
 from lidar_buildings.algorithms.quality.map_changes import CHANGED, GONE, NEW, UNCHANGED
 from lidar_buildings.algorithms.quality.update_map import update_map
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
@@ -63,7 +64,10 @@ def walls_moved(rings):
 
 
 def changed_map(true, same, found, ground, rng):
-    """Return the map by number, and what was done to each building: numbers from 1000 on are of invented ones."""
+    """Return the map by number, and what was done to each building: numbers from 1000 on are of invented ones.
+
+    Ground points are ordered by their eastings.
+    """
     kinds, made = {}, dict(enumerate(true))
     likeness, taken = ious(true, found), as_polygons([*true, *found])
     middles = np.array([rings[0].mean(axis=0) for rings in true])
@@ -81,8 +85,9 @@ def changed_map(true, same, found, ground, rng):
             break
     while sum(kind == GONE for kind in kinds.values()) < 8:
         rings = [np.array([[0, 0], [8, 0], [8, 6], [0, 6], [0, 0]]) + rng.uniform(middles.min(0), middles.max(0))]
-        inside = ((ground[:, :2] > rings[0][0]) & (ground[:, :2] < rings[0][2])).all(axis=1)
-        if most_shared(rings, taken) == 0 and inside.sum() > 400:
+        (west, south), (east, north) = rings[0][[0, 2]]
+        strip = ground[slice(*np.searchsorted(ground[:, 0], [west, east])), 1]
+        if np.sum((strip > south) & (strip < north)) > 400 and most_shared(rings, taken) == 0:
             number = 1000 + len(made)
             kinds[number], made[number] = GONE, rings
     return made, kinds
@@ -92,7 +97,7 @@ def changed_map(true, same, found, ground, rng):
 def test_changes_of_delfts_base_map_are_found_and_nothing_else_is_touched(seed):
     found, cloud = footprints("chain")
     true = rings_of_map(cloud)
-    ground = cloud.get("xyz")[cloud.get("classification") == PointClass.GROUND]
+    ground = by_easting(cloud.get("xyz")[cloud.get("classification") == PointClass.GROUND])
     survey = {name: cloud.get(name) for name in ("xyz", "classification")}
 
     def updated(made):

@@ -35,7 +35,7 @@ def site(rng, gaps):
     return create_cloud({"xyz": xyz, **colors}), is_crown, (part > 0) & (part <= len(ROOFS))
 
 
-@pytest.mark.parametrize("gaps", [False, True])
+@pytest.mark.parametrize("gaps", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_dry_crowns_are_no_buildings_in_either_kind_of_cloud(rng, gaps):
     cloud, is_crown, is_roof = site(rng, gaps)
     assert sampling_of(cloud).is_closed_surface() != gaps
@@ -46,6 +46,7 @@ def test_dry_crowns_are_no_buildings_in_either_kind_of_cloud(rng, gaps):
     assert is_building[is_crown].mean() < 0.05
 
 
+@pytest.mark.slow
 def test_without_color_they_are_called_buildings(rng):
     """They have the shape of roofs: only color distinguishes them."""
     cloud, is_crown, _ = site(rng, True)

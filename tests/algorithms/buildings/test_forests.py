@@ -39,14 +39,14 @@ def area(xyz):
     return len(np.unique(np.floor(xyz[:, :2]), axis=0))
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))])
 def test_crowns_are_no_buildings(seed):
     """234 to 880 m² were, as smooth spots of crowns next to one another passed for surroundings of buildings."""
     xyz, _ = forest(np.random.default_rng(seed))
     assert area(xyz[found_in(xyz)]) <= 10
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))])
 def test_a_hut_in_it_is_one(seed):
     xyz, is_roof = forest(np.random.default_rng(seed), hut=True)
     is_building = found_in(xyz)

@@ -97,7 +97,7 @@ def test_order_and_position_change_nothing():
     assert (on_ground(xyz + FAR) == made).mean() > 0.999
 
 
-@pytest.mark.parametrize("density", [3.0, 8.0])
+@pytest.mark.parametrize("density", [3.0, pytest.param(8.0, marks=pytest.mark.slow)])
 def test_the_river_of_a_town_is_water(density):
     xyz, true, number, count, *_ = simulate_town(size=120.0, density=density, seed=3)
     cloud = create_cloud({"xyz": xyz, "return_number": number, "number_of_returns": count})

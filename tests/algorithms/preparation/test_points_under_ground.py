@@ -27,7 +27,13 @@ def by_histogram_and_in_the_air(xyz, classification):
 
 @pytest.mark.parametrize("classify", [by_histogram_and_in_the_air, classify_noise_statistical])
 @pytest.mark.parametrize(
-    "differs", [{"density": 2.0}, {"density": 8.0, "slope": 25.0}, {"density": 8.0, "forest": 0.6}, {"density": 30.0}]
+    "differs",
+    [
+        {"density": 2.0},
+        {"density": 8.0, "slope": 25.0},
+        pytest.param({"density": 8.0, "forest": 0.6}, marks=pytest.mark.slow),
+        pytest.param({"density": 30.0}, marks=pytest.mark.slow),
+    ],
 )
 def test_noise_of_a_town_is_found_and_the_town_stays(classify, differs):
     town = noisy_town(seed=21, **differs)

@@ -212,6 +212,7 @@ def test_an_empty_range_of_radii_is_refused(rng):
         detect(np.column_stack([np.arange(50.0)] * 3))
 
 
+@pytest.mark.slow
 def test_real_tanks_are_found_in_a_yard_and_nothing_else_is(rng):
     """Plates that protrude by one to two deviations, ladders, stairs and sunk roofs: of four tanks none was found."""
     farm = tank_farm(rng, tanks=((13.74, 0), (8.56, 26)))

@@ -38,7 +38,7 @@ def test_lowest_seeds_keep_off_houses_smaller_than_their_cells(rng):
 
 
 def test_position_and_order_change_nothing(rng):
-    xyz, _ = scan(rng, TERRAINS["hill"], HOUSES)
+    xyz, _ = scan(rng, TERRAINS["hill"], HOUSES, density=1)
     xyz = np.round(xyz * 1024) / 1024
     expected = classify_ground_tin_2000(xyz, unclassified(xyz))
     order = rng.permutation(len(xyz))
@@ -60,7 +60,7 @@ def test_noise_is_not_used_and_keeps_its_class(rng):
 
 
 def test_progress_only_grows_and_a_cancel_gets_through(rng):
-    xyz, _ = scan(rng, TERRAINS["slope"], HOUSES)
+    xyz, _ = scan(rng, TERRAINS["slope"], HOUSES, density=1)
     monitor = Listening()
     classify_ground_tin_2000(xyz, unclassified(xyz), monitor=monitor)
     assert monitor.heard == sorted(monitor.heard)

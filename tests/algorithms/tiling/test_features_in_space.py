@@ -111,7 +111,7 @@ def cuts(xyz):
     yield [x < 31, (x > 20) & (x < 46), x > 40]
 
 
-@pytest.mark.parametrize("number", range(2))
+@pytest.mark.parametrize("number", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_how_the_street_is_cut_changes_nothing(points, tiled, tmp_path, number):
     """As 4 tiles, and as 3 that overlap."""
     outcome = in_tiles(points, tmp_path, list(cuts(points[0]))[number])

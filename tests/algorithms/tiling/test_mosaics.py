@@ -112,7 +112,7 @@ def test_what_belongs_to_a_footprint_stays_with_it_and_gets_its_new_number():
 
 def test_footprints_of_walls_are_mapped_in_tiles_and_compared_with_the_old_map(tmp_path):
     # The edge between two blocks goes through the middle of the village.
-    arrays, true, old_map = village(size=90.0, density=30.0, seed=4)
+    arrays, true, old_map = village(size=90.0, density=20.0, seed=4)
     corner = np.array([600_055.0, 5_000_005.0, 0.0])
     others = {name: values for name, values in arrays.items() if name != "xyz"}
     cloud = cloud_of(arrays["xyz"], corner, **others)

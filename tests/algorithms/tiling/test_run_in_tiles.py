@@ -150,7 +150,7 @@ def cuts(xyz):
     yield [x < 40, (x > 25) & (y < 50), (x > 25) & (y > 35)]
 
 
-@pytest.mark.parametrize("number", range(2))
+@pytest.mark.parametrize("number", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_how_the_survey_is_cut_changes_nothing(points, whole, tmp_path, number):
     xyz, times, _ = points
     parts = list(cuts(xyz))[number]
@@ -517,7 +517,7 @@ def test_a_window_grows_where_a_feature_ends_nearer_to_its_edge_than_points_deci
 def test_only_steps_that_the_wanted_outputs_need_are_run_in_tiles(tmp_path):
     """Tiles without footprints had them drawn in every block, and measured on the whole survey before."""
     rng = np.random.default_rng(3)
-    x, y = rng.uniform(0, 60, (2, 30_000))
+    x, y = rng.uniform(0, 60, (2, 12_000))
     z = np.where((abs(x - 30) < 5) & (abs(y - 30) < 4), 6.0, 0.0) + rng.normal(0, 0.02, len(x))
     write_cloud(create_cloud({"xyz": np.column_stack([x, y, z])}), tmp_path / "a.las")
     pipeline, made = PIPELINES["detect_buildings"], {}

@@ -117,7 +117,7 @@ def cuts(xyz):
     yield [x < 18, (x > 12) & (x < 33), (x > 29) & (y < 7), x > 31]
 
 
-@pytest.mark.parametrize("number", range(2))
+@pytest.mark.parametrize("number", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_how_the_plant_is_cut_changes_nothing(points, tiled, tmp_path, number):
     """As 4 tiles, and as 4 that overlap: but for micrometers, as sums follow the order of the points.
 

@@ -116,6 +116,7 @@ def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile,
     assert Path(outcome.tiles[0]).is_file()
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_ends_is_a_sentence_and_the_run_goes_on_with_another(tile, cluster, tmp_path):
     """It was Python's CancelledError, without a word."""
     address, files, processes = cluster
