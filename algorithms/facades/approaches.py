@@ -20,12 +20,16 @@ class _RULES:
 
     # Least height (m): a person walks through. Building codes ask for 2.0 m; a rim may not be seen.
     least_height: float = 1.8
+    # Least height (m) of a door whose top a shadow hides: windows with a landing or ground before them are lower.
+    cut_height: float = 1.5
     # A door is this far (m) above what leads up to it at most: two steps of 0.18 m and the noise of the edge.
     step: float = 0.4
     # The wall below a sill is looked for down to this depth (m) below the step: one row of stones.
     below: float = 0.4
     # Share of the columns of an opening that decides: most of them.
     most: float = 0.5
+    # Least share of the columns in which something is seen before the wall: stairs and cars cast shadows on the rest.
+    least_seen: float = 0.25
     # Width of a column (m): a step that is 0.3 m deep has two points in it from 50 points per m² on.
     column: float = 0.15
     # Where nothing is seen before a wall, its foot is this quantile of the heights of its points.
@@ -42,21 +46,22 @@ class Approach:
     def __init__(self, wall: np.ndarray, before: np.ndarray) -> None:
         self.wall, self.before = (some[np.argsort(some[:, 0], kind="stable")] for some in (wall, before))
 
-    def leads_to(self, box: np.ndarray) -> bool:
+    def leads_to(self, box: np.ndarray, has_lintel: bool) -> bool:
         """Return whether a person can walk up to an opening with a box (2, 2), m, and through it.
 
         The highest surface up to a step above the sill is at most a step below it, in most columns in which one is
-        seen. In most columns no wall is seen further down. Where nothing is seen before most columns, the foot of the
-        wall is taken instead.
+        seen. In most columns no wall is seen further down. Where nothing is seen before nearly all columns, the foot of
+        the wall is taken instead. An opening without a lintel is cut off by a shadow, and may be higher.
         """
         low, high = box[:, 1]
-        if high - low < _RULES.least_height:
+        is_high = high - low >= _RULES.least_height
+        if not is_high and (has_lintel or high - low < _RULES.cut_height):
             return False
         top = _highest(_between(self.before, box), box, low + _RULES.step)
         is_seen = np.isfinite(top)
-        if is_seen.mean() < _RULES.most:
+        if is_seen.mean() < _RULES.least_seen:
             # Nothing is seen before the opening: the foot of the wall is taken for the ground.
-            return bool(low - np.quantile(self.wall[:, 1], _RULES.foot) <= _RULES.step)
+            return bool(is_high and low - np.quantile(self.wall[:, 1], _RULES.foot) <= _RULES.step)
         seen_wall = _highest(_between(self.wall, box), box, low - _RULES.step) > low - _RULES.step - _RULES.below
         is_reached = top[is_seen] >= low - _RULES.step
         return bool(is_reached.mean() >= _RULES.most > seen_wall.mean())

@@ -198,7 +198,7 @@ def sparse_spacing(positions: np.ndarray, triangles: np.ndarray) -> float:
 def _traced(positions: np.ndarray, triangulation: Any, spacing: float, drawing: Drawing) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
     longest_edge = _PUBLISHED_EDGE if drawing.boundary == "key points" else _LONGEST_EDGE
-    max_edge, max_gap = longest_edge * spacing, drawing.max_gap
+    max_edge, max_gap = longest_edge * spacing, float(np.sqrt(2)) * drawing.max_gap
     while True:
         tracing, is_last = trace_outlines(positions, max_edge, triangulation), max_edge >= max_gap
         if tracing is not None:

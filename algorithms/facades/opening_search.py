@@ -38,6 +38,10 @@ _REACH = 0.3
 # Share of the outline of an opening, its sill left out where it is a door, that must have wall next to it.
 _ENCLOSED = 0.5
 
+# Share of the four sides of an opening along which the wall has an edge, in the mean. More of it makes up for less of
+# ``_ENCLOSED`` and the other way around: leaves and people that are seen past the end of a wall have little of both.
+_EDGED = 0.33
+
 # Share of the cells of an opening in which points behind the wall must be seen.
 _SEEN = 0.1
 
@@ -195,13 +199,14 @@ def _opening(
     box, beside = _bounded(box, wall, raster.size, spacing)
     if (box[1] - box[0] < min_size).any():
         return None
-    is_door = approach.leads_to(box)
+    is_door = approach.leads_to(box, bool(beside[3] >= _ENCLOSED))
     ring, share = _shape(box, behind[:, :2], spacing)
     enclosed = _enclosure(raster, ring, box[0, 1] if is_door else None)
     cells = len(np.unique(np.column_stack(raster.cell(behind[:, :2])), axis=0)) * raster.size**2
     seen = min(1.0, cells / (share * float(np.prod(box[1] - box[0]))))
     is_tall = box[1, 1] - box[0, 1] > _TALL and beside[3] < _ENCLOSED
-    if enclosed < _ENCLOSED or seen < _SEEN or is_tall:
+    is_open = enclosed < _ENCLOSED or enclosed + beside.mean() < _ENCLOSED + _EDGED
+    if is_open or seen < _SEEN or is_tall:
         return None
     depth = -float(np.median(behind[:, 2]))
     return Opening(ring, "door" if is_door else "window", depth, enclosed, seen, points)

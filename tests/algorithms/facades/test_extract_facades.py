@@ -158,6 +158,16 @@ def test_what_cars_and_trees_hide_of_foot_and_sides_is_completed(rng):
     assert whole.columns["seen_share"] == pytest.approx([1 - 11.7 / 65], abs=0.02)
 
 
+def test_what_a_slanting_shadow_cuts_off_is_drawn_where_its_points_are_of_the_facade(rng):
+    """Cells of half a gap hang together across 1.1 m of shadow; the smaller part was not drawn."""
+    points = wall(rng, (0, 0), (10, 0), high=10)
+    across = (points[:, 0] - points[:, 2] + 3.0) / np.sqrt(2)
+    points = points[np.abs(across) > 0.55]
+    segment_id, facades = extract_facades(points, np.zeros(len(points), np.uint8), max_gap=1.0)
+    assert np.unique(segment_id[segment_id > 0]).tolist() == [1]
+    assert facades.columns["area"] == pytest.approx([100], rel=0.05)
+
+
 def test_shadows_are_bridged_up_to_the_widest_gap(rng):
     points = wall(rng, (0, 0), (12, 0))
     points = points[np.abs(points[:, 0] - 6) > 0.4]

@@ -154,6 +154,38 @@ def test_a_stair_seen_from_below_leads_up_by_its_risers(rng):
     assert boxes_of(openings)[0] == pytest.approx((3.4, 2.0, 4.4, 4.2), abs=0.05)
 
 
+@pytest.mark.parametrize("is_seen_before", [True, False])
+def test_a_door_whose_top_a_tree_hides_is_one_with_a_landing_before_it(rng, is_seen_before):
+    """Of 2.2 m the lower 1.7 m are seen; without anything before it the same is a window."""
+    points, pane = pierced(rng, [(3.4, 2.0, 4.4, 4.2)])
+    hidden = (points[:, 0] > 3.1) & (points[:, 0] < 4.7) & (points[:, 2] < 2.0)
+    before = stairs(rng, 3.1, 4.7, 2.0) if is_seen_before else np.zeros((0, 3))
+    xyz, segment_id = as_cloud(rng, points[~hidden], np.concatenate([pane, before]), with_street=False)
+    kept = (np.abs(xyz[:, 0] - 3.9) > 0.9) | (xyz[:, 2] < 3.7) | (xyz[:, 2] > 5.0)
+    openings = extract_openings(xyz[kept], segment_id[kept])[1]
+    assert openings.columns["kind"] == ["door" if is_seen_before else "window"]
+
+
+def test_a_quarter_of_a_landing_shows_a_door(rng):
+    """The rest lies in the shadow of a car, which hides the foot of the wall, too."""
+    points, pane = pierced(rng, [(3.4, 1.0, 4.4, 3.2)])
+    landing = rng.uniform((3.4, -1.2, 1.0), (3.66, -0.2, 1.0), (100, 3))
+    xyz, segment_id = as_cloud(rng, points[points[:, 2] > 0.2], np.concatenate([pane, landing]), with_street=False)
+    kept = (xyz[:, 0] < 3.1) | (xyz[:, 0] > 4.7) | (xyz[:, 2] > 0.99)
+    assert extract_openings(xyz[kept], segment_id[kept])[1].columns["kind"] == ["door"]
+
+
+def test_leaves_beside_scattered_points_of_a_wall_are_no_window(rng):
+    """Above and on the left a few points of the wall are near, and it has no edge."""
+    points, pane = pierced(rng, [(4.0, 2.0, 5.2, 3.5), (8.0, 2.0, 9.2, 3.5)])
+    near = (points[:, 0] > 3.0) & (points[:, 0] < 6.2) & (points[:, 2] > 1.0) & (points[:, 2] < 4.5)
+    beside = np.arange(0.0, 1.6, 0.2)
+    left = np.column_stack([np.full(8, 3.9), np.zeros(8), 2.0 + beside])
+    above = np.column_stack([3.9 + beside, np.zeros(8), np.full(8, 3.6)])
+    xyz, segment_id = as_cloud(rng, np.concatenate([points[~near], left, above]), pane)
+    np.testing.assert_allclose(boxes_of(extract_openings(xyz, segment_id)[1]), [(8.0, 2.0, 9.2, 3.5)], atol=0.06)
+
+
 def test_openings_of_two_walls_in_nearly_one_plane_are_drawn_once(rng):
     """A front that bends by 0.8° in its middle; within 4 m of the bend its points are of either plane."""
     points, pane = pierced(rng, WINDOWS)
