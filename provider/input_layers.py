@@ -29,7 +29,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime
 
 from ..algorithms.cloud.files import read_extent
-from ..algorithms.stage import InputLayer, Layer, LayerFeatures, Monitor
+from ..algorithms.stage import InputLayer, Layer, LayerFeatures, Monitor, as_column
 from .crs import crs_of, crs_of_layer
 from .given import Given
 from .places import Place, refuse_degrees
@@ -246,7 +246,7 @@ def read_input_layer(
             f"they have no valid geometry of {input_layer.objects}."
         )
     names = layer.fields().names()
-    columns = {name: _column([row[i] for row in rows]) for i, name in enumerate(names)}
+    columns = {name: as_column([_plain(row[i]) for row in rows]) for i, name in enumerate(names)}
     return LayerFeatures(geometries, columns, sources)
 
 
@@ -343,17 +343,8 @@ _SHAPES: dict[str, Callable[[list], Any]] = {
 }
 
 
-def _dated(value: Any) -> Any:
-    """Return dates and times as text (ISO 8601), everything else as it is."""
+def _plain(value: Any) -> Any:
+    """Return dates and times as text (ISO 8601), None for NULL, and everything else as it is."""
+    if QgsVariantUtils.isNull(value):
+        return None
     return value.toString(Qt.DateFormat.ISODate) if isinstance(value, (QDate, QDateTime, QTime)) else value
-
-
-def _column(values: list) -> Any:
-    """Return an attribute's values: int64, or float64 with NaN for NULL, or what they are with None for NULL."""
-    plain = [None if QgsVariantUtils.isNull(value) else _dated(value) for value in values]
-    kinds = {type(value) for value in plain}
-    if kinds == {int}:
-        return np.array(plain, np.int64)
-    if kinds and kinds <= {int, float, type(None)} and kinds != {type(None)}:
-        return np.array([np.nan if value is None else value for value in plain], float)
-    return plain

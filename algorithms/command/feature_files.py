@@ -13,7 +13,7 @@ import numpy as np
 
 from ..geometry.rings import signed_area
 from ..packages import pyogrio
-from ..stage import InputLayer, Layer, LayerFeatures, Monitor, all_fields, column_on_map, plain
+from ..stage import InputLayer, Layer, LayerFeatures, Monitor, all_fields, as_column, column_on_map, plain
 
 GEOJSON = (".geojson", ".json")
 _CODE = re.compile(r"EPSG:+(\d+)")
@@ -60,7 +60,7 @@ def read_layer(path: Path, wanted: InputLayer, monitor: Monitor) -> tuple[LayerF
     if features and not parts:
         raise ValueError(f"{path.name} has no {wanted.objects}, which {wanted.title} must be; choose another file.")
     names = dict.fromkeys(name for _, facts in features for name in facts)
-    columns = {name: _column([facts.get(name) for _, facts in parts]) for name in names}
+    columns = {name: as_column([facts.get(name) for _, facts in parts]) for name in names}
     return LayerFeatures([part for part, _ in parts], columns), f"EPSG:{named[1]}" if named else ""
 
 
@@ -87,16 +87,6 @@ def _rings(part: list, upright: bool) -> list[np.ndarray]:
     rings = [np.array(ring, float) for ring in part]
     turned = [not upright and (signed_area(ring[:, :2]) < 0) == (number == 0) for number, ring in enumerate(rings)]
     return [ring[::-1] if is_turned else ring for ring, is_turned in zip(rings, turned)]
-
-
-def _column(values: list) -> Any:
-    """Return an attribute's values: int64, or float64 with NaN for null, or what they are."""
-    kinds = {type(value) for value in values}
-    if kinds == {int}:
-        return np.array(values, np.int64)
-    if kinds & {int, float} and kinds <= {int, float, type(None)}:
-        return np.array([np.nan if value is None else value for value in values], float)
-    return values
 
 
 def write_features(

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from .grid import Grid, find_cells
+from .groups import cycles
 from .rings import signed_area
 
 # Directions of a cell's sides, counterclockwise around it: the south side runs east, the east side north, …
@@ -40,7 +39,7 @@ def outline_cells(grid: Grid, cells: np.ndarray, group: np.ndarray) -> list:
     _, corner, sides_there = np.unique(start, return_inverse=True, return_counts=True)
     is_crowded = sides_there[corner] > 1
     polygons: list = [[] for _ in range(int(group.max(initial=-1)) + 1)]
-    for sides in _walks(following):
+    for sides in cycles(following):
         polygons[owner[sides[0]]].append(_ring(grid, start[sides], direction[sides], is_crowded[sides]))
     return [sorted(rings, key=signed_area, reverse=True) for rings in polygons]
 
@@ -72,20 +71,6 @@ def _following(grid: Grid, start: np.ndarray, direction: np.ndarray) -> np.ndarr
         # Turns to the right are set last: where four sides meet, the ring goes on to the cell across the corner.
         following[found] = order[position[found]]
     return following
-
-
-def _walks(following: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield each cycle of a permutation as an array of its positions."""
-    successor, seen = following.tolist(), np.zeros(len(following), bool)
-    for first in range(len(successor)):
-        if seen[first]:
-            continue
-        walk, side = [], first
-        while not seen[side]:
-            seen[side] = True
-            walk.append(side)
-            side = successor[side]
-        yield np.array(walk)
 
 
 def _ring(grid: Grid, start: np.ndarray, direction: np.ndarray, is_crowded: np.ndarray) -> np.ndarray:

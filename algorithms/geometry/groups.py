@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -146,6 +147,19 @@ def components(one: np.ndarray, other: np.ndarray, count: int) -> tuple[int, np.
     """
     pairs = sparse.coo_matrix((np.ones(len(one), bool), (one, other)), (count, count))
     return csgraph.connected_components(pairs, directed=False)
+
+
+def cycles(successor: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield each cycle of a permutation as an array of its positions."""
+    following, is_seen = successor.tolist(), [False] * len(successor)
+    for first in range(len(following)):
+        cycle, position = [], first
+        while not is_seen[position]:
+            is_seen[position] = True
+            cycle.append(position)
+            position = following[position]
+        if cycle:
+            yield np.array(cycle)
 
 
 def split_groups(group: np.ndarray, count: int) -> list[np.ndarray]:

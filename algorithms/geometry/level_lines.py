@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .groups import cycles
+
 
 def level_lines(field: np.ndarray) -> list[np.ndarray]:
     """Return the rings along which a field is zero, positive values to the left.
@@ -31,17 +33,8 @@ def level_lines(field: np.ndarray) -> list[np.ndarray]:
         return []
     positions = _crossings(padded, starts) - 1.0
     order = np.argsort(starts)
-    following = order[np.searchsorted(starts[order], ends)].tolist()
-    rings, is_used = [], [False] * len(starts)
-    for first in range(len(starts)):
-        ring, number = [], first
-        while not is_used[number]:
-            is_used[number] = True
-            ring.append(number)
-            number = following[number]
-        if ring:
-            rings.append(positions[[*ring, ring[0]]])
-    return rings
+    following = order[np.searchsorted(starts[order], ends)]
+    return [positions[[*ring, ring[0]]] for ring in cycles(following)]
 
 
 def _segments(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -28,7 +28,7 @@ package needs the standard library and numpy only, and is independent of QGIS.
 """
 
 from .arguments import REFERENCE_PREFIX  # noqa: F401 - the names that stages import
-from .columns import all_fields, column_on_map, plain  # noqa: F401
+from .columns import all_fields, as_column, column_on_map, plain  # noqa: F401
 from .declaration import CLOUD, DIMENSION, REPORT, SAMPLING, VALUES, Declared, Stage, stage  # noqa: F401
 from .inputs_outputs import (  # noqa: F401
     Field,

@@ -45,3 +45,13 @@ def plain(value: Any) -> Any:
     """Return a value, a numpy scalar as Python's own, None for NaN and infinity."""
     value = value.item() if isinstance(value, np.generic) else value
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def as_column(values: list) -> Any:
+    """Return an attribute's values: int64, or float64 with NaN for null, or what they are."""
+    kinds = {type(value) for value in values}
+    if kinds == {int}:
+        return np.array(values, np.int64)
+    if kinds & {int, float} and kinds <= {int, float, type(None)}:
+        return np.array([np.nan if value is None else value for value in values], float)
+    return values
