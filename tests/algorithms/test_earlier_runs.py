@@ -21,7 +21,7 @@ SCENES = {
     "map_footprints_2022": VILLAGE,
     "model_facades": ("simulate_street", {"length": 20.0, "line_rate": 30.0, "angular_step": 0.5, "clutter": False}),
     "model_industry": ("simulate_plant", {"pipes": 1, "tanks": 0, "spheres": 1, "density": 1500.0, "clutter": False}),
-    "interpret_structure": ("simulate_flight", {"duration": 8.0, "scanners": "both", "trees": 1}),
+    "interpret_structure": ("simulate_flight", {"duration": 6.0, "scanners": "both", "trees": 1}),
 }
 
 

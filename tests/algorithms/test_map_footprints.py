@@ -82,6 +82,7 @@ def test_without_an_old_map_footprints_are_made_all_the_same():
     assert not {"displacements", "buildings"} & set(made.layers), "there is nothing to compare with"
 
 
+@pytest.mark.slow
 def test_where_no_walls_are_seen_footprints_are_roofs():
     """Straight down, eaves hide the walls, as from an airplane."""
     arrays, true, _ = village(size=90.0, density=40.0, oblique=0.0, clutter=False, trees=0.0, seed=4)
@@ -135,6 +136,7 @@ def test_without_ground_the_sentence_says_what_is_missing(rng):
         mapped(nothing, None)
 
 
+@pytest.mark.slow
 def test_bridges_over_a_river_are_no_buildings():
     town = run_stage(STAGES["simulate_town"], size=110.0, density=12.0).cloud
     xyz, is_deck = town.get("xyz"), town.get("classification") == PointClass.BRIDGE_DECK

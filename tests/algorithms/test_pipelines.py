@@ -114,6 +114,7 @@ def test_the_published_chain_finds_the_houses_too():
     assert not cloud.has("height_above_ground")
 
 
+@pytest.mark.slow
 def test_the_published_chain_is_assessed_where_a_reference_is_given():
     """Table 3 of the paper in the same run, whatever else is wanted; nothing of it without a reference."""
     chain, (cloud, truth) = PIPELINES["detect_buildings_2019"], made()

@@ -76,7 +76,9 @@ def test_tunnel_mouths_jetties_and_ramps_are_no_bridges(kind):
     np.testing.assert_array_equal(classify_bridges(xyz, classes), classes)
 
 
-@pytest.mark.parametrize(("kind", "angle"), [("fly-over", 0.0), ("two decks", 20.0)])
+@pytest.mark.parametrize(
+    ("kind", "angle"), [("fly-over", 0.0), pytest.param("two decks", 20.0, marks=pytest.mark.slow)]
+)
 def test_a_bridge_with_cars_is_no_building(kind, angle):
     xyz, true, *_ = simulate_bridges(kind=kind, angle=angle, density=4.0, seed=3, trees=False)
     cloud = create_cloud({"xyz": xyz})

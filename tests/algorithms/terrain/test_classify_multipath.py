@@ -112,7 +112,7 @@ def test_a_surface_without_pits_has_none(rng):
     assert len(false_pits(xyz, few, np.zeros(len(xyz)), every, 0.7, Monitor())) == 0
 
 
-@pytest.mark.parametrize(("density", "slope"), [(4.0, 15.0), (12.0, 3.0)])
+@pytest.mark.parametrize(("density", "slope"), [(4.0, 15.0), pytest.param(12.0, 3.0, marks=pytest.mark.slow)])
 def test_a_town_with_groups_and_pits(density, slope):
     """Aimed at: four fifths of the points under the ground at a correctness of nine tenths; true pits stay."""
     town = scene(density=density, slope=slope, groups=25, size=120.0, seed=11)

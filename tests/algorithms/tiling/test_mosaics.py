@@ -110,6 +110,7 @@ def test_what_belongs_to_a_footprint_stays_with_it_and_gets_its_new_number():
     assert edges.columns == {"id": [1, 2, 3, 4], "footprint": [1, 2, 3, 3], "edge": [1, 8, 7, 9]}
 
 
+@pytest.mark.slow
 def test_footprints_of_walls_are_mapped_in_tiles_and_compared_with_the_old_map(tmp_path):
     # The edge between two blocks goes through the middle of the village.
     arrays, true, old_map = village(size=90.0, density=20.0, seed=4)

@@ -314,6 +314,7 @@ def test_a_building_that_spans_a_country_has_no_footprint_and_the_others_have(rn
     assert re.match(r"Building 1 has no footprint\. The \d+ points are spread over 900,\d+ m by 500,\d+ m", warning)
 
 
+@pytest.mark.slow
 def test_a_long_row_across_the_grid_is_no_mistake(rng):
     """Its box is nearly empty, and was refused as if a point lay far off."""
     row = ((0, 0), (1150, 0), (1150, 10), (0, 10))
