@@ -192,9 +192,12 @@ class Decks:
         if not len(others):
             return False
         along = deck[:, :2] @ axis
-        distance, nearest = spatial.cKDTree(others).query(deck, distance_upper_bound=1.5 * self.reach)
-        near = np.flatnonzero(np.isfinite(distance))
-        way = others[nearest[near]] - deck[near]
+        tree = spatial.cKDTree(others)
+        # In thin clouds the nearest point may lie on the slope below the road: half of what a cell holds is looked at.
+        count = int(CLOSED.cell**2 / 2)
+        distance, nearest = tree.query(deck, k=count, distance_upper_bound=1.5 * self.reach)
+        near, rank = np.nonzero(np.isfinite(distance))
+        way = others[nearest[near, rank]] - deck[near]
         ahead = way[:, :2] @ axis
         aside = way[:, 0] * axis[1] - way[:, 1] * axis[0]
         # Terrain next to a deck is not ahead of its ends.

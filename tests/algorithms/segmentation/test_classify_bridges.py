@@ -69,6 +69,15 @@ def test_scanned_bridges_with_parapets_and_cars_are_found(kind, least):
     assert f_score(made == 17, true == 17) > least
 
 
+@pytest.mark.parametrize(("kind", "angle", "density"), [("canal", 0.0, 1.0), ("arch", 30.0, 2.0)])
+def test_bridges_in_thin_clouds_go_on_into_the_road(kind, angle, density):
+    """The nearest points of terrain lie on the bank below; nothing of these bridges was found."""
+    xyz, true = simulate_bridges(kind=kind, angle=angle, density=density, seed=5)[:2]
+    classes = np.where(np.isin(true, (2, 9)), np.uint8(2), np.uint8(1))
+    found, deck = classify_bridges(xyz, classes) == 17, true == 17
+    assert 2 * (found & deck).sum() > 0.8 * (found.sum() + deck.sum())
+
+
 @pytest.mark.parametrize("kind", ["tunnel", "jetty", "ramp"])
 def test_tunnel_mouths_jetties_and_ramps_are_no_bridges(kind):
     xyz, true, *_ = simulate_bridges(kind=kind, density=4.0, seed=3)
