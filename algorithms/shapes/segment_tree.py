@@ -10,7 +10,7 @@ from ..geometry.groups import split_groups
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.candidate_points import candidates
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_fits import Cylinder
+from .cylinder_fits import Cylinder, across_axis, fit_cylinder
 from .stem_search import BREAST, find_stems, ground_level
 from .surface_normals import refuse_line
 from .tree_structure import Branch, Slices, branches_of, lengths_beyond, self_supporting_slices, smooth, voxels_of
@@ -24,8 +24,8 @@ _LEAST_VOXEL = 0.02
 # Gaps that paths cross with nothing set (voxels).
 _GAP_VOXELS = 8.0
 
-# Largest median absolute deviation of the distances of points from the line, as a share of the median distance, of a
-# piece whose cross section is a circle. Stems at breast height are recognized by the same share.
+# Largest median absolute deviation of the distances of points from the line, as a share of the radius, of a piece whose
+# cross section is a circle. Stems at breast height are recognized by the same share.
 _ROUND = 0.2
 
 # Largest measured radius (of that estimated): wider ones are leaves.
@@ -34,11 +34,20 @@ _WIDEST = 3.0
 # Largest measured radius (of the smallest measured nearer to the root): wood grows no thicker outward, but for noise.
 _SWELLING = 1.1
 
+# Pieces farther out that a measured radius is compared with: less than these only where half of a stem's foot is seen.
+_AHEAD = 5
+
 # Length (m) of the pieces of a branch that have a radius of their own: branches taper little over it.
 _PIECE = 0.5
 
 # Distance from its line within which the points of a piece lie (median of their distances): farther ones are leaves.
 _WITHIN = 2.5
+
+# Fewest points of a cylinder that is fitted to a piece: twice those that determine it, and a few leaves.
+_FITTED = 12
+
+# Distance from a fitted cylinder within which points are bark (median of their distances): 0.9 of them by chance.
+_OF_BARK = 2.5
 
 _FIELDS = (
     Field("id", int, "number of the branch, as SegmentID of its points"),
@@ -121,13 +130,14 @@ def segment_tree(
     have holes, and their skeleton is a net; slices by the length of the path have their middle inside the stem. The
     ground below a tree is the lowest point within 1 to 2 m. Gaps up to the maximum are crossed at three times their
     length: shadows part stems and branches in every scan. Points farther from the middle line than ``_WITHIN`` times
-    the median of their piece of ``_PIECE`` m are leaves. The radius of a piece is the median distance of its points
-    from the line. That must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances
-    scatter by less than ``_ROUND`` of it, as on a circle. Nor may it exceed radii nearer to the root by
-    more than a tenth. Elsewhere it is estimated from the nearest radius measured toward the root, or from the stem's at
-    breast height. Forks keep the area of the wood (pipe model), in proportion to the length of all branches beyond. A
-    stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if its chord is
-    shorter than 0.6 of its length.
+    the median of their piece of ``_PIECE`` m are leaves. The radius of a piece is that of the cylinder of least
+    squares through its points, also where one side is seen, or else the median distance of its points from the line.
+    It must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances scatter by less
+    than ``_ROUND`` of it, as on a circle. Nor may it exceed radii nearer to the root by more than a tenth, or be
+    thinner than the next ones. Elsewhere it is estimated from the nearest one measured toward the root, or from the
+    stem's at breast height. Forks keep the area of the wood (pipe model), in proportion to the length of all branches
+    beyond. A stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if
+    its chord is shorter than 0.6 of its length.
 
     References
     ----------
@@ -223,11 +233,19 @@ def _measured(
         ahead = beyond[one.slices]
         if one.order == 0:
             breast = int(np.argmin(np.linalg.norm(line - feet[stem], axis=1)))
-            wood[one.slices[0], 0] = radii[stem] ** 2 / max(ahead[breast], _PIECE)
+            wood[one.slices[0]] = radii[stem] ** 2 / max(ahead[breast], _PIECE), radii[stem]
         else:
             ahead[0] = ahead[1] + steps[0]
         ahead = np.interp((ends[1:] + ends[:-1]) / 2, along, ahead)
-        may_be = _are_round(distance, piece, reach) & (reach >= voxel_size / 2)
+        round_pieces = _are_round(distance, piece, reach)
+        for k, bark in enumerate(split_groups(np.where(distance <= _WITHIN * reach[piece], piece, -1), n_pieces)):
+            if len(bark) < _FITTED:
+                continue
+            chord = line[at[bark].max()] - line[at[bark].min()]
+            fitted = _fitted(xyz[own[bark]], chord, float(reach[k]))
+            if fitted is not None:
+                reach[k], round_pieces[k] = fitted, True
+        may_be = _are_no_thinner(reach, round_pieces & (reach >= voxel_size / 2))
         radius, is_round, states = _radii(reach, may_be, ahead, wood[one.slices[0]])
         wood[one.slices[1:]] = states[(along[1:] / _PIECE).astype(np.int64)]
         row = {
@@ -245,6 +263,41 @@ def _measured(
         lines.append(line)
     columns["points"] = np.bincount(label, minlength=len(branches) + 1)[1:].tolist()
     return label, LayerFeatures(lines, columns)
+
+
+def _fitted(xyz: np.ndarray, chord: np.ndarray, reach: float) -> Optional[float]:
+    """Return the radius (m) of a cylinder through points (k, 3), m, of a piece; None where they lie on none.
+
+    Where one side of a branch is seen, its line lies on that side, ``reach`` (m) from the points, and its ``chord``
+    (3,), m, along the branch.
+    """
+    length = float(np.linalg.norm(chord))
+    if not length:
+        return None
+    axis = chord / length
+    center = xyz.mean(axis=0)
+    across = np.array(across_axis(axis))
+    # The circle of least squares of its equation: arcs make it too small, so that it is the start only.
+    plan = (xyz - center) @ across.T
+    x, y, rest = np.linalg.lstsq(np.column_stack([2 * plan, np.ones(len(plan))]), (plan**2).sum(axis=1), rcond=None)[0]
+    cylinder = Cylinder(center + np.array([x, y]) @ across, axis, float(np.sqrt(rest + x * x + y * y)))
+    bark = xyz
+    for _ in range(3):
+        cylinder = fit_cylinder(bark, cylinder)
+        off = np.abs(cylinder.local(xyz)[1] - cylinder.radius)
+        bark = xyz[off <= _OF_BARK * np.median(off)]
+    # The line lies in the branch or next to it: a cylinder that is thinner runs through some leaves only.
+    is_round = np.median(off) <= _ROUND * cylinder.radius and reach / _SWELLING <= cylinder.radius <= _WIDEST * reach
+    return cylinder.radius if is_round else None
+
+
+def _are_no_thinner(reach: np.ndarray, may_be: np.ndarray) -> np.ndarray:
+    """Return the mask of pieces ``may_be`` (p,) with radii (p,), m, that the next ones do not exceed in the median."""
+    kept = may_be.copy()
+    for i in np.flatnonzero(may_be).tolist():
+        ahead = reach[i + 1 : i + 1 + _AHEAD][may_be[i + 1 : i + 1 + _AHEAD]]
+        kept[i] = not len(ahead) or np.median(ahead) <= _SWELLING * reach[i]
+    return kept
 
 
 def _radii(
