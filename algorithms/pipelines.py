@@ -107,7 +107,7 @@ _PIPELINES = (
         summary="Model the buildings of a point cloud in three dimensions: roofs and walls as layers and CityJSON.",
         description=(
             "Finds the buildings as 'Detect buildings' does, and models each on its footprint: the planes of its roof, "
-            "walls and ground as a closed solid, at levels of detail 1.2, 1.3 and 2.2. Where there is a map of the "
+            "walls and ground as a closed solid, at levels of detail 1.2 to 2.3. Where there is a map of the "
             "buildings, 'Reconstruct roofs' takes that instead of the footprints found."
         ),
         references=f"{_PETERS}\n\n{_SANTOS}",

@@ -162,8 +162,9 @@ def deep_inside(place, rings):
     return odd
 
 
-# Surfaces that levels of detail below 3 don't have, and level 3 may have.
-OPENINGS = {False: (), True: ("Window", "Door")}
+# Surfaces that only these levels of detail may have.
+OPENINGS = ("Window", "Door")
+OF_LEVELS = {"2.3": ("OuterCeilingSurface",), "3": OPENINGS}
 
 
 def assert_valid_cityjson(text):
@@ -200,14 +201,14 @@ def assert_valid_objects(objects, vertices, transform):
             continue
         assert thing["type"] == "Building"
         for geometry in thing["geometry"]:
-            assert geometry["lod"] in ("1.2", "1.3", "2.0", "2.2", "3")
+            assert geometry["lod"] in ("1.2", "1.3", "2.0", "2.2", "2.3", "3")
             for shell, values in shells_of(geometry):
                 used |= {v for rings in shell for ring in rings for v in ring}
                 surfaces = geometry["semantics"]["surfaces"]
                 assert len(values) == len(shell)
                 kinds = {surfaces[value]["type"] for value in values}
                 assert {"RoofSurface", "WallSurface", "GroundSurface"} <= kinds
-                assert kinds <= {"RoofSurface", "WallSurface", "GroundSurface", *OPENINGS[geometry["lod"] == "3"]}
+                assert kinds <= {"RoofSurface", "WallSurface", "GroundSurface", *OF_LEVELS.get(geometry["lod"], ())}
                 assert_openings_are_of_walls(surfaces)
                 assert_valid_solid(places, shell)
     assert used == set(range(len(vertices))), "vertices are unused or absent"
@@ -216,7 +217,7 @@ def assert_valid_objects(objects, vertices, transform):
 def assert_openings_are_of_walls(surfaces):
     """Fail unless each window and door has a wall as its parent, which has it among its children."""
     for number, surface in enumerate(surfaces):
-        if surface["type"] in OPENINGS[True]:
+        if surface["type"] in OPENINGS:
             parent = surfaces[surface["parent"]]
             assert parent["type"] == "WallSurface"
             assert number in parent["children"]

@@ -11,13 +11,13 @@ import numpy as np
 
 from ..geometry.polygons import area_vector
 from ..models3d.set_openings import DOOR, WINDOW
-from ..models3d.solids import GROUND, ROOF, TERRAIN, WALL
+from ..models3d.solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL
 from ..stage import LayerFeatures, feature_names
 
-# Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window, door or
-# terrain; and the patch that a triangle of terrain is part of.
+# Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window, door,
+# terrain or soffit; and the patch that a triangle of terrain is part of.
 BUILDING, LEVEL, KIND, PATCH = "building", "lod", "kind", "patch"
-KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR, TERRAIN)
+KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR, TERRAIN, SOFFIT)
 
 # Faces of less area (m²) are lines; without them a surface is closed still.
 _LEAST_AREA = 1e-9

@@ -16,9 +16,14 @@ from ..models3d.solids import GROUND, TERRAIN
 from .exported_models import KINDS, ExportedModel, Face
 from .textures import Atlas, atlas_of, png
 
-# Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows, doors and terrain, as in the styles of layers.
+# Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows, doors, terrain and soffits, as in the styles of
+# layers, where soffits are among the walls.
+_WALL_COLOR = (226, 216, 196)
 COLORS = dict(
-    zip(KINDS, ((178, 72, 54), (226, 216, 196), (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108)))
+    zip(
+        KINDS,
+        ((178, 72, 54), _WALL_COLOR, (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108), _WALL_COLOR),
+    )
 )
 
 # Codes of glTF 2.0: types of numbers, and what a part of the buffer is for.

@@ -71,23 +71,28 @@ class Subdivision:
         """Mark the cells (cells,), bool, that no further line cuts."""
         self.is_closed = list(is_closed)
 
-    def cut(self, start: np.ndarray, end: np.ndarray, snap: float = SNAP) -> None:
+    def cut(self, start: np.ndarray, end: np.ndarray, snap: float = SNAP) -> list[int]:
         """Cut all open cells that the piece of a line from ``start`` to ``end`` (m) passes through.
 
         A cell is cut from side to side. Vertices at most ``snap`` (m) off the line become vertices of the cut; the tip
-        of a sharp corner, where the cut would be shorter than half of that, stays.
+        of a sharp corner, where the cut would be shorter than half of that, stays. Returns the cells that were cut, in
+        the order of the new ones.
         """
         (x0, y0), (x1, y1) = np.asarray(start, float).tolist(), np.asarray(end, float).tolist()
         length = float(np.hypot(x1 - x0, y1 - y0))
+        parted: list[int] = []
         if length == 0:
-            return
+            return parted
         line = (x0, y0, (x1 - x0) / length, (y1 - y0) / length)
         (west, east), (south, north) = sorted((x0, x1)), sorted((y0, y1))
         for cell in range(len(self.loops)):
             low_x, low_y, high_x, high_y = self._boxes[cell]
             is_near = low_x <= east and low_y <= north and high_x >= west and high_y >= south
             if is_near and not self.is_closed[cell]:
+                before = len(self)
                 self._cut_cell(cell, line, length, snap)
+                parted += [cell] * (len(self) - before)
+        return parted
 
     def cut_cell(self, cell: int, position: np.ndarray, direction: np.ndarray) -> bool:
         """Cut one cell along the whole line through a position (m) in a unit direction; return whether it was cut."""

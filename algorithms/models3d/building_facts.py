@@ -12,10 +12,10 @@ import numpy as np
 from ..geometry.groups import split_groups
 from ..rules import rules
 from ..stage import Field, LayerFeatures
-from .building_models import BuildingModel
+from .building_models import FINE, OVERHANGS, BuildingModel
 from .mending import LARGE
 from .roof_points import RULES
-from .solids import GROUND, ROOF, TERRAIN, WALL, Solid
+from .solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL, Solid
 
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
 _FLAT = 5.0
@@ -55,7 +55,7 @@ _EAVE = 0.25
 BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
     Field("building", str, "footprint below it: its attribute id, or its number", of="footprints"),
-    Field("level", str, "level of detail that it has: 1.2, 1.3, 2.0 or 2.2"),
+    Field("level", str, "level of detail that it has: 1.2, 1.3, 2.0, 2.2 or 2.3"),
     Field("reason", str, "why it has a simpler level than was asked for, empty where it has that one"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other"),
     Field("ground", float, "elevation of its base, near the lowest ground next to it", "m"),
@@ -78,9 +78,10 @@ BUILDING_FIELDS = (
     Field(
         "check",
         int,
-        f"2: a simpler level, or over {CHECKS.poor:.0%} of the roof points off; 1: over {CHECKS.doubtful:.0%} off, or "
+        f"2: a level under 2.2 and the one asked for, or over {CHECKS.poor:.0%} of the roof points off. "
+        f"1: over {CHECKS.doubtful:.0%} off, or "
         f"points on less than {CHECKS.covered:.0%} of the area, or less than {CHECKS.weakest:.0%} of the points of a "
-        "large face on it; 0: sound",
+        "large face on it. 0: sound",
     ),
     Field(
         "confidence",
@@ -112,6 +113,7 @@ WALL_FIELDS = (
     Field("azimuth", float, "direction that it faces, clockwise from north", "°"),
     Field("area", float, "area", "m²"),
 )
+SOFFIT_WALL_FIELDS = (*WALL_FIELDS, Field("kind", str, "wall, or soffit: underside of an eave, without azimuth"))
 
 
 # Facts by plane, whose numbers JSON would make text.
@@ -134,7 +136,11 @@ class NamedModel:
 
     def record(self) -> dict[str, Any]:
         """Return it as plain values, which JSON keeps to the last bit."""
-        facts = {field.name: getattr(self.model, field.name) for field in fields(self.model) if field.name != "solids"}
+        facts = {
+            field.name: getattr(self.model, field.name)
+            for field in fields(self.model)
+            if field.name not in ("solids", "walls")
+        }
         solids = {level: [_plain_solid(solid) for solid in some] for level, some in self.model.solids.items()}
         of_planes = {name: list(getattr(self.model, name).items()) for name in _OF_PLANES}
         rings = [np.asarray(ring).tolist() for ring in self.rings]
@@ -188,7 +194,7 @@ def face_area(solid: Solid, face: int) -> float:
 
 
 def faces_of(solids: Sequence[Solid], kind: str) -> list[tuple[Solid, int]]:
-    """Return the faces of one kind: roof, wall or ground."""
+    """Return the faces of one kind: roof, wall, ground or soffit."""
     return [(solid, face) for solid in solids for face, face_kind in enumerate(solid.kinds) if face_kind == kind]
 
 
@@ -208,7 +214,7 @@ def building_attributes(one: NamedModel) -> dict[str, Any]:
         "reason": model.reason,
         "roof_type": roof_type(model.best),
         "ground": model.base,
-        "eave_height": _eave(model.best) - model.terrain,
+        "eave_height": _eave(model.solids[FINE] if model.level == OVERHANGS else model.best) - model.terrain,
         "ridge_height": model.ridge - model.terrain,
         "roof_area": sum(face_area(solid, face) for solid, face in roofs),
         "volume": sum(solid.volume for solid in model.best),
@@ -226,7 +232,7 @@ def building_attributes(one: NamedModel) -> dict[str, Any]:
 
 def _check(model: BuildingModel) -> int:
     """Return 0 for a sound model, 1 for a doubtful and 2 for a poor one."""
-    if model.reason or not model.off <= CHECKS.poor:
+    if (model.reason and model.level < FINE) or not model.off <= CHECKS.poor:
         return 2
     return int(model.off > CHECKS.doubtful or model.covered < CHECKS.covered or model.weakest < CHECKS.weakest)
 
@@ -255,8 +261,9 @@ def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
     slope, azimuth = slope_and_azimuth(solid, face)
     area = face_area(solid, face)
     facts = {"building": one.name, "azimuth": azimuth, "area": area}
-    if solid.kinds[face] != ROOF:
-        return facts
+    kind = solid.kinds[face]
+    if kind != ROOF:
+        return {**facts, "kind": kind, "azimuth": math.nan if kind == SOFFIT else azimuth}
     z = solid.vertices[solid.faces[face][0]][:, 2]
     rms, on, rim = (getattr(one.model, name).get(solid.planes[face], math.nan) for name in _OF_PLANES)
     heights = {"eave": float(z.min()), "ridge": float(z.max())}

@@ -1,4 +1,4 @@
-"""One building: its roof planes, the partition of its footprint, and its solids at three levels of detail."""
+"""One building: its roof planes, the partition of its footprint, and its solids at all levels of detail."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from ..geometry.groups import components, placed
 from ..geometry.line_segments import distances_to_rings
 from .mending import LARGE, mended
+from .overhangs import overhanging, wall_rings
 from .roof_partition import FARTHEST, Partition, covered_share, divide_footprint, empty_partition
 from .roof_planes import RoofPlanes, find_roof_planes, selected_planes, with_level_patches
 from .roof_points import HeightsAround, are_on_roof, distances, root_mean_square, share_off
@@ -18,8 +19,8 @@ from .solids import Solid
 
 # Levels of detail, from the simplest. The one without dormers takes as long as the finest, so it is made only where it
 # is asked for.
-COARSE = "2.0"
-LEVELS = ("1.2", "1.3", COARSE, "2.2")
+COARSE, FINE, OVERHANGS = "2.0", "2.2", "2.3"
+LEVELS = ("1.2", "1.3", COARSE, FINE, OVERHANGS)
 
 # Area (m²) of the smallest plane without dormers, as the level is defined, and its least share of the largest plane:
 # roofs of small buildings keep all their sides.
@@ -64,6 +65,8 @@ class BuildingModel:
     reason: str = ""  #: Why ``level`` is not the level asked for, "" where it is
     #: Solids by level; parts of the footprint that only touch in a point are separate solids
     solids: dict[str, list[Solid]] = field(default_factory=dict)
+    #: Closed rings (k, 2) of its walls on the ground (m), none where they are below the edges of the roof
+    walls: list[np.ndarray] = field(default_factory=list)
     terrain: float = np.nan  #: Median height of the ground along the outline (m)
     ridge: float = np.nan  #: 98th percentile of the heights of the roof points (m)
     rms: float = np.nan  #: Root mean square height of the roof points above or below the best level (m)
@@ -117,16 +120,13 @@ def model_building(
     if np.median(xyz[top.is_roof, 2]) <= base:
         model.reason = "its roof is not above the ground next to it"
         return model
+    partition: Optional[Partition] = None
     for level in LEVELS[: LEVELS.index(settings.level) + 1]:
-        if level == COARSE != settings.level:
+        if level == OVERHANGS or level == COARSE != settings.level:
             continue
         partition, why = _partition(top, level)
         if partition is not None:
-            if level == "1.3" and len(partition.coefficients) == 1 and "1.2" in model.solids:
-                # One part for all is the simplest level.
-                solids, why = [replace(solid) for solid in model.solids["1.2"]], ""
-            else:
-                solids, why = mended(partition, base, local, limits if level >= COARSE else None, settings.percentile)
+            solids, why = _solids(model, level, top, partition, limits)
             if not why:
                 above, label = partition.above(top.xyz)
                 why = _worse(model, level, top, above)
@@ -135,12 +135,37 @@ def model_building(
                 _describe(model, top, partition, above, label)
         if why:
             model.reason = f"{level}: {why}"
+    if settings.level == OVERHANGS and model.level == FINE and partition is not None:
+        model.reason = _overhang(model, top, partition, around - [*origin, 0.0])
     for solids in model.solids.values():
         for solid in solids:
             solid.vertices = solid.vertices + [*origin, 0.0]
+    model.walls = [ring + origin for ring in model.walls]
     if model.level == settings.level:
         model.reason = ""
     return model
+
+
+def _solids(
+    model: BuildingModel, level: str, top: _Top, partition: Partition, limits: HeightsAround
+) -> tuple[list[Solid], str]:
+    """Return the solids of a partition, which may change, or none and why."""
+    if level == "1.3" and len(partition.coefficients) == 1 and "1.2" in model.solids:
+        # One part for all is the simplest level.
+        return [replace(solid) for solid in model.solids["1.2"]], ""
+    return mended(partition, top.base, top.xyz, limits if level >= COARSE else None, top.settings.percentile)
+
+
+def _overhang(model: BuildingModel, top: _Top, partition: Partition, around: np.ndarray) -> str:
+    """Set the walls of a model back from its eaves; return why none is, "" where some are."""
+    walls = wall_rings(around, top.rings, model.best, top.base, top.settings.spacing)
+    if not walls:
+        return f"{OVERHANGS}: no wall was seen under an overhanging eave"
+    solids, why = overhanging(partition, top.base, walls)
+    if why:
+        return f"{OVERHANGS}: {why}"
+    model.level, model.solids[OVERHANGS], model.walls = OVERHANGS, solids, walls
+    return ""
 
 
 @dataclass(frozen=True)

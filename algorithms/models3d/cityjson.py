@@ -14,7 +14,7 @@ import numpy as np
 from ..stage import Field, MapFrame
 from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, NamedModel, building_attributes, face_attributes
 from .set_openings import DOOR, WINDOW
-from .solids import DECIMALS, GROUND, ROOF, WALL, Solid, edges_around
+from .solids import DECIMALS, GROUND, ROOF, SOFFIT, WALL, Solid, edges_around
 
 CITYJSON, CITYJSON_SEQ = "CityJSON", "CityJSONSeq"
 FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".jsonl")}
@@ -22,7 +22,10 @@ FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".js
 # Vertices are whole numbers of this (map units), as solids have them: faces stay plane.
 _SCALE = 10.0**-DECIMALS
 
-SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface", WINDOW: "Window", DOOR: "Door"}
+SURFACES = {
+    **{ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface", SOFFIT: "OuterCeilingSurface"},
+    **{WINDOW: "Window", DOOR: "Door"},
+}
 
 # The type of triangulated terrain.
 RELIEF = "TINRelief"

@@ -135,7 +135,7 @@ def _pieces(partition: Partition, base: float, highest: np.ndarray) -> list[_Pie
     """Return the solids of the connected parts; labels become those that they have, none where one cannot be made."""
     areas = partition.cells.areas()
     total = areas[partition.label >= 0].sum()
-    waiting, pieces = _connected(partition), []
+    waiting, pieces = connected(partition), []
     while waiting:
         part = waiting.pop()
         before = part.label >= 0
@@ -147,7 +147,7 @@ def _pieces(partition: Partition, base: float, highest: np.ndarray) -> list[_Pie
         if levels is None:
             return []
         if (before & (part.label < 0)).any():
-            waiting += _connected(part)
+            waiting += connected(part)
         else:
             label = part.label.copy()
             pieces.append(_Piece(*build_solid(levels), label))
@@ -155,7 +155,7 @@ def _pieces(partition: Partition, base: float, highest: np.ndarray) -> list[_Pie
     return pieces
 
 
-def _connected(partition: Partition) -> list[Partition]:
+def connected(partition: Partition) -> list[Partition]:
     """Return the parts of a partition whose cells have edges in common."""
     inside = partition.label >= 0
     _, beside = partition.cells.edges()

@@ -12,12 +12,12 @@ from ..cloud.asprs import PointClass
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
-from ..stage import InputLayer, Layer, LayerFeatures, Monitor, TextFile, feature_names, stage, tunable
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, TextFile, feature_names, stage, tunable
 from . import cityjson, wavefront
 from .building_facts import (
     BUILDING_FIELDS,
     ROOF_FIELDS,
-    WALL_FIELDS,
+    SOFFIT_WALL_FIELDS,
     NamedModel,
     building_attributes,
     face_attributes,
@@ -41,7 +41,7 @@ from .model_inputs import (
     tell_without_area,
 )
 from .roof_points import RADIUS, are_low
-from .solids import ROOF, WALL
+from .solids import ROOF, SOFFIT, WALL
 
 # Number of footprints without a model that a warning names.
 _NAMED = 5
@@ -52,8 +52,8 @@ _ITEMS = (NamedModel, "footprints", "terrain")
 
 @stage(
     "3D",
-    tags="3D,LoD1.2,LoD1.3,LoD2.0,LoD2.2,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,CityGML,OBJ,3DBAG,ridge,"
-    "gable,hip,dormer",
+    tags="3D,LoD1.2,LoD1.3,LoD2.0,LoD2.2,LoD2.3,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,CityGML,OBJ,3DBAG,"
+    "ridge,gable,hip,dormer,overhang,eave,soffit",
     input_layers=(
         InputLayer(
             "footprints",
@@ -64,7 +64,7 @@ _ITEMS = (NamedModel, "footprints", "terrain")
     ),
     layers=(
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
-        Layer("walls", "Walls", "Polygon", WALL_FIELDS, style="model_walls"),
+        Layer("walls", "Walls", "Polygon", SOFFIT_WALL_FIELDS, style="model_walls"),
         Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
         Layer(
             *("terrain", "Terrain", "Polygon", TERRAIN_FIELDS),
@@ -87,8 +87,8 @@ def reconstruct_roofs(
     level_of_detail: str = tunable(
         "2.2",
         "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.0: the large planes of "
-        "the roof, without dormers, chimneys and parts of under 10 m²; 2.2: all planes. Files have the simpler "
-        "levels too, 2.0 only where it is chosen.",
+        "the roof, without dormers, chimneys and parts of under 10 m²; 2.2: all planes. 2.3: also eaves that overhang "
+        "walls where these were seen. Files have the simpler levels too, 2.0 only where it is chosen.",
         choices=LEVELS,
     ),
     min_plane_area: float = tunable(
@@ -128,7 +128,7 @@ def reconstruct_roofs(
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
-    """Model buildings as closed solids of roof planes, walls and ground, at levels of detail from 1.2 to 2.2.
+    """Model buildings as closed solids of roof planes, walls and ground, at levels of detail from 1.2 to 2.3.
 
     Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above
     another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost
@@ -148,7 +148,7 @@ def reconstruct_roofs(
     buildings : LayerFeatures
         The ground of each building, at its height, with the attributes of the model.
     walls, roofs : LayerFeatures
-        The other faces of the best level of each building, as polygons with heights.
+        The other faces of the best level of each building, as polygons with heights; soffits are among the walls.
     terrain : LayerFeatures
         Triangles of the terrain around the buildings, with their outlines as edges; none without a tolerance.
     cityjson, obj : list of NamedModel
@@ -201,7 +201,7 @@ def reconstruct_roofs(
     """
     if not len(footprints):
         monitor.none_found("There are no footprints, so there are no models.")
-        return _building_layer([]), _face_layer([], WALL), _face_layer([], ROOF), terrain_layer([]), [], []
+        return *_layers([]), terrain_layer([]), [], []
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)
     if tolerance is None:
@@ -215,8 +215,7 @@ def reconstruct_roofs(
     if terrain_tolerance and models:
         terrain = triangulate_terrain(ground, models, terrain_tolerance, monitor.part(0.8, 1.0))
         models, patches = on_terrain(models, terrain), terrain.models()
-    layers = _building_layer(models), _face_layer(models, WALL), _face_layer(models, ROOF), terrain_layer(patches)
-    return *layers, [*models, *patches], [*models, *patches]
+    return *_layers(models), terrain_layer(patches), [*models, *patches], [*models, *patches]
 
 
 @dataclass(frozen=True)
@@ -267,7 +266,8 @@ def _modelled(
             model = model_building(building[over], is_low[over], around, outline.rings, base, settings)
             model.terrain = terrain
             if model.level:
-                rings = [np.column_stack([ring, np.full(len(ring), base)]) for ring in outline.rings]
+                walls = model.walls or outline.rings
+                rings = [np.column_stack([ring, np.full(len(ring), base)]) for ring in walls]
                 models.append(NamedModel(outline.name, rings, model, outline.attributes))
             else:
                 failed.append((outline.name, model.reason))
@@ -306,8 +306,14 @@ def _building_layer(models: list[NamedModel]) -> LayerFeatures:
     return layer
 
 
-def _face_layer(models: list[NamedModel], kind: str) -> LayerFeatures:
-    """Return the faces of one kind."""
-    faces = [(one, solid, face) for one in models for solid, face in faces_of(one.model.best, kind)]
+def _layers(models: list[NamedModel]) -> tuple[LayerFeatures, LayerFeatures, LayerFeatures]:
+    """Return the grounds, walls and roofs of buildings."""
+    walls = _face_layer(models, SOFFIT_WALL_FIELDS, WALL, SOFFIT)
+    return _building_layer(models), walls, _face_layer(models, ROOF_FIELDS, ROOF)
+
+
+def _face_layer(models: list[NamedModel], described: tuple[Field, ...], *kinds: str) -> LayerFeatures:
+    """Return the faces of some kinds."""
+    faces = [(one, solid, face) for one in models for kind in kinds for solid, face in faces_of(one.model.best, kind)]
     features = [(face_rings(solid, face), face_attributes(one, solid, face)) for one, solid, face in faces]
-    return LayerFeatures.numbered(features, ROOF_FIELDS if kind == ROOF else WALL_FIELDS)
+    return LayerFeatures.numbered(features, described)

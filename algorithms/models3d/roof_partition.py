@@ -96,12 +96,12 @@ def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarra
     length = np.hypot(*(pieces[:, 1] - pieces[:, 0]).T)
     for start, end in pieces[np.argsort(-length, kind="stable")]:
         cells.cut(start, end, _SNAP_OUTLINE)
-    inside = _are_inside(cells, rings)
+    inside = are_inside(cells, rings)
     cells.close(~inside)
     return cells, inside
 
 
-def _are_inside(cells: Subdivision, rings: list) -> np.ndarray:
+def are_inside(cells: Subdivision, rings: list) -> np.ndarray:
     """Return the mask of cells inside a footprint; very narrow ones as the neighbor along their longest edge.
 
     Lines along a facade that are nearly in line leave wedges of millimeters between each other.
@@ -160,7 +160,7 @@ def divide_footprint(
     cells, _ = empty_partition(rings, xyz[:, :2])
     for piece in find_roof_lines(xyz, planes, rings, spacing):
         cells.cut(piece.start, piece.end, SNAP)
-    inside = _are_inside(cells, rings)
+    inside = are_inside(cells, rings)
     used = np.flatnonzero(inside)
     cost = np.zeros((len(cells), len(planes)))
     cost[used] = _costs(xyz, is_top, planes, cells, used, spacing, tolerance)

@@ -1,17 +1,18 @@
-"""Closed solids of divided footprints: roofs on top, walls where heights differ, one level ground."""
+"""Closed solids of divided footprints: roofs on top, walls where heights differ, one level ground, and soffits."""
 
 from __future__ import annotations
 
 import math
 from collections import defaultdict
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.line_segments import polygons_of
 from ..geometry.rings import rings_of_edges
 from .solid_levels import BASE, Levels, Position
-from .solids import GROUND, ROOF, WALL, Ring, Solid, edges_around, groups_of
+from .solids import GROUND, ROOF, SOFFIT, WALL, Ring, Solid, edges_around, groups_of
 
 # A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous.
 _SUPERFLUOUS = 0.0005
@@ -20,13 +21,15 @@ _SUPERFLUOUS = 0.0005
 _STRAIGHT = 0.0005
 
 
-def build_solid(levels: Levels) -> tuple[Solid, list[list[int]]]:
+def build_solid(levels: Levels, is_eave: Optional[np.ndarray] = None) -> tuple[Solid, list[list[int]]]:
     """Return the solid between a level ground and the planes of cells, and the cells next to each of its faces.
 
     Cells get vertices where roofs cross. The levels have no crowded vertices (:meth:`.Levels.crowded`), at which edges
-    would have more than two faces.
+    would have more than two faces. Cells that are eaves (cells,), bool, end in a soffit.
     """
     levels.part_crossing_roofs()
+    if is_eave is not None:
+        levels.overhang(is_eave)
     return _Builder(levels).solid()
 
 
@@ -74,8 +77,9 @@ class _Builder:
             for rings in self._polygons(rings_of_edges(edges), upward=True):
                 faces.append((ROOF, plane, rings, cells_of[root]))
         faces += [(WALL, -1, [ring], cells) for ring, cells in self._walls()]
-        for rings in self._polygons(rings_of_edges(self._ground_edges()), upward=False):
-            faces.append((GROUND, -1, rings, []))
+        for bottom, edges in self._bottom_edges().items():
+            for rings in self._polygons(rings_of_edges(edges), upward=False):
+                faces.append((GROUND if bottom == BASE else SOFFIT, -1, rings, []))
         return _compact(self.levels.positions, faces), [cells for *_, cells in faces]
 
     def _roof_edges(self, part: dict[int, int]) -> dict[tuple[int, int], list[tuple[int, int]]]:
@@ -93,25 +97,47 @@ class _Builder:
         group = groups_of(pairs, len(self.cells))
         return {cell: number for cell, number in enumerate(group) if self.label[cell] >= 0}
 
-    def _ground_edges(self) -> list[tuple[int, int]]:
-        number = self.levels.number
-        return [(number[v, BASE], number[u, BASE]) for u, v, _, _, beyond in self.edges if beyond == BASE]
+    def _bottom_edges(self) -> dict[int, list[tuple[int, int]]]:
+        """Return the edges around the ground and around soffits, clockwise, by what cells end in below."""
+        edges: dict[int, list[tuple[int, int]]] = defaultdict(list)
+        number, bottom = self.levels.number, self.levels.bottom
+        for u, v, cell, _, beyond in self.edges:
+            own = bottom[cell]
+            if beyond == BASE or bottom[self.cells.cell_of[v, u]] != own:
+                edges[own].append((number[v, own], number[u, own]))
+        return edges
 
     def _walls(self) -> list[tuple[Ring, list[int]]]:
         """Return the walls, those in line with each other as one, and the cells next to each."""
         walls = []
         for u, v, cell, plane, beyond in self.edges:
-            if beyond != plane:
-                ring = self._wall(u, v, plane, beyond)
-                if ring:
-                    cells = [cell] if beyond == BASE else [cell, self.cells.cell_of[v, u]]
-                    walls.append(_Wall(ring, u, v, cells))
+            cells = [cell] if beyond == BASE else [cell, self.cells.cell_of[v, u]]
+            if beyond == plane and len({self.levels.bottom[one] for one in cells}) == 1:
+                continue
+            rings = [self._wall(u, v, low, high) for low, high in self._sides(u, v, plane, beyond, cells)]
+            walls += [_Wall(ring, u, v, cells) for ring in rings if ring]
         return self._joined(walls)
 
-    def _wall(self, u: int, v: int, plane: int, beyond: int) -> Ring:
-        """Return the wall that is seen from the right of an edge, empty where what lies there is as high or higher."""
+    def _sides(self, u: int, v: int, plane: int, beyond: int, cells: list[int]) -> list[tuple[int, int]]:
+        """Return the planes between which a cell is seen from the right of an edge: over the cell there, and under it.
+
+        The lower one of a pair is not below the upper one where the cell beyond hides it.
+        """
+        low, *others = (self.levels.bottom[cell] for cell in cells)
+        if not others:
+            return [(low, plane)]
+        if low == others[0] == BASE:
+            return [(beyond, plane)]
+
+        def height(one: int) -> float:
+            return self.levels.height(u, one) + self.levels.height(v, one)
+
+        return [(max(low, beyond, key=height), plane), (low, min(plane, others[0], key=height))]
+
+    def _wall(self, u: int, v: int, low: int, high: int) -> Ring:
+        """Return the wall between two planes on an edge, seen from its right; empty where the first is not below."""
         number, positions = self.levels.number, self.levels.positions
-        low_u, low_v, high_u, high_v = number[u, beyond], number[v, beyond], number[u, plane], number[v, plane]
+        low_u, low_v, high_u, high_v = number[u, low], number[v, low], number[u, high], number[v, high]
         if positions[low_u][2] > positions[high_u][2] or positions[low_v][2] > positions[high_v][2]:
             return []
         if low_u == high_u and low_v == high_v:

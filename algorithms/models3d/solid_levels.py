@@ -8,6 +8,7 @@ from collections import defaultdict
 import numpy as np
 
 from ..geometry.subdivision import OUTSIDE, SNAP, Subdivision, loop_area
+from .solid_faults import RULES
 from .solids import DECIMALS, edges_around
 
 # Planes that intersect within this distance (m) of a vertex, in plan, meet in it: cuts pass that closely to vertices.
@@ -29,6 +30,9 @@ _LEAST_TURN = 0.05
 # Number beyond the outline, in place of a plane: the ground.
 BASE = -1
 
+# Vertical thickness (m) of roofs over eaves: rafters, boards and tiles.
+_THICKNESS = 0.25
+
 # Easting, northing and height (m).
 Position = tuple[float, float, float]
 
@@ -48,6 +52,8 @@ class Levels:
     def __init__(self, cells: Subdivision, label: np.ndarray, coefficients: np.ndarray, base: float) -> None:
         self.cells, self.label, self.base = cells, label.tolist(), round(base, DECIMALS)
         self.coefficients = [tuple(row) for row in coefficients.tolist()]
+        # What each cell ends in below: the ground, or the number of its soffit.
+        self.bottom = [BASE] * len(self.label)
         # The planes at each vertex, and the vertices at the other end of its edges, of all and of those on the outline.
         self.around: dict[int, set[int]] = defaultdict(set)
         self._spokes: dict[int, list[int]] = defaultdict(list)
@@ -216,17 +222,17 @@ class Levels:
                 self.number[vertex, plane] = len(self.positions)
             self.positions.append((*plan, z))
 
-    def part_crossing_roofs(self) -> None:
-        """Put a vertex where one of two planes next to an edge comes from below the other."""
+    def part_crossing_roofs(self, rise: float = 0.0) -> None:
+        """Put a vertex where one of two planes next to an edge comes from below the other one, raised (m) if asked."""
         for u, v in list(self.cells.cell_of):
             if u > v:
                 continue
             one, other = self.label[self.cells.cell_of[u, v]], self.plane_beyond(u, v)
             if one == other or BASE in (one, other):
                 continue
-            at_u = self.height(u, one) - self.height(u, other)
-            at_v = self.height(v, one) - self.height(v, other)
-            if at_u * at_v >= 0:
+            at_u = self.height(u, one) - self.height(u, other) - rise
+            at_v = self.height(v, one) - self.height(v, other) - rise
+            if at_u * at_v >= 0 or min(abs(at_u), abs(at_v)) < RULES.apart:
                 continue
             share = at_u / (at_u - at_v)
             (x0, y0), (x1, y1) = self.plan[u], self.plan[v]
@@ -234,6 +240,27 @@ class Levels:
             self.plan.append(self.cells.vertices[new])
             self.around[new] = {one, other}
             self._number(new)
+
+    def overhang(self, is_eave: np.ndarray) -> None:
+        """Let cells (cells,), bool, end in a soffit that is parallel to their roof, and not on the ground."""
+        for rise in (_THICKNESS, -_THICKNESS):
+            self.part_crossing_roofs(rise)
+        at: dict[int, set[int]] = defaultdict(set)
+        for (vertex, _), number in self.number.items():
+            at[vertex].add(number)
+        for cell, plane in enumerate(self.label):
+            if plane < 0:
+                continue
+            if is_eave[cell]:
+                self.bottom[cell] = BASE - 1 - plane
+            for vertex in self.cells.loops[cell]:
+                x, y, z = self.positions[self.number[vertex, plane]]
+                z = round(z - _THICKNESS, DECIMALS) if is_eave[cell] else self.base
+                same = [number for number in at[vertex] if abs(self.positions[number][2] - z) < RULES.apart]
+                self.number[vertex, self.bottom[cell]] = new = same[0] if same else len(self.positions)
+                if not same:
+                    self.positions.append((x, y, z))
+                    at[vertex].add(new)
 
     def crowded(self) -> list[int]:
         """Return the vertices where more than two walls would meet in an edge."""
