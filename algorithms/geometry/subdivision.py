@@ -174,6 +174,40 @@ class Subdivision:
         self.members[cell] = rows[is_left]
         self.members.append(rows[~is_left])
 
+    def close_tips(self, width: float) -> None:
+        """Join the sides of corners of cells, up to the end of the shorter one, where they are ``width`` (m) apart.
+
+        Outlines with such a tip have edges that touch.
+        """
+        for cell, loop in enumerate(self.loops):
+            for tip in list(loop):
+                k = loop.index(tip)
+                before, after = loop[k - 1], loop[(k + 1) % len(loop)]
+                near, far = sorted((before, after), key=lambda v: math.dist(self.vertices[v], self.vertices[tip]))
+                length = math.dist(self.vertices[tip], self.vertices[far])
+                is_narrow = 2 * abs(self.area([near, tip, far])) < width * length
+                is_tip = math.dist(self.vertices[near], self.vertices[far]) < length
+                if len(loop) > 3 and is_narrow and is_tip:
+                    # The longer side, as the neighbor beyond it has it.
+                    self._join_sides(cell, (before, tip, after), near, (far, tip) if far == after else (tip, far))
+
+    def _join_sides(self, cell: int, corner: tuple[int, int, int], near: int, edge: tuple[int, int]) -> None:
+        """Take the tip of a corner off a cell; its side to ``near`` becomes a side of the neighbor with the edge."""
+        before, tip, after = corner
+        beyond = self.cell_of.get(edge, OUTSIDE)
+        if beyond == OUTSIDE or near in self.loops[beyond]:
+            return
+        self.loops[cell].remove(tip)
+        self.loops[beyond].insert(self.loops[beyond].index(edge[0]) + 1, near)
+        for pair in ((before, tip), (tip, after), edge):
+            del self.cell_of[pair]
+        self.cell_of[edge[0], near] = self.cell_of[near, edge[1]] = beyond
+        self.cell_of[before, after] = cell
+        self._edges = None
+        for changed in (cell, beyond):
+            self._areas.pop(changed, None)
+            self._boxes[changed] = self._box(self.loops[changed])
+
     def _box(self, loop: list[int]) -> tuple[float, float, float, float]:
         """Return the least and greatest x and y of a ring of vertices: west, south, east, north (m)."""
         xs, ys = zip(*(self.vertices[v] for v in loop))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.models3d import mending
 from lidar_buildings.algorithms.models3d.mending import mended
 from lidar_buildings.algorithms.models3d.roof_partition import Partition, empty_partition
@@ -228,3 +229,25 @@ def test_a_wedge_at_the_edge_of_the_rectangle_stays_outside():
         cells, inside = empty_partition([turned], np.zeros((0, 2)))
         assert not (inside & cells.is_on_rim()).any()
         assert cells.areas()[inside].sum() == pytest.approx(96.07, abs=0.1)
+
+
+@pytest.mark.parametrize("turn", [0, 25, 70])
+@pytest.mark.parametrize(
+    "side",
+    [
+        [[0, 0], [4.326, -0.027], [4.2889, -0.0822], [4.5058, -0.2285], [4.5058, -0.027], [12, 0.0004]],
+        [[0, 0], [5.3903, -0.0273], [5.4284, -0.2756], [5.5561, -0.2695], [5.5561, -0.0275], [12, -0.0017]],
+    ],
+)
+def test_halves_of_a_side_nearly_in_line_leave_no_slit(side, turn):
+    """Halves of a side a third of a degree apart, parted by a chimney: their lines cut a slit whose sides touch."""
+    angle = np.deg2rad(turn)
+    turned = [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+    ring = np.array([*side, [12, 8], [0, 8], [0, 0]]) @ turned
+    cells, inside = empty_partition([ring], np.zeros((0, 2)))
+    partition = Partition(cells, np.where(inside, 0, -1), np.array([[0, 0, 5.0]]), np.zeros((len(cells), 1)))
+    solids, why = mended(partition, 0.0, np.zeros((0, 3)), None, 70.0)
+    assert why == ""
+    assert [fault_of(solid) for solid in solids] == [""]
+    # Slits and corners nearer than 1 cm are lost.
+    assert solids[0].volume == pytest.approx(5 * signed_area(ring), abs=1.0)
