@@ -309,5 +309,6 @@ def _parted(solid: Solid, vertices: np.ndarray, below: dict[tuple[int, int], lis
 
 def on_terrain(models: list[NamedModel], terrain: Terrain) -> list[NamedModel]:
     """Return models whose walls end on the terrain."""
-    foot = _Foot(terrain.nodes)
+    # On the sides of patches beyond the cloud are nodes without a height.
+    foot = _Foot(terrain.nodes[np.isfinite(terrain.nodes[:, 2])])
     return [foot.placed(one) for one in models]

@@ -205,3 +205,30 @@ def test_common_walls_a_millimeter_apart_stay_valid(scene):
     items = reconstruct_roofs(xyz, classes, LayerFeatures(moved, footprints.columns), terrain_tolerance=TOLERANCE)[4]
     assert_valid_cityjson("".join(cityjson_pieces(items, CITYJSON, MapFrame(np.asarray))))
     assert all(solid.kinds.count("ground") > 1 for one in items[:18] for solid in one.model.best)
+
+
+@pytest.mark.parametrize("beyond", [-3.0, 0.0, 1.0])
+def test_walls_at_the_end_of_the_cloud_have_heights(beyond):
+    """A wall on the side of a patch, where no ground was seen, ended in nodes without a height."""
+    rng = np.random.default_rng(0)
+    ground = rng.uniform((0, 0), (50 + beyond, 40), (4000, 2))
+    ground = ground[(np.abs(ground - [45, 14]) > [5, 4]).any(axis=1)]
+    roof = rng.uniform((40, 10), (50, 18), (1200, 2))
+    xyz = np.concatenate(
+        [
+            np.column_stack([ground, hill(*ground.T)]),
+            np.column_stack([roof, 18 + np.minimum(roof[:, 1] - 10, 18 - roof[:, 1])]),
+        ]
+    )
+    ring = np.array([[40, 10], [50, 10], [50, 18], [40, 18], [40, 10]], float)
+    classes = np.repeat([2, 6], [len(ground), len(roof)])
+    layers = reconstruct_roofs(xyz, classes, LayerFeatures([[ring]], {"id": [1]}), terrain_tolerance=TOLERANCE)
+    items, terrain = layers[4], layers[3]
+    house = items[0].model.best[0]
+    assert np.isfinite(house.vertices).all()
+    assert_valid_solid(house.vertices, house.faces)
+    edges = edges_of_terrain(terrain)
+    open_ = [edge for edge in lower_edges(house) if edge not in edges and edge[::-1] not in edges]
+    # Beyond the last ground there is no terrain: the wall that looks there may stand free.
+    assert all(x == 50 * 10**4 for edge in open_ for x, _, _ in edge)
+    assert bool(open_) == (beyond <= 0)
