@@ -50,8 +50,9 @@ class Approach:
         """Return whether a person can walk up to an opening with a box (2, 2), m, and through it.
 
         The highest surface up to a step above the sill is at most a step below it, in most columns in which one is
-        seen. In most columns no wall is seen further down. Where nothing is seen before nearly all columns, the foot of
-        the wall is taken instead. An opening without a lintel is cut off by a shadow, and may be higher.
+        seen. In most columns no wall is seen further down. Where something is seen before less than a quarter of the
+        columns, the foot of the wall is taken instead. A shadow hides the top of an opening without a lintel, which may
+        therefore be lower.
         """
         low, high = box[:, 1]
         is_high = high - low >= _RULES.least_height

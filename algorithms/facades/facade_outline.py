@@ -158,7 +158,7 @@ def completed(ring: np.ndarray) -> np.ndarray:
 def _hidden_corners(
     corners: np.ndarray, lids: np.ndarray, length: np.ndarray, is_foot: np.ndarray, is_side: np.ndarray
 ) -> dict[int, np.ndarray]:
-    """Return what takes the place of the hull edges (k) between foot and sides: the corner, or nothing (1 or 0, 2)."""
+    """Return the corner (1, 2), or none (0, 2), that replaces each hull edge (k) between the foot and the sides."""
     foot = int(np.argmax(np.where(is_foot, length, 0.0)))
     hidden: dict[int, np.ndarray] = {}
     for step in (1, -1):
@@ -198,6 +198,7 @@ def sparse_spacing(positions: np.ndarray, triangles: np.ndarray) -> float:
 def _traced(positions: np.ndarray, triangulation: Any, spacing: float, drawing: Drawing) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
     longest_edge = _PUBLISHED_EDGE if drawing.boundary == "key points" else _LONGEST_EDGE
+    # Cells of half a gap hang together across their corners: so do triangles whose edges are √2 gaps long.
     max_edge, max_gap = longest_edge * spacing, float(np.sqrt(2)) * drawing.max_gap
     while True:
         tracing, is_last = trace_outlines(positions, max_edge, triangulation), max_edge >= max_gap
@@ -216,8 +217,8 @@ def key_points(ring: np.ndarray) -> np.ndarray:
     """Return the closed ring of the points of a boundary where it turns.
 
     In a first round and 30 that follow the points at which the boundary turns by less than the threshold are removed;
-    the threshold goes from 10° up by one degree a round. Of two neighbors only one is removed at a time, so that the
-    angles are those of the rest.
+    the threshold goes from 10° up by one degree a round. Of two neighbors only one is removed at a time, as the
+    other one turns by another angle then.
     """
     positions = ring[:-1]
     for angle in _FIRST_ANGLE + np.arange(_ROUNDS + 1):

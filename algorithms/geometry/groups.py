@@ -11,7 +11,7 @@ from ..packages import csgraph, sparse
 
 
 def run_starts(numbers: np.ndarray) -> np.ndarray:
-    """Return where in ``numbers`` (n,) each run of equal ones begins, int64, ascending."""
+    """Return the indices, int64, ascending, at which runs of equal numbers begin in ``numbers`` (n,)."""
     is_start = np.ones(len(numbers), bool)
     is_start[1:] = numbers[1:] != numbers[:-1]
     return np.flatnonzero(is_start)

@@ -248,7 +248,7 @@ class Subdivision:
 
 
 def _crossings(side: list[int]) -> list[tuple[int, int]]:
-    """Return where a ring of sides (-1, 0, 1) changes its sign: (i, i + 1) between two corners, (i, i) in one."""
+    """Return the sign changes of a ring of sides (-1, 0, 1): (i, i + 1) between two corners, (i, i) in a corner."""
     n = len(side)
     found = []
     for i in range(n):

@@ -41,11 +41,11 @@ _LOWERED = 0.02
 # Parts of a footprint with less than this share of its area are not modelled.
 _SLIVER = 0.01
 
-# What a cell that is left out of the model costs, as a multiple of its area: more than planes that explain nothing.
+# Cost of a cell left out of the model, as a multiple of its area: higher than the cost of planes that explain nothing.
 _LEFT_OUT = 3.0
 
-# What any change of a cell costs besides, as a share of its area: of changes that cost as much, that of the smallest
-# cell is taken.
+# Cost of any change of a cell, as a share of its area. It decides between changes with equal costs: the smallest cell
+# changes.
 _CHANGE = 0.01
 
 # Parts of a roof with less area in plan (m²), or a smaller mean width (m), join a neighbor: they are smaller than

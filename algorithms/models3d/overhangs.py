@@ -118,7 +118,7 @@ def _set_back(ring: np.ndarray, overhang: np.ndarray) -> np.ndarray:
 
 
 def _corner(one: np.ndarray, two: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where a side (2, 2) ends and where the next one begins: in their corner, unless they are parallel."""
+    """Return the end of a side (2, 2) and the start of the next one: their intersection, unless they are parallel."""
     (x, y), (u, v), (across, up) = one[1] - one[0], two[1] - two[0], two[0] - one[0]
     turn = x * v - y * u
     if abs(turn) < _PARALLEL * np.hypot(x, y) * np.hypot(u, v):

@@ -34,7 +34,8 @@ _WIDEST = 3.0
 # Largest measured radius (of the smallest measured nearer to the root): wood grows no thicker outward, but for noise.
 _SWELLING = 1.1
 
-# Pieces farther out that a measured radius is compared with: less than these only where half of a stem's foot is seen.
+# Number of pieces farther out whose median radius a measured radius has to reach: wood grows thicker toward the root,
+# and a thinner foot is one of which a part was seen.
 _AHEAD = 5
 
 # Length (m) of the pieces of a branch that have a radius of their own: branches taper little over it.
@@ -130,10 +131,10 @@ def segment_tree(
     have holes, and their skeleton is a net; slices by the length of the path have their middle inside the stem. The
     ground below a tree is the lowest point within 1 to 2 m. Gaps up to the maximum are crossed at three times their
     length: shadows part stems and branches in every scan. Points farther from the middle line than ``_WITHIN`` times
-    the median of their piece of ``_PIECE`` m are leaves. The radius of a piece is that of the cylinder of least
-    squares through its points, also where one side is seen, or else the median distance of its points from the line.
-    It must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances scatter by less
-    than ``_ROUND`` of it, as on a circle. Nor may it exceed radii nearer to the root by more than a tenth, or be
+    the median of their piece of ``_PIECE`` m are leaves. A cylinder is fitted to each piece by least squares, also
+    where one side of it is seen. Where none fits, the radius is the median distance of the points from the line. A
+    radius must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances scatter by
+    less than ``_ROUND`` of it, as on a circle. Nor may it exceed radii nearer to the root by more than a tenth, or be
     thinner than the next ones. Elsewhere it is estimated from the nearest one measured toward the root, or from the
     stem's at breast height. Forks keep the area of the wood (pipe model), in proportion to the length of all branches
     beyond. A stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if
@@ -268,8 +269,8 @@ def _measured(
 def _fitted(xyz: np.ndarray, chord: np.ndarray, reach: float) -> Optional[float]:
     """Return the radius (m) of a cylinder through points (k, 3), m, of a piece; None where they lie on none.
 
-    Where one side of a branch is seen, its line lies on that side, ``reach`` (m) from the points, and its ``chord``
-    (3,), m, along the branch.
+    ``reach`` is the median distance (m) of the points from the middle line of the branch, and ``chord`` (3,), m, is
+    a vector along it. Where one side of a branch is seen, that line lies on the bark of this side.
     """
     length = float(np.linalg.norm(chord))
     if not length:
