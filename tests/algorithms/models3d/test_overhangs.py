@@ -116,19 +116,22 @@ def test_sides_without_a_wall_and_sides_with_a_neighbor_do_not_overhang():
     assert layers["buildings"].geometries[0][0][:, 1].min() == pytest.approx(OVERHANG, abs=0.03)
 
 
-@pytest.mark.parametrize("seen", ["nothing", "points at all distances", "less than half"])
+@pytest.mark.parametrize("seen", ["nothing", "points at all distances", "less than half", "a wall close to the eave"])
 def test_without_a_wall_a_building_stays_at_level_2_2_and_is_sound(seen):
     xyz, classes, footprints = scene(SHAPES["gable"], seen=())
     rng = np.random.default_rng(2)
-    end = {"nothing": 0.1, "points at all distances": 12.0, "less than half": 5.0}[seen]
+    end = {"nothing": 0.1, "less than half": 5.0}.get(seen, 12.0)
     positions = inset(np.array([0.0, 0.0]), np.array([end, 0.0]))
     if seen == "points at all distances":
         positions[:, 1] = rng.uniform(0.0, 1.2, len(positions))
+    elif seen == "a wall close to the eave":
+        positions[:, 1] = rng.normal(0.12, 0.02, len(positions))
     more = np.column_stack([positions, rng.uniform(0.6, 3.0, len(positions))])
     xyz, classes = np.concatenate([xyz, more]), np.append(classes, np.full(len(more), 6, np.uint8))
     layers, (one,), _ = modelled(xyz, classes, footprints)
     facts = {name: column[0] for name, column in layers["buildings"].columns.items()}
     assert (facts["level"], facts["reason"]) == ("2.2", "2.3: no wall was seen under an overhanging eave")
+    assert facts["check"] == 0
     assert "2.3" not in one.model.solids
     assert set(layers["walls"].columns["kind"]) == {"wall"}
 
@@ -165,6 +168,11 @@ def test_walls_set_back_end_on_the_terrain_that_goes_on_below_the_eaves():
 
 def test_soffits_are_exported_and_kept():
     layers, (one,), text = modelled(*scene(SHAPES["gable"]))
+    walls = layers["walls"].columns
+    assert [kind == "soffit" for kind in walls["kind"]] == np.isnan(walls["azimuth"]).tolist()
+    coarser, *_ = modelled(*scene(SHAPES["gable"]), level="2.2")
+    eave, expected = (some["buildings"].columns["eave_height"][0] for some in (layers, coarser))
+    assert eave == pytest.approx(expected, abs=1e-9)
     (building,) = json.loads(text)["CityObjects"].values()
     surfaces = building["geometry"][-1]["semantics"]["surfaces"]
     assert building["geometry"][-1]["lod"] == "2.3"
