@@ -35,12 +35,13 @@ from ..algorithms.stage import (
 )
 from ..algorithms.tiling.survey import Survey
 from .algorithm import CheckedAlgorithm
+from .caller import is_step
 from .clouds import cloud_path, files_read
 from .crs import WGS84
 from .crs_authority import crs_reader, text_of
 from .destinations import Made
 from .errors import as_processing_errors
-from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
+from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .given import Given
 from .input_layers import (
     find_input_layers,

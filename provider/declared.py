@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Optional, Union
 
-from qgis.core import QgsApplication, QgsProcessingOutputHtml, QgsProcessingUtils
+from qgis.core import QgsProcessingOutputHtml, QgsProcessingUtils
 from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QWidget
@@ -13,6 +13,7 @@ from qgis.PyQt.QtWidgets import QWidget
 from ..algorithms.help import as_text, page, with_picture
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Stage
+from .caller import on_command_line
 from .paths import GROUP_ICONS, ICON, PICTURES
 
 # The groups that the toolbox shows first.
@@ -103,8 +104,3 @@ class DeclaredAlgorithm:
         for output in self.outputDefinitions():  # type: ignore[attr-defined]
             if isinstance(output, QgsProcessingOutputHtml):
                 output.setDescription(f"{output.description()} ({self.displayName()})")
-
-
-def on_command_line() -> bool:
-    """Whether this is ``qgis_process``, which shows HTML as it is written."""
-    return QgsApplication.platform() == "qgis_process"

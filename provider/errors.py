@@ -11,8 +11,8 @@ from qgis.core import QgsProcessingException, QgsProcessingFeedback
 from ..algorithms.cloud.printable import shown
 from ..algorithms.stage import Cancelled
 from ..algorithms.stages import less_memory
-from .declared import on_command_line
-from .feedback import ProgressBar, is_step
+from .caller import is_step, on_command_line
+from .feedback import ProgressBar
 
 _CANCELLED = "Cancelled; nothing was written."
 

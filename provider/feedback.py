@@ -10,7 +10,7 @@ from typing import Any, Optional
 from qgis.core import QgsApplication, QgsProcessingAlgorithm, QgsProcessingFeedback
 
 from ..algorithms.stage import SAMPLING, Cancelled, Monitor, Param, Part, Stage
-from .declared import on_command_line
+from .caller import is_step, on_command_line
 from .run_log import RunLog
 
 
@@ -264,9 +264,3 @@ def announce(title: str, feedback: QgsProcessingFeedback) -> None:
     """Log the step that a chain has reached; an algorithm that runs alone is named by its dialog."""
     if is_step(feedback):
         feedback.setProgressText(title)
-
-
-def is_step(feedback: QgsProcessingFeedback) -> bool:
-    """Whether a feedback belongs to a step of a chain."""
-    # By its Qt class: QGIS hands it to Python as a plain feedback.
-    return feedback.inherits("QgsProcessingMultiStepFeedback")

@@ -22,9 +22,9 @@ from qgis.core import (
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.stage import Stage
 from ..algorithms.tiling.settings import READ_SETTINGS, Setting
+from .caller import is_step
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
-from .feedback import is_step
 from .given import Given
 from .parameters import is_given
 from .styles import subject_of_file

@@ -22,7 +22,7 @@ from qgis.PyQt.QtWidgets import QAction, QDockWidget, QTextBrowser
 
 from ..algorithms.cloud.files import NOWHERE, read_extent
 from ..algorithms.cloud.web_file import is_on_web
-from . import PROVIDER_ID
+from . import DETECT, REVIEW_WINDOW
 from .clouds import cloud_path, file_of_layer
 from .crs_authority import crs_reader
 from .given import Given
@@ -30,6 +30,7 @@ from .inputs import EXTENT, INPUT, extent_box
 from .paths import GROUP_ICONS, ICON, PLUGIN
 from .questions import is_answered_yes
 from .settings import WEB_LIMIT
+from .styles import WHEN_LOADED
 from .web import Size, agree_to, is_over_limit, size_on_web
 
 MENU = "LiDAR Buildings"
@@ -37,14 +38,11 @@ MENU = "LiDAR Buildings"
 # Text of the menu entry and of the button.
 FIND_IN_VIEW = "Find buildings in this view…"
 
-# The algorithm that finds buildings.
-DETECT = f"{PROVIDER_ID}:detectbuildings"
-
 # Points that it works on in a minute, from file to file, on the slowest computer that it was measured on (2 cores).
 _POINTS_PER_MINUTE = 2_000_000
 
-# Name of the window of the review, by which it is found again.
-REVIEW_WINDOW = "LidarBuildingsReview"
+# Styles of the results whose buildings are reviewed.
+_REVIEWED = ("footprints", "updated_map")
 
 
 def add_menu(iface: Any) -> Callable[[], None]:
@@ -72,6 +70,19 @@ def add_menu(iface: Any) -> Callable[[], None]:
             dock.deleteLater()
 
     return remove
+
+
+def offer_reviews(iface: Any) -> Callable[[], None]:
+    """Offer the review of each result with buildings that is loaded; return what ends that."""
+
+    def offer(style: Optional[str], layer: QgsMapLayer, context: QgsProcessingContext) -> None:
+        if style in _REVIEWED:
+            from .review_dock import offer_review
+
+            offer_review(iface, layer, context)
+
+    WHEN_LOADED.append(offer)
+    return lambda: WHEN_LOADED.remove(offer)
 
 
 def _action(iface: Any, text: str, icon: Path, run: Callable[[], None]) -> QAction:

@@ -39,6 +39,7 @@ class Plugin:
         self.initProcessing()
         self._add("The page of the plugin in the options of Processing", add_options)
         self._add("The menu of the plugin", lambda: self._with_iface("menu", "add_menu"))
+        self._add("The offer of a review", lambda: self._with_iface("menu", "offer_reviews"))
         self._add("The message on missing packages", lambda: self._with_iface("installation", "warn_at_start"))
         self._add("The toolbox entry 'Open in Model Designer'", self._add_designer)
 

@@ -37,9 +37,9 @@ from qgis.PyQt.QtWidgets import (
 from ..algorithms.buildings.reviewed_buildings import DELETED, KEPT, REVIEW, REVIEWED
 from ..algorithms.quality.map_changes import STATUS, UNCHANGED
 from ..algorithms.quality.report_buildings import SURE
+from . import DETECT, REVIEW_WINDOW
 from .input_layers import input_layer_name
 from .inputs import INPUT
-from .menu import DETECT, REVIEW_WINDOW
 from .questions import push_with_button
 from .review import CONFIDENCE, Review, changes_between, is_reviewable
 from .review_views import PointViews, clouds_for

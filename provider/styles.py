@@ -19,7 +19,6 @@ from qgis.core import (
     QgsVectorLayer,
 )
 from qgis.PyQt import sip
-from qgis.utils import iface
 
 try:
     from qgis._3d import QgsPointCloudLayer3DRenderer
@@ -45,6 +44,9 @@ _DECIMALS = 3
 
 # Property of a layer with the algorithm that made it and the parameters, as JSON.
 RUN = "lidar_buildings/run"
+
+# What the desktop calls with the style, the layer and the context of each result that is loaded.
+WHEN_LOADED: list[Callable[[Optional[str], QgsMapLayer, QgsProcessingContext], None]] = []
 
 # Attributes that a map tip shows, in this order, the most of them, and their decimals where these are not one.
 _IN_TIPS = ("status", "kind", "roof_type", "height", "area", "length", "width", "radius", "confidence")
@@ -92,11 +94,8 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         stack_results(context)
         if len(context.layersToLoadOnCompletion()) == 1:
             put_below(layer, context)
-        if self.stem in ("footprints", "updated_map") and iface is not None:
-            # Late: without a desktop nobody needs its widgets.
-            from .review_dock import offer_review
-
-            offer_review(iface, layer, context)
+        for told in WHEN_LOADED:
+            told(self.stem, layer, context)
         node = context.project().layerTreeRoot().findLayer(layer.id()) if self.is_off else None
         if node is not None:
             node.setItemVisibilityChecked(False)

@@ -37,13 +37,13 @@ from ..algorithms.tiling.tiled_run import TilesOptions, TilesOutcome
 from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
+from .caller import is_step, on_command_line
 from .clouds import CloudsParameter, survey_paths
 from .crs import WGS84
 from .crs_authority import crs_reader
-from .declared import on_command_line
 from .destinations import Made
 from .errors import as_processing_errors
-from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
+from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .given import Given
 from .input_layers import find_input_layers, input_layer_files, input_layer_parameter, read_input_layers
 from .inputs import (

@@ -28,11 +28,13 @@ ROOMS = (
     "neighborhoods",
     "cloud",
     "sampling",
+    "planes",
     "report",
     "preparation",
     "terrain",
     "features",
     "segmentation",
+    "bridges",
     "shapes",
     "buildings",
     "landcover",
@@ -141,6 +143,40 @@ def test_rooms_import_only_from_earlier_rooms():
         if ROOMS.index(room_of(module)) > ROOMS.index(room_of(".".join(Path(path).with_suffix("").parts[1:])))
     ]
     assert not found
+
+
+def test_the_judge_shares_nothing_with_what_it_judges():
+    """Models are assessed by code that takes no part in making them."""
+    imported = {module for path in CORE if "/quality/" in path for module in modules_imported(path)}
+    assert imported
+    assert not {module for module in imported if room_of(module) in ("models3d", "export")}
+
+
+def circles(graph: dict[str, set[str]]) -> list[str]:
+    """Return the modules from which imports lead back to themselves, whatever is imported late."""
+    found = []
+    for start, imports in graph.items():
+        seen, front = set(), set(imports)
+        while front:
+            seen |= front
+            front = set().union(*(graph.get(module, set()) for module in front)) - seen
+        if start in seen:
+            found.append(start)
+    return found
+
+
+def test_no_module_imports_itself_by_way_of_others():
+    """Not even late, in a function: such a circle only hides that two modules are one, or that a third is missing."""
+    names = {path: Path(path).stem for path in sources("provider")}
+    imports = {
+        name: {one.strip(".") for one in names_in(path) if one.startswith(".") and not one.startswith("..")}
+        for path, name in names.items()
+    }
+    assert not circles({name: which & set(names.values()) for name, which in imports.items()})
+    core = {".".join(Path(path).with_suffix("").parts[1:]): set(modules_imported(path)) for path in CORE}
+    # A monitor names the type of the steps that it hears of.
+    assert circles(core) == ["stage.declaration", "stage.monitor"]
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}}) == ["a", "b", "c"]
 
 
 # Modules that measure the density of some points: of parts of a cloud that are sampled otherwise than the whole.

@@ -10,7 +10,7 @@ from ..geometry.grid import EIGHT
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.kinds import SCENE
-from ..segmentation.top_surface import TOP
+from ..sampling.top_surface import TOP
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ..rules import rule, rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.kinds import IMAGES, LASER, SCENE
 from ..sampling.surface_noise import ON_PLANE
-from ..segmentation.top_surface import TopSurface
+from ..sampling.top_surface import TopSurface
 from ..stage import stage, tunable
 from .building_columns import ColumnPoints, Columns, column_size
 from .roof_coverage import Cell, Coverage, cells_with, covered_cells, mostly_roof, numbered, renumbered, roof_top

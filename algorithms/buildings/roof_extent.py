@@ -12,7 +12,7 @@ from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 from ..rules import rule, rules
 from ..sampling.kinds import IMAGES, MATCHING
-from ..segmentation.top_surface import TopSurface
+from ..sampling.top_surface import TopSurface
 from ..terrain.free_standing import FREE
 from .roof_coverage import disk
 

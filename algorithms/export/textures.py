@@ -10,8 +10,8 @@ from typing import Optional
 
 import numpy as np
 
+from ..footprints.footprint_points import rows_near
 from ..geometry.polygons import area_vector, axes_across
-from ..models3d.model_inputs import rows_near
 from ..packages import ndimage
 from ..stage import Monitor
 from .exported_models import ExportedModel, Face, Texture

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.grid import distinct, grid_over, shared_cells
 from ..geometry.groups import components
-from ..segmentation.least_squares_planes import planes_of
+from ..planes.least_squares_planes import planes_of
 
 # Least angle (sine: 3°) between strips of one curved front: planes at smaller ones are one wall.
 _LEAST_SINE = np.sin(np.radians(3.0))

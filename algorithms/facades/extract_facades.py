@@ -10,8 +10,8 @@ import numpy as np
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import least_of, members
 from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT, SEED
+from ..planes.least_squares_planes import Planes, off_planes, planes_of
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..segmentation.least_squares_planes import Planes, off_planes, planes_of
 from ..segmentation.segment_planes_ransac import segment_planes_ransac
 from ..stage import Field, Layer, LayerFeatures, Monitor, ProgressOnly, stage, tunable
 from .common_borders import with_common_borders

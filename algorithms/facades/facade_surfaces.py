@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..geometry.groups import members
-from ..segmentation.least_squares_planes import Planes, planes_of
+from ..planes.least_squares_planes import Planes, planes_of
 from ..stage import LayerFeatures, Monitor
 from .facade_frame import Frame, frame_of
 from .facade_outline import Drawing, outline_of, ring_area

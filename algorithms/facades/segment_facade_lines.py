@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.groups import least_of, placed, run_starts
 from ..geometry.polylines import simplify
 from ..neighborhoods.covariance import full_matrices
-from ..segmentation.least_squares_planes import planes_of
+from ..planes.least_squares_planes import planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 
 # Two neighbors of a line this far apart are of two segments (median steps of the line): steps grow with the range.

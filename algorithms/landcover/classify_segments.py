@@ -9,10 +9,10 @@ import numpy as np
 from ..cloud.asprs import parse_classes
 from ..geometry.grid import distinct
 from ..geometry.groups import run_starts
+from ..planes.least_squares_planes import planes_of
 from ..preparation.filter_points import within_limits
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import occupied_cells
-from ..segmentation.least_squares_planes import planes_of
 from ..shapes.plane_polygons import outline_of_cells
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable
 

@@ -14,7 +14,7 @@ from ..rules import rules
 from ..stage import Field, LayerFeatures
 from .building_models import FINE, OVERHANGS, BuildingModel
 from .mending import LARGE
-from .roof_points import RULES
+from .roof_points import OFF
 from .solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL, Solid
 
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
@@ -64,7 +64,7 @@ BUILDING_FIELDS = (
     Field("roof_area", float, "area of its roof, in its slopes", "m²"),
     Field("volume", float, "volume", "m³"),
     Field("rms", float, "root mean square height of its roof points above or below the model", "m"),
-    Field("off", float, f"share of its roof points more than {RULES.off} m above or below the model, 0 to 1"),
+    Field("off", float, f"share of its roof points more than {OFF} m above or below the model, 0 to 1"),
     Field("explained", float, "share of its roof points that lie on the model, 0 to 1"),
     Field(
         "weakest_face",

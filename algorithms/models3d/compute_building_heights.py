@@ -10,15 +10,7 @@ import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
 from ..footprints.footprint_attributes import roof_heights, surface_heights
-from ..geometry.points_in_polygons import are_in_polygons
-from ..geometry.polygon_overlap import as_polygons
-from ..geometry.rings import along_sides, polygon_area, sides_of_rings
-from ..packages import spatial
-from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..sampling.density import point_spacing
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage
-from .building_facts import CHECKS, type_of_faces
-from .model_inputs import (
+from ..footprints.footprint_points import (
     GROUND_PERCENTILE,
     ground_beside,
     plane_tolerance,
@@ -29,9 +21,17 @@ from .model_inputs import (
     sound_rings,
     tell_without_area,
 )
+from ..geometry.points_in_polygons import are_in_polygons
+from ..geometry.polygon_overlap import as_polygons
+from ..geometry.rings import along_sides, polygon_area, sides_of_rings
+from ..packages import spatial
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
+from ..sampling.density import point_spacing
+from ..sampling.points_on_top import RULES
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage
+from .building_facts import CHECKS, type_of_faces
 from .roof_partition import cells_inside, covered_share
 from .roof_planes import RoofPlanes, find_roof_planes
-from .roof_points import RULES
 
 SEEN, PARTLY, TREES, ABSENT, EMPTY = "seen", "partly seen", "under trees", "no building", "no points"
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..footprints.footprint_points import NO_AREA, require_buildings, require_ground, rows_near, tell_without_area
 from ..geometry.rings import signed_area
 from ..stage import Field, InputLayer, Layer, LayerFeatures, feature_names, stage, tunable
 from .cityjson import unique_names
-from .model_inputs import NO_AREA, require_buildings, require_ground, rows_near, tell_without_area
 from .roof_partition import inside_rings
 
 

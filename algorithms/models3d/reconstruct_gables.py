@@ -11,7 +11,7 @@ from ..cloud.asprs import PointClass
 from ..geometry.groups import members
 from ..geometry.polygons import area_vector, line_of_planes
 from ..packages import spatial
-from ..segmentation.least_squares_planes import Planes, planes_of
+from ..planes.least_squares_planes import Planes, planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
 from . import cityjson
 from .building_facts import NamedModel

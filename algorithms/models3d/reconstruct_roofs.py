@@ -9,9 +9,24 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..footprints.footprint_points import (
+    GROUND_PERCENTILE,
+    TOLERANCE_TEXT,
+    by_easting,
+    ground_beside,
+    plane_tolerance,
+    require_buildings,
+    require_ground,
+    rows_near,
+    rows_within,
+    shows_roof,
+    sound_rings,
+    tell_without_area,
+)
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
+from ..sampling.points_on_top import are_low
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, TextFile, feature_names, stage, tunable
 from . import cityjson, wavefront
 from .building_facts import (
@@ -26,21 +41,7 @@ from .building_facts import (
 )
 from .building_models import LEVELS, Settings, model_building
 from .joined_terrain import PATCH, TERRAIN_FIELDS, on_terrain, terrain_layer, triangulate_terrain
-from .model_inputs import (
-    GROUND_PERCENTILE,
-    TOLERANCE_TEXT,
-    by_easting,
-    ground_beside,
-    plane_tolerance,
-    require_buildings,
-    require_ground,
-    rows_near,
-    rows_within,
-    shows_roof,
-    sound_rings,
-    tell_without_area,
-)
-from .roof_points import RADIUS, are_low
+from .roof_points import RADIUS
 from .solids import ROOF, SOFFIT, WALL
 
 # Number of footprints without a model that a warning names.

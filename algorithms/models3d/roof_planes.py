@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.groups import components, placed
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..packages import spatial
-from ..segmentation.least_squares_planes import planes_of
+from ..planes.least_squares_planes import planes_of
 
 # Points of the neighborhood whose plane shows which way a roof faces: two rings around a point.
 _NEIGHBORS = 12

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..footprints.footprint_points import by_easting
 from ..geometry.groups import components, split_groups
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes
-from ..models3d.model_inputs import by_easting
 from ..packages import spatial
 from ..report.charts import BLUE, GRAY, RED, YELLOW
 from ..rules import rules

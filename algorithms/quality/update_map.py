@@ -8,9 +8,9 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..footprints.extract_footprints import extract_footprints
+from ..footprints.footprint_points import require_ground
 from ..geometry.polygon_overlap import in_squares
 from ..geometry.rings import polygon_area
-from ..models3d.model_inputs import require_ground
 from ..params import MIN_BUILDING_AREA
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons

@@ -10,9 +10,9 @@ from typing import Callable
 
 import numpy as np
 
+from ..planes.least_squares_planes import Planes
 from ..stage import Monitor
 from .adjacent_pieces import Adjacency
-from .least_squares_planes import Planes
 from .straight_pieces import Pieces
 
 # Seeds, and pieces that are looked at for one region, between two reports of progress.

@@ -8,13 +8,13 @@ import numpy as np
 
 from ..geometry.boxes import Boxes, by_first_point
 from ..params import MIN_CLUSTER_HEIGHT, SEED
+from ..planes.least_squares_planes import Planes
+from ..planes.plane_merging import joined_planes
+from ..planes.voxel_planes import VoxelPlanes
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, ROUGHNESS
 from ..stage import Monitor, stage, tunable
 from .candidate_points import candidates
-from .least_squares_planes import Planes
-from .plane_merging import joined_planes
-from .voxel_planes import VoxelPlanes
 
 # Points that a surface has in a voxel: enough for a plane that chance does not make.
 _POINTS_IN_VOXEL = 20.0

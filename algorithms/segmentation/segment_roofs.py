@@ -14,16 +14,16 @@ from ..geometry.components import connect, number_large
 from ..geometry.groups import placed
 from ..neighborhoods.covariance import Nearest
 from ..params import POINT_DENSITY, POINT_SOURCE, SURFACE_NOISE
+from ..planes.planar_patches import segment_patches
 from ..rules import rule, rules
 from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.density import DENSITY
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.surface_noise import LEAST_NEIGHBORS, SURFACES, plane_roughness
+from ..sampling.top_surface import TopSurface, highest_of_cells
 from ..stage import Monitor, stage, tunable
 from ..terrain.on_decks import on_bridges
 from .cluster_measures import plan_areas
-from .planar_patches import segment_patches
-from .top_surface import TopSurface, highest_of_cells
 
 
 @rules

@@ -10,10 +10,10 @@ from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items, placed
 from ..params import POINT_DENSITY
+from ..planes.local_planes import Criteria, LocalPlanes, local_planes
+from ..planes.surface_growing import grow_planes, grow_surfaces
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, stage, tunable
-from .local_planes import Criteria, LocalPlanes, local_planes
-from .surface_growing import grow_planes, grow_surfaces
 
 # Reach of a neighborhood in point spacings on surfaces: it holds 28 points, of which the nearest are taken, and crosses
 # gaps between scan lines three times as wide as points lie apart on the average.

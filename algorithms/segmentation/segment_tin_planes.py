@@ -12,10 +12,10 @@ from ..geometry.delaunay import triangulate
 from ..geometry.groups import placed
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..params import POINT_DENSITY, SURFACE_NOISE
+from ..planes.best_pairs import common_deviation, merge_best_pairs
+from ..planes.least_squares_planes import Planes
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage, tunable
-from .best_pairs import common_deviation, merge_best_pairs
-from .least_squares_planes import Planes
 
 # Longest edge (point spacings) of a triangle that does not lie across a gap: of evenly spread points one
 # edge in a thousand is longer.

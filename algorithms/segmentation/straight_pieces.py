@@ -10,8 +10,8 @@ import numpy as np
 
 from ..geometry.groups import items, run_starts
 from ..neighborhoods.covariance import full_matrices
+from ..planes.least_squares_planes import Planes, planes_of
 from ..stage import Monitor
-from .least_squares_planes import Planes, planes_of
 
 # Points of a block of pieces (about 100 bytes each), between two reports of progress; a longer piece is a block.
 _BLOCK = 200_000

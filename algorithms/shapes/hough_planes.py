@@ -7,7 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.boxes import Boxes
-from ..segmentation.voxel_planes import more_than_chance
+from ..planes.voxel_planes import more_than_chance
 from ..stage import Monitor
 from ..threads import in_chunks
 

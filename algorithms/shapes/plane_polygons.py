@@ -9,7 +9,7 @@ from ..geometry.grid import Grid, connected_cells, grid_over
 from ..geometry.line_segments import is_valid
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
-from ..segmentation.least_squares_planes import planes_of
+from ..planes.least_squares_planes import planes_of
 from ..stage import Field, LayerFeatures
 
 PLANE_FIELDS = (

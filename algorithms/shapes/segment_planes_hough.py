@@ -9,10 +9,10 @@ import numpy as np
 
 from ..geometry.boxes import Boxes, by_first_point
 from ..geometry.groups import split_groups
+from ..neighborhoods.dbscan import dbscan
+from ..planes.plane_merging import joined_planes
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.surface_noise import ON_PLANE, ROUGHNESS_OF_SPACING
-from ..segmentation.plane_merging import joined_planes
-from ..segmentation.segment_clusters import dbscan
 from ..stage import Layer, Monitor, stage, tunable
 from .hough_planes import HoughPlanes
 from .joined_pieces import whole_plane

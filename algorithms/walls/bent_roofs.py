@@ -7,12 +7,12 @@ import numpy as np
 from ..buildings.roof_extent import amid_rough
 from ..cloud.asprs import NOISE
 from ..geometry.groups import mask_of, placed
+from ..neighborhoods.dbscan import dbscan, points_at_corner
 from ..packages import ndimage, spatial
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.top_surface import TopSurface
 from ..segmentation.cluster_measures import plan_areas
-from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..segmentation.segment_roofs import segment_roofs
-from ..segmentation.top_surface import TopSurface
 from ..stage import Monitor
 from ..threads import n_threads
 

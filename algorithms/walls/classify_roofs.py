@@ -8,10 +8,10 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.groups import placed, ranked_by_least
+from ..neighborhoods.dbscan import dbscan, points_at_corner
 from ..params import MIN_MAPPED_AREA, POINT_DENSITY, POINT_SOURCE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.cluster_measures import plan_areas
-from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..stage import Monitor, stage, tunable
 from .bent_roofs import bent_roofs, with_bent_roofs
 from .party_walls import split_blocks

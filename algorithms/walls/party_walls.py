@@ -8,7 +8,7 @@ from ..footprints.outline_pieces import pieces_alone
 from ..footprints.row_houses import split_row
 from ..footprints.soft_shares import spread_out
 from ..geometry.groups import placed, ranked_by_least
-from ..segmentation.top_surface import highest_of_cells
+from ..sampling.top_surface import highest_of_cells
 from ..stage import Monitor
 
 # Side of the cells (m) whose highest points are used: about the width of parapets.

@@ -29,6 +29,7 @@ from qgis.PyQt.QtWidgets import QApplication, QDockWidget, QPushButton
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.provider import styles
+from lidar_buildings.provider.menu import offer_reviews
 from lidar_buildings.provider.review import Review, changes_between
 from lidar_buildings.provider.review_dock import show_review
 from lidar_buildings.tests.provider.helpers import run, vector
@@ -56,6 +57,14 @@ def value_of(layer, feature, name):
 
 def square(x, size=10):
     return f"Polygon (({x} 0, {x + size} 0, {x + size} {size}, {x} {size}, {x} 0))"
+
+
+@pytest.fixture
+def offers(qgis_iface):
+    """Reviews are offered, as the plugin does in a desktop."""
+    end = offer_reviews(qgis_iface)
+    yield
+    end()
 
 
 @pytest.fixture
@@ -334,8 +343,8 @@ def test_open_3d_views_look_at_the_building(dock, qgis_iface, monkeypatch):
     assert pitch == 55.0
 
 
-def test_a_run_that_made_footprints_offers_the_review(layer, qgis_iface, context, log, monkeypatch, request):
-    monkeypatch.setattr(styles, "iface", qgis_iface)
+@pytest.mark.usefixtures("offers")
+def test_a_run_that_made_footprints_offers_the_review(layer, qgis_iface, context, log, request):
     # All tests of a process share the message bar.
     qgis_iface.messageBar().clearWidgets()
     styles.Styler("facades").postProcessLayer(layer, context, log)
@@ -354,8 +363,8 @@ def test_a_run_that_made_footprints_offers_the_review(layer, qgis_iface, context
     assert request.getfixturevalue("dock") is dock
 
 
-def test_a_map_that_was_updated_is_reviewed_by_what_changed(dock, layer, qgis_iface, context, log, monkeypatch):
-    monkeypatch.setattr(styles, "iface", qgis_iface)
+@pytest.mark.usefixtures("offers")
+def test_a_map_that_was_updated_is_reviewed_by_what_changed(dock, layer, qgis_iface, context, log):
     rows = [
         (square(0), ["unchanged", 0.5]),
         (square(20), ["changed", 0.9]),
@@ -406,6 +415,7 @@ def test_the_run_is_offered_again_with_the_decisions(dock, layer, monkeypatch, t
     assert not layer.isModified(), "the run reads what is stored"
 
 
+@pytest.mark.usefixtures("offers")
 def test_the_run_is_offered_again_with_its_own_parameters(
     dock, provider, qgis_iface, log, monkeypatch, town_file, tmp_path
 ):
@@ -413,7 +423,6 @@ def test_the_run_is_offered_again_with_its_own_parameters(
     offered, context = [], QgsProcessingContext()
     processing = SimpleNamespace(execAlgorithmDialog=lambda *given: offered.append(given))
     context.setProject(QgsProject.instance())
-    monkeypatch.setattr(styles, "iface", qgis_iface)
 
     def load(parameters):
         target = tmp_path / f"{len(offered)}.gpkg"
@@ -431,7 +440,6 @@ def test_the_run_is_offered_again_with_its_own_parameters(
     monkeypatch.setitem(sys.modules, "processing", processing)
     next(one for one in dock.actions() if one.text() == "Run again…").trigger()
     monkeypatch.undo()
-    monkeypatch.setattr(styles, "iface", qgis_iface)
     ((name, given),) = offered
     assert name == "lidarbuildings:extractfootprints"
     wanted = {"INPUT": str(town_file), "MIN_AREA": 6.5, "MERGE_TOUCHING": True, "REVIEWED": layer.id()}

@@ -13,7 +13,7 @@ from lidar_buildings.algorithms.buildings.roof_extent import (
 )
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.packages import ndimage
-from lidar_buildings.algorithms.segmentation.top_surface import TopSurface
+from lidar_buildings.algorithms.sampling.top_surface import TopSurface
 from lidar_buildings.tests.surfaces import box, mound, seen_from_above
 
 ROOF = (8.0, 8.0, 18.0, 16.0)

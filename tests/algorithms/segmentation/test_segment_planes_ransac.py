@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidar_buildings.algorithms.segmentation import voxel_planes
+from lidar_buildings.algorithms.planes import voxel_planes
 from lidar_buildings.algorithms.segmentation.segment_planes_ransac import segment_planes_ransac
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import EXACT_FAR

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms import threads
-from lidar_buildings.algorithms.segmentation import best_pairs, least_squares_planes, surface_growing
-from lidar_buildings.algorithms.segmentation import local_planes as local_planes_module
-from lidar_buildings.algorithms.segmentation.local_planes import Criteria, local_planes
+from lidar_buildings.algorithms.planes import best_pairs, least_squares_planes, surface_growing
+from lidar_buildings.algorithms.planes import local_planes as local_planes_module
+from lidar_buildings.algorithms.planes.local_planes import Criteria, local_planes
+from lidar_buildings.algorithms.planes.surface_growing import connected_seeds
 from lidar_buildings.algorithms.segmentation.segment_surfaces import segment_surfaces as stage
-from lidar_buildings.algorithms.segmentation.surface_growing import connected_seeds
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.monitors import Listening

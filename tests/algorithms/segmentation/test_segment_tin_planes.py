@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.segmentation.best_pairs import common_deviation, merge_best_pairs
-from lidar_buildings.algorithms.segmentation.least_squares_planes import planes_of
+from lidar_buildings.algorithms.planes.best_pairs import common_deviation, merge_best_pairs
+from lidar_buildings.algorithms.planes.least_squares_planes import planes_of
 from lidar_buildings.algorithms.segmentation.segment_tin_planes import segment_tin_planes as stage
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR

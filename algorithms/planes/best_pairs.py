@@ -15,6 +15,9 @@ from .least_squares_planes import Planes, off_planes
 # Pairs of a chunk: with 700 bytes each for numbers derived from their planes, it stays in the caches.
 _CHUNK = 20_000
 
+# An odd number whose bits are spread evenly (2^64 over the golden ratio): a product with it, of 64 bits, is a shuffle.
+_MIX = np.uint64(0x9E3779B97F4A7C15)
+
 # Costs of merging the planes of pairs (k,), inf where they must not; costs only depend on the two planes.
 Cost = Callable[[Planes, np.ndarray, np.ndarray], np.ndarray]
 
@@ -46,7 +49,8 @@ def merge_best_pairs(
     -----
     In a round every pair is merged that both of its planes prefer to all their others. The partition is as by a queue
     from which the most similar pair of all is taken each time. This holds if no merged plane is more similar to a third
-    one than both of its parts were. Of equal costs the pair with the lowest numbers is first.
+    one than both of its parts were. A fixed shuffle of all pairs orders equal costs: in the order of their numbers, one
+    pair of a row of equal planes would be merged in a round.
     """
     # The plane that each given plane has become, and the first one of the given planes in each.
     group, first = np.arange(len(planes)), np.arange(len(planes))
@@ -77,14 +81,20 @@ def merge_best_pairs(
 def _mutually_best(low: np.ndarray, high: np.ndarray, price: np.ndarray, first: np.ndarray, n: int) -> np.ndarray:
     """Return the positions of the pairs (k,) that are the best of both of their planes, of all ``n``.
 
-    Of equal prices (k,) the pair with the lowest numbers ``first`` (n,) counts.
+    Of equal prices (k,) a shuffle decides, of the numbers ``first`` (n,) of the planes.
     """
-    order = np.lexsort((np.maximum(first[low], first[high]), np.minimum(first[low], first[high]), price))
+    order = np.lexsort((_shuffled(first[low], first[high]), price))
     rank = placed(np.arange(len(order)), order, len(order))
     least = np.full(n, len(order))
     np.minimum.at(least, low, rank)
     np.minimum.at(least, high, rank)
     return np.flatnonzero((least[low] == rank) & (least[high] == rank))
+
+
+def _shuffled(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return a number (k,), uint64, of each pair of numbers (k,) below 2^32: others for other pairs, in no order."""
+    key = np.minimum(one, other).astype(np.uint64) << np.uint64(32) | np.maximum(one, other).astype(np.uint64)
+    return (key ^ key >> np.uint64(32)) * _MIX
 
 
 def _adjacent(one: np.ndarray, other: np.ndarray, price: np.ndarray, n: int) -> tuple:

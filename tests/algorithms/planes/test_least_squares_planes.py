@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.segmentation import least_squares_planes
-from lidar_buildings.algorithms.segmentation.least_squares_planes import planes_of
+from lidar_buildings.algorithms.planes import least_squares_planes
+from lidar_buildings.algorithms.planes.least_squares_planes import planes_of
 
 
 @pytest.fixture

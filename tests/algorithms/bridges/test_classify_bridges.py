@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.bridges.bridge_decks import Decks
+from lidar_buildings.algorithms.bridges.classify_bridges import classify_bridges, deck_sites
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
-from lidar_buildings.algorithms.segmentation.bridge_decks import Decks
-from lidar_buildings.algorithms.segmentation.classify_bridges import classify_bridges, deck_sites
 from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.algorithms.stage import Cancelled

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.segmentation.classify_ground_segments import classify_ground_segments
+from lidar_buildings.algorithms.bridges.classify_ground_segments import classify_ground_segments
 from lidar_buildings.algorithms.segmentation.segment_scan_lines import segment_scan_lines
 from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.tests.builders import FAR

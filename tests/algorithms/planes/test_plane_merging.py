@@ -3,8 +3,8 @@
 import numpy as np
 
 from lidar_buildings.algorithms.geometry.boxes import Boxes
-from lidar_buildings.algorithms.segmentation.least_squares_planes import Planes, planes_of
-from lidar_buildings.algorithms.segmentation.plane_merging import grown_planes
+from lidar_buildings.algorithms.planes.least_squares_planes import Planes, planes_of
+from lidar_buildings.algorithms.planes.plane_merging import grown_planes
 from lidar_buildings.algorithms.stage import Monitor
 
 

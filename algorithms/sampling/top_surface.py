@@ -8,7 +8,7 @@ from ..geometry.grid import distinct, fixed_grid_over, raster_cells, refuse_spar
 from ..geometry.groups import least_of, topmost
 from ..packages import ndimage
 from ..rules import rule, rules
-from ..sampling.closed_surface import CLOSED
+from .closed_surface import CLOSED
 
 
 @rules

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
-from lidar_buildings.algorithms.segmentation.top_surface import TopSurface, highest_of_cells
+from lidar_buildings.algorithms.sampling.top_surface import TopSurface, highest_of_cells
 from lidar_buildings.tests.builders import EXACT_FAR
 from lidar_buildings.tests.surfaces import box, seen_from_above
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.neighborhoods.covariance import Nearest
+from lidar_buildings.algorithms.planes import planar_patches as module
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
-from lidar_buildings.algorithms.segmentation import planar_patches as module
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.monitors import Listening

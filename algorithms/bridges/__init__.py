@@ -1,0 +1,1 @@
+"""Bridges, and the ground that segments show around them."""

@@ -1,0 +1,1 @@
+"""Planes in points: fits, growth, patches, and merging."""
