@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 from qgis.core import QgsProcessingContext, QgsProcessingFeedback
 
-from .crs import make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors, sentence_of
-from .settings import apply_options
+from .options import apply_options
+from .qgis_crs import make_in_main_thread, renew_in_main_thread
 
 
 class CheckedAlgorithm(DeclaredAlgorithm):

@@ -37,7 +37,6 @@ from ..algorithms.tiling.survey import Survey
 from .algorithm import CheckedAlgorithm
 from .caller import is_step
 from .clouds import cloud_path, files_read
-from .crs import WGS84
 from .crs_authority import crs_reader, text_of
 from .destinations import Made
 from .errors import as_processing_errors
@@ -68,12 +67,13 @@ from .inputs import (
     subject_of,
 )
 from .layer_outputs import write_layer
-from .memory import warn_if_memory_is_short
+from .memory_needs import warn_if_memory_is_short
 from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_clouds
-from .outputs import all_in_place, check_targets, write_for_qgis
 from .places import Place, place_of_cloud, place_of_layers
+from .qgis_crs import WGS84
 from .rasters import write_raster
 from .run_log import RunLog, about_run, write_page
+from .run_outputs import all_in_place, check_targets, write_for_qgis
 from .styles import cloud_style, layer_style, show_on_load
 from .text_files import write_text
 from .web import check_sizes, tell_sizes

@@ -23,12 +23,12 @@ from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_surv
 from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .algorithm import CheckedAlgorithm
 from .clouds import CloudsParameter, survey_paths
-from .crs import WGS84
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .given import Given
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
-from .outputs import target_path
+from .qgis_crs import WGS84
+from .run_outputs import target_path
 from .surveys import VPC, check_vpc, write_survey
 from .web import check_sizes
 

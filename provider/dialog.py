@@ -27,9 +27,9 @@ from ..algorithms.stage import DIMENSION
 from .clouds import cloud_path
 from .given import Given
 from .inputs import INPUT
+from .options import CODES, PRESET
 from .pickers import Picker, fill_with_classes, fill_with_names
 from .sections import Section, sections_of
-from .settings import CODES, PRESET
 
 try:
     from processing.gui.AlgorithmDialog import AlgorithmDialog

@@ -30,9 +30,9 @@ from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime
 
 from ..algorithms.cloud.files import read_extent
 from ..algorithms.stage import InputLayer, Layer, LayerFeatures, Monitor, as_column
-from .crs import crs_of, crs_of_layer
 from .given import Given
 from .places import Place, refuse_degrees
+from .qgis_crs import crs_of, crs_of_layer
 from .vectors import SOURCE_TYPES, WKB, fields_of, qgis_features
 
 # How many different vertices a ring, a line and a point have at least.

@@ -24,9 +24,9 @@ from ..algorithms.stage import Stage
 from ..algorithms.tiling.settings import READ_SETTINGS, Setting
 from .caller import is_step
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
-from .crs import crs_of
 from .given import Given
 from .parameters import is_given
+from .qgis_crs import crs_of
 from .styles import subject_of_file
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"

@@ -12,10 +12,10 @@ from qgis.core import (
 )
 
 from ..algorithms.stage import Layer, LayerFeatures, Monitor
-from .crs import crs_of
 from .given import Given
-from .outputs import target_path, through_memory
 from .places import Place
+from .qgis_crs import crs_of
+from .run_outputs import target_path, through_memory
 from .styles import layer_style, show_on_load, store_styles, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
 

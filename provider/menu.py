@@ -27,9 +27,9 @@ from .clouds import cloud_path, file_of_layer
 from .crs_authority import crs_reader
 from .given import Given
 from .inputs import EXTENT, INPUT, extent_box
+from .options import WEB_LIMIT
 from .paths import GROUP_ICONS, ICON, PLUGIN
 from .questions import is_answered_yes
-from .settings import WEB_LIMIT
 from .styles import WHEN_LOADED
 from .web import Size, agree_to, is_over_limit, size_on_web
 

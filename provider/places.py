@@ -11,7 +11,7 @@ from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 from ..algorithms.cloud.cloud import Cloud, origin_before
 from ..algorithms.cloud.crs import NO_CRS
 from ..algorithms.stage import InputLayer, Monitor
-from .crs import crs_of, crs_of_layer, meters_per_unit
+from .qgis_crs import crs_of, crs_of_layer, meters_per_unit
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from typing import Callable, Optional
 
 from qgis.core import Qgis, QgsApplication, QgsMessageLog, QgsProcessingRegistry
 
+from .options import add_options
 from .provider import Provider
-from .settings import add_options
 
 # Tab of the log messages.
 LOG = "LiDAR Buildings"

@@ -26,7 +26,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QMetaType
 
 from ..algorithms.buildings.reviewed_buildings import CHANGED, DELETED, REVIEW, REVIEWED_AT
-from .crs import meters_per_unit
+from .qgis_crs import meters_per_unit
 
 # Whether a building is marked as deleted.
 IS_DELETED = f"\"{REVIEW}\" = '{DELETED}'"

@@ -26,7 +26,7 @@ from ..algorithms.cloud.asprs import NOISE
 from ..algorithms.cloud.files import read_cloud
 from ..algorithms.report.building_views import draw_sections
 from .clouds import file_of_layer
-from .crs import crs_of_layer, meters_per_unit
+from .qgis_crs import crs_of_layer, meters_per_unit
 from .styles import Styler
 from .web import check_sizes
 

@@ -15,8 +15,8 @@ from ..algorithms.cloud.outputs import replacing
 from ..algorithms.report.page import Row, with_run
 from ..algorithms.report.run_facts import StepFacts, draw_facts, draw_steps
 from ..algorithms.stage import Stage, Tunable
-from .crs import crs_of
 from .paths import PLUGIN
+from .qgis_crs import crs_of
 
 
 class RunLog:

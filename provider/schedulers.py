@@ -9,9 +9,9 @@ import re
 
 from qgis.core import QgsApplication
 
-from .crs import is_main_thread
+from .options import GROUP, SCHEDULERS
+from .qgis_crs import is_main_thread
 from .questions import is_answered_yes
-from .settings import GROUP, SCHEDULERS
 
 # How addresses of schedulers are written: with nothing in them by which one could look like another.
 _ADDRESS = re.compile(r"(?:[a-z]+://)?[A-Za-z0-9._:\[\]%-]+/?")

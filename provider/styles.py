@@ -29,9 +29,9 @@ from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.copc_sidecar import copc_path
 from ..algorithms.cloud.outputs import LAS, LAZ, kind_of
 from ..algorithms.stage import Field, Layer, Raster, Stage
-from .crs import crs_of
 from .named_styles import add_named_styles, fit_ramp
 from .paths import STYLES
+from .qgis_crs import crs_of
 
 # Kinds of results from the bottom of the map to the top: QGIS would stack them by the names of their files.
 _DRAWN = ("Raster", "Cloud", "Polygon", "LineString", "Point")

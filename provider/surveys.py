@@ -14,8 +14,8 @@ from ..algorithms.cloud.outputs import kind_of, same_file
 from ..algorithms.cloud.vpc import write_vpc
 from ..algorithms.stage import Monitor
 from ..algorithms.tiling.survey import Survey
-from .crs import to_degrees
 from .places import Place, place_of_cloud
+from .qgis_crs import to_degrees
 
 # The output that is the virtual point cloud.
 VPC = "VPC"

@@ -11,11 +11,11 @@ from qgis.core import (
 
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.stage import FileContent, MapFrame, Monitor, TextFile
-from .crs import to_degrees
 from .given import Given
 from .inputs import with_help
 from .layer_outputs import BETWEEN_CHECKS
 from .places import Place
+from .qgis_crs import to_degrees
 
 
 def file_parameter(file: TextFile) -> QgsProcessingParameterFileDestination:

@@ -39,7 +39,6 @@ from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
 from .caller import is_step, on_command_line
 from .clouds import CloudsParameter, survey_paths
-from .crs import WGS84
 from .crs_authority import crs_reader
 from .destinations import Made
 from .errors import as_processing_errors
@@ -63,10 +62,11 @@ from .inputs import (
 from .layer_outputs import write_layer
 from .models import pipeline_parameters
 from .named_clouds import names_of_crs
-from .outputs import all_in_place, check_targets, target_path
 from .pipeline_algorithm import pipeline_tunables
+from .qgis_crs import WGS84
 from .rasters import write_mosaic
 from .run_log import about_run, parameter_rows, write_page
+from .run_outputs import all_in_place, check_targets, target_path
 from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, check_vpc, place_of_survey, write_survey

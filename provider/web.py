@@ -16,8 +16,8 @@ from ..algorithms.cloud.web_addresses import is_address
 from ..algorithms.cloud.web_file import WebFile
 from ..algorithms.cloud.web_requests import TIMEOUT, NoAnswerError, Reply, range_of_whole, use_transport
 from ..algorithms.stage import Monitor
-from .crs import is_main_thread
-from .settings import WEB_LIMIT
+from .options import WEB_LIMIT
+from .qgis_crs import is_main_thread
 
 # Milliseconds between two looks at whether the run was cancelled, and of work of the main thread while it waits.
 _LOOK, _WORK = 100, 20

@@ -41,7 +41,7 @@ SOURCES = [path for room in ("algorithms", "provider") for path in (Path(__file_
 # Algorithms of QGIS itself that sentences name.
 TITLES_OF_QGIS = {"Fix geometries", "Open in Model Designer"}
 # Options in QGIS's settings, without what is said in brackets.
-SETTINGS = Path(__file__).parent.parent / "provider" / "settings.py"
+SETTINGS = Path(__file__).parent.parent / "provider" / "options.py"
 OPTIONS = set(re.findall(r'Option\("\w+", "([^"(]+?)(?: \(|")', SETTINGS.read_text(encoding="utf-8")))
 
 CLASSIFYING = {"classify", "complete", "refine", "recode", "restore"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -204,6 +205,20 @@ def test_how_a_cloud_was_sampled_is_asked_of_its_sampling():
         if word in (ROOT / path).read_text(encoding="utf-8")
     }
     assert own == MEASURE_PARTS
+
+
+def test_names_are_unique():
+    """A module, or a class that other modules import, is the only one of its name: a search finds it at once."""
+    modules = Counter(Path(path).name for path in PLUGIN if not path.endswith("__init__.py"))
+    classes = Counter(
+        node.name
+        for path in PLUGIN
+        for node in ast.parse((ROOT / path).read_text(encoding="utf-8")).body
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+    )
+    repeated = {name for found in (modules, classes) for name, count in found.items() if count > 1}
+    # The rules of a module have one name in all modules.
+    assert repeated <= {"RULES"}
 
 
 def test_every_folder_is_a_room():

@@ -18,7 +18,7 @@ from ..sampling.kinds import LASER
 from ..segmentation.scan_line_pieces import NearPoints, ends_of, pieces_of_lines, slices
 from ..stage import Monitor
 from ..terrain.free_standing import FREE
-from ..terrain.on_decks import DECK as ON_DECK
+from ..terrain.on_decks import ON_DECK
 from ..threads import made_ahead
 
 

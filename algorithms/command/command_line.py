@@ -25,7 +25,7 @@ from ..report.page import with_coordinates
 from ..run import Results, run_pipeline
 from ..stage import InputLayer, Layer, LayerFeatures, MapFrame, Monitor, Raster, RasterSurface, TextFile
 from ..stages import STAGES, less_memory
-from .arguments import SHORT_NAMES, dashed, find_algorithm, parser_of
+from .command_arguments import SHORT_NAMES, dashed, find_algorithm, parser_of
 from .feature_files import check_format, read_layer, write_features
 
 # Exit codes: of what can't be done, and of what a user stopped (as shells have it: 128 + SIGINT).

@@ -92,7 +92,7 @@ class Opening:
         return self.box[1] - self.box[0]
 
 
-class Raster:
+class WallRaster:
     """Cells of a ``size`` (m) on a facade, and which hold positions (n, 2), m, of points of the wall and behind it."""
 
     def __init__(self, wall: np.ndarray, behind: np.ndarray, size: float) -> None:
@@ -152,7 +152,7 @@ def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: 
     if not is_wall.any() or not is_behind.any():
         return []
     wall, behind, own = local[is_wall, :2], local[is_behind], rows[is_behind]
-    raster = Raster(wall, behind[:, :2], max(_CELL_SPACINGS * facade.spacing, _LEAST_CELL))
+    raster = WallRaster(wall, behind[:, :2], max(_CELL_SPACINGS * facade.spacing, _LEAST_CELL))
     label, count = raster.groups()
     group = _joined(behind[:, :2], label[raster.cell(behind[:, :2])], count)
     approach = Approach(wall, local[(distance > max(FROM_WALL, off_wall)) & (distance <= BEFORE), :2])
@@ -183,7 +183,7 @@ def _joined(positions: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
 
 def _opening(
     facade: Facade,
-    raster: Raster,
+    raster: WallRaster,
     wall: np.ndarray,
     behind: np.ndarray,
     points: np.ndarray,
@@ -260,7 +260,7 @@ def _shape(box: np.ndarray, positions: np.ndarray, spacing: float) -> tuple[np.n
     return (ring, share) if len(ring) > 3 else (rectangle, 1.0)
 
 
-def _enclosure(raster: Raster, ring: np.ndarray, sill: Optional[float]) -> float:
+def _enclosure(raster: WallRaster, ring: np.ndarray, sill: Optional[float]) -> float:
     """Return the share of a ring with wall within half the reach and a cell; a door's ``sill`` (m) does not count."""
     steps = np.diff(ring, axis=0)
     length = np.linalg.norm(steps, axis=1)

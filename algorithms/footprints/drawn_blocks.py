@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..geometry.cell_polygons import cell_polygons, connected_cells
+from ..geometry.cell_polygons import cell_polygons, joined_cells
 from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.groups import mask_of
 from ..geometry.ring_directions import along_two_directions
@@ -19,7 +19,7 @@ from ..geometry.rings import sides_of_rings
 from ..geometry.subdivision import Subdivision
 from ..packages import ndimage
 from ..threads import ROWS_AT_ONCE
-from .outline_pieces import Piece
+from .outline_pieces import OutlinePiece
 from .row_houses import Houses
 from .soft_shares import Lattice, Shares, spread_out
 
@@ -47,7 +47,7 @@ class Outlined:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class BlockDrawing:
     """How outlines are drawn: spacing of points, scale of simplification (m), least areas (m²), whole blocks or not.
 
     ``finer`` are the shares of the scale, 0 to 1, at which some buildings are drawn, by their numbers.
@@ -66,17 +66,17 @@ class Drawing:
 
 
 def draw_block(
-    pieces: list[Piece],
+    pieces: list[OutlinePiece],
     shares: dict[int, Shares],
     directions: dict[int, np.ndarray],
     houses: dict[int, Houses],
-    how: Drawing,
+    how: BlockDrawing,
 ) -> list[Outlined]:
     """Return the outlines of a block of buildings.
 
     Parameters
     ----------
-    pieces : list of Piece
+    pieces : list of OutlinePiece
         What lies close together.
     shares : dict of int to Shares
         Of each of their buildings.
@@ -84,7 +84,7 @@ def draw_block(
         Main directions, °, of each of their buildings.
     houses : dict of int to Houses
         Houses of those buildings that are rows.
-    how : Drawing
+    how : BlockDrawing
         Spacing, scale of simplification and least areas.
     """
     drawn = [(ring, directions[piece.building], how.prices(piece.building)) for piece in pieces for ring in piece.rings]
@@ -150,7 +150,7 @@ def _nodes_of(cells: Subdivision, lattice: Lattice) -> list[np.ndarray]:
 
 
 def _shares_of(
-    pieces: list[Piece], numbers: list[int], shares: dict[int, Shares], edges: list[Edge], how: Drawing
+    pieces: list[OutlinePiece], numbers: list[int], shares: dict[int, Shares], edges: list[Edge], how: BlockDrawing
 ) -> tuple[Lattice, np.ndarray]:
     """Return the lattice of a block, and the shares (1 + buildings, rows, columns) of the ground and of each building.
 
@@ -207,7 +207,7 @@ def _costs(cells: Subdivision, share: np.ndarray, lattice: Lattice) -> np.ndarra
     return cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)
 
 
-def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: Drawing) -> np.ndarray:
+def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: BlockDrawing) -> np.ndarray:
     """Return the label of each cell, 0 the ground: those that cost least with the borders between them."""
     pairs, sides = cells.edges()
     vertices = np.array(cells.vertices)
@@ -239,10 +239,10 @@ def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndar
     return is_drawn
 
 
-def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.ndarray:
+def _without_scraps(cells: Subdivision, label: np.ndarray, how: BlockDrawing) -> np.ndarray:
     """Return the labels with too small holes and polygons given to their surroundings."""
     for is_ground, least in ((True, how.min_hole_area), (False, how.min_area)):
-        piece = connected_cells(cells, label)
+        piece = joined_cells(cells, label)
         size = np.bincount(piece, cells.areas())
         is_open = mask_of(len(size), piece[cells.is_on_rim()])
         pairs, sides = cells.edges()

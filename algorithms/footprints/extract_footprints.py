@@ -19,9 +19,9 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Layer, LayerFeatures, Monitor, stage, tunable
 from ..threads import made_ahead
-from .drawn_blocks import Drawing, draw_block
+from .drawn_blocks import BlockDrawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
-from .outline_pieces import Piece, blocks_of, find_pieces, shared_directions
+from .outline_pieces import OutlinePiece, blocks_of, find_pieces, shared_directions
 from .roof_points import edge_weights, find_non_building_points, find_roof_points
 from .row_houses import ROWS, Houses, split_row
 from .soft_shares import APART, LEAST_SPACING, Shares, even_weights, find_shares
@@ -183,7 +183,7 @@ def extract_footprints(
     if tolerance is None:
         tolerance = _TOLERANCE_SPACINGS * spacing
         monitor.resolved(tolerance=tolerance)
-    how = Drawing(spacing, tolerance / _TOLERANCE_SPACINGS, min_area, min_hole_area, merge_touching)
+    how = BlockDrawing(spacing, tolerance / _TOLERANCE_SPACINGS, min_area, min_hole_area, merge_touching)
     measures = PointMeasures(
         xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason, weakest_evidence
     )
@@ -234,7 +234,7 @@ class _Evidence:
     """Shares and pieces of the buildings of a part, and the rings of each building."""
 
     shares: dict[int, Shares]
-    pieces: list[Piece]
+    pieces: list[OutlinePiece]
     rings: dict[int, list[np.ndarray]]
 
 
@@ -302,7 +302,7 @@ def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list
     return list(zip(split_groups(own, count), rows_beside))
 
 
-def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidence:
+def _evidence_of(part: _Part, measures: PointMeasures, how: BlockDrawing) -> _Evidence:
     """Return the shares, pieces and rings of the buildings of a part."""
     roof, beside = measures.local(part.roof), measures.plan(part.beside)
     walls = np.setdiff1d(part.members, part.roof)
@@ -327,7 +327,7 @@ def _directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]:
 
 
 def _houses(
-    part: _Part, evidence: _Evidence, directions: dict[int, np.ndarray], measures: PointMeasures, how: Drawing
+    part: _Part, evidence: _Evidence, directions: dict[int, np.ndarray], measures: PointMeasures, how: BlockDrawing
 ) -> dict[int, Houses]:
     """Return the houses of each building of a part, {} where touching buildings are merged."""
     if how.is_merged:

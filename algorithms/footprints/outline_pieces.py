@@ -31,7 +31,7 @@ _INFLUENCE = 0.5
 
 
 @dataclass(frozen=True)
-class Piece:
+class OutlinePiece:
     """A connected part of a building."""
 
     building: int  #: Its number
@@ -39,7 +39,9 @@ class Piece:
     rings: list[np.ndarray]
 
 
-def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float) -> list[Piece]:
+def find_pieces(
+    building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float
+) -> list[OutlinePiece]:
     """Return the pieces of a building that may reach ``min_area`` (m²), with their holes of ``min_hole_area`` (m²).
 
     Parameters
@@ -63,11 +65,11 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
         # A ring is rounded at corners; whether a small building is large enough is decided on its polygon.
         if size >= min_area / 2:
             own = [hole for hole in holes if is_inside(hole[0], ring)]
-            pieces.append(Piece(building, [sampled(one, spacing) for one in [ring, *own]]))
+            pieces.append(OutlinePiece(building, [sampled(one, spacing) for one in [ring, *own]]))
     return pieces
 
 
-def pieces_alone(roof: np.ndarray, spacing: float, least_area: float) -> tuple[Shares, list[Piece], np.ndarray]:
+def pieces_alone(roof: np.ndarray, spacing: float, least_area: float) -> tuple[Shares, list[OutlinePiece], np.ndarray]:
     """Return the shares, the pieces and the main directions (k,), °, of one building with the roof points (n, 2), m.
 
     ``least_area`` (m²) is the least area of its pieces and holes.
@@ -89,7 +91,7 @@ def sampled(ring: np.ndarray, step: float) -> np.ndarray:
     return np.column_stack([np.interp(wanted, along, ring[:, axis]) for axis in (0, 1)])
 
 
-def blocks_of(pieces: list[Piece], spacing: float) -> list[list[Piece]]:
+def blocks_of(pieces: list[OutlinePiece], spacing: float) -> list[list[OutlinePiece]]:
     """Return the pieces in blocks that lie apart."""
     if not pieces:
         return []

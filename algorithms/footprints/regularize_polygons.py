@@ -14,8 +14,8 @@ from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.ring_directions import deviations
 from ..geometry.rings import perimeter, polygon_area, sampled_rings, sides_of_rings
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable
-from .drawn_blocks import Drawing, draw_block
-from .outline_pieces import Piece, blocks_of, sampled, shared_directions
+from .drawn_blocks import BlockDrawing, draw_block
+from .outline_pieces import OutlinePiece, blocks_of, sampled, shared_directions
 from .soft_shares import LEAST_SPACING, Lattice, Shares
 
 # Tolerance (scales) and distance of samples (scales): stairs of a raster are as high as its cells, and each sample is
@@ -178,7 +178,7 @@ def _drawn(polygons: list, scale: float, monitor: Monitor) -> list:
     samples = [[sampled(ring, step) for ring in rings] for rings in polygons]
     for layer in _layers(samples):
         directions = dict(zip(layer, shared_directions([samples[row] for row in layer])))
-        for block in blocks_of([Piece(row, samples[row]) for row in layer], step):
+        for block in blocks_of([OutlinePiece(row, samples[row]) for row in layer], step):
             rows = [piece.building for piece in block]
             part = monitor.part(done / len(polygons), (done + len(rows)) / len(polygons))
             for row, rings in zip(rows, _block({row: polygons[row] for row in rows}, directions, scale, part)):
@@ -223,9 +223,9 @@ def _tried(
 ) -> tuple[list, list[int]]:
     """Return polygons of a block drawn at shares of a scale (m), and the numbers of those that are not sound."""
     spacing, own = _SAMPLE_SCALES * scale, list(polygons.items())
-    pieces = [Piece(number, [sampled(ring, spacing * finer[number]) for ring in rings]) for number, rings in own]
+    pieces = [OutlinePiece(number, [sampled(ring, spacing * finer[number]) for ring in rings]) for number, rings in own]
     shares = {number: _shares(rings, spacing) for number, rings in own}
-    how = Drawing(spacing, scale, scale**2, scale**2, finer=finer)
+    how = BlockDrawing(spacing, scale, scale**2, scale**2, finer=finer)
     outlined = sorted(draw_block(pieces, shares, directions, {}, how), key=lambda one: polygon_area(one.rings))
     # Of parts of one polygon the last one stays, the largest.
     found = {one.building: one.rings for one in outlined}

@@ -37,7 +37,7 @@ def cell_polygons(cells: Subdivision, label: np.ndarray) -> list[CellPolygon]:
     list of CellPolygon
         By their first cells. They are valid, do not overlap, and share their borders vertex by vertex.
     """
-    piece = connected_cells(cells, label)
+    piece = joined_cells(cells, label)
     borders = _borders(cells, piece, label)
     corners = _corners(borders, cells.vertices)
     rings: dict[int, list[np.ndarray]] = {}
@@ -58,7 +58,7 @@ def _from_south_west(ring: np.ndarray) -> np.ndarray:
     return np.concatenate([ring[first:], ring[: first + 1]])
 
 
-def connected_cells(cells: Subdivision, label: np.ndarray) -> np.ndarray:
+def joined_cells(cells: Subdivision, label: np.ndarray) -> np.ndarray:
     """Return the number (cells,) of the piece that each cell is in: cells of one label that share edges."""
     _, sides = cells.edges()
     same = sides[label[sides[:, 0]] == label[sides[:, 1]]]

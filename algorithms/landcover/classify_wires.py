@@ -12,7 +12,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, stage, tunable
 from .masts import on_masts
 from .wire_candidates import over_free_space, strands, thinned
-from .wire_spans import RULES, Span, Surroundings, parallels_of, spans_of
+from .wire_spans import RULES, Span, SpanSurroundings, parallels_of, spans_of
 
 # Points of these classes may be of wires and masts.
 _OPEN = (
@@ -113,7 +113,7 @@ def classify_wires(
     rows = rows[np.lexsort(xyz[rows].T)]
     points, height = sampling.from_corner(xyz[rows]), height_above_ground[rows]
     solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
-    around = Surroundings(points, solid, max(RULES.least_off, RULES.noises * noise))
+    around = SpanSurroundings(points, solid, max(RULES.least_off, RULES.noises * noise))
     spans = _spans(points, height, around, min_height, sampling.spacing, seed, monitor)
     # Wires next to these are seen in part only, so that their ends show no masts.
     for span in (*spans, *parallels_of(spans, around)):
@@ -126,7 +126,7 @@ def classify_wires(
 def _spans(
     points: np.ndarray,
     height: np.ndarray,
-    around: Surroundings,
+    around: SpanSurroundings,
     min_height: float,
     spacing: float,
     seed: int,

@@ -79,7 +79,7 @@ class Span:
         return np.append(self.middle + along * self.direction, np.polyval(self.curve, along))
 
 
-class Surroundings:
+class SpanSurroundings:
     """All points that are high enough to be of a wire, and points of buildings, to examine the surroundings of a span.
 
     Parameters
@@ -201,7 +201,7 @@ def spans_of(
     xyz: np.ndarray,
     strand: np.ndarray,
     direction: np.ndarray,
-    around: Surroundings,
+    around: SpanSurroundings,
     reach: float,
     rng: np.random.Generator,
 ) -> Iterator[Span]:
@@ -215,7 +215,7 @@ def spans_of(
         The line that each is on, -1 for none.
     direction : ndarray of shape (n, 3)
         Direction of the line at each point, 1 m long in plan.
-    around : Surroundings
+    around : SpanSurroundings
         All points.
     reach : float
         Largest gap in a span, m.
@@ -237,7 +237,7 @@ def spans_of(
             remaining = np.delete(remaining, chosen)
 
 
-def parallels_of(spans: list[Span], around: Surroundings) -> list[Span]:
+def parallels_of(spans: list[Span], around: SpanSurroundings) -> list[Span]:
     """Return the wires next to spans, without these."""
     is_taken = np.zeros(len(around.xyz), bool)
     for span in spans:

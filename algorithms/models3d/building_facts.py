@@ -14,7 +14,7 @@ from ..rules import rules
 from ..stage import Field, LayerFeatures
 from .building_models import FINE, OVERHANGS, BuildingModel
 from .mending import LARGE
-from .roof_points import OFF
+from .roof_limits import OFF
 from .solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL, Solid
 
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.

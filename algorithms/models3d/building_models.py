@@ -13,9 +13,9 @@ from ..geometry.line_segments import distances_to_rings
 from ..sampling.points_on_top import are_on_roof, distances, root_mean_square
 from .mending import LARGE, mended
 from .overhangs import overhanging, wall_rings
+from .roof_limits import HeightsAround, share_off
 from .roof_partition import FARTHEST, Partition, covered_share, divide_footprint, empty_partition
 from .roof_planes import RoofPlanes, find_roof_planes, selected_planes, with_level_patches
-from .roof_points import HeightsAround, share_off
 from .solids import Solid
 
 # Levels of detail, from the simplest. The one without dormers takes as long as the finest, so it is made only where it

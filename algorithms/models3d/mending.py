@@ -8,9 +8,9 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.groups import components, mask_of
+from .roof_limits import RADIUS, HeightsAround
 from .roof_partition import FARTHEST, Partition
 from .roof_planes import planes_through
-from .roof_points import RADIUS, HeightsAround
 from .solid_faces import build_solid
 from .solid_faults import faults_of
 from .solid_levels import Levels, turns_around

@@ -23,7 +23,7 @@ from .building_facts import (
     faces_of,
 )
 from .reconstruct_roofs import reconstruct_roofs
-from .set_openings import DOOR, WINDOW, Opening, with_openings
+from .set_openings import DOOR, WINDOW, WallOpening, with_openings
 from .solid_faults import fault_of
 from .solids import WALL, Solid
 
@@ -164,17 +164,17 @@ def reconstruct_block(
     return buildings, _walls(pierced, segments), roofs, _opening_layer(done), pierced
 
 
-def _openings(features: LayerFeatures) -> list[Opening]:
+def _openings(features: LayerFeatures) -> list[WallOpening]:
     """Return windows and doors; what no attribute calls a door is a window. Polygons without heights are left out."""
     kinds = features.columns.get("kind", [WINDOW] * len(features))
     return [
-        Opening(number, DOOR if kind == DOOR else WINDOW, np.asarray(rings[0], float)[:-1])
+        WallOpening(number, DOOR if kind == DOOR else WINDOW, np.asarray(rings[0], float)[:-1])
         for number, (rings, kind) in enumerate(zip(features.geometries, kinds), start=1)
         if np.asarray(rings[0]).shape[1] == 3
     ]
 
 
-def _pierced(models: list[NamedModel], openings: list[Opening]) -> tuple[list[NamedModel], list[tuple]]:
+def _pierced(models: list[NamedModel], openings: list[WallOpening]) -> tuple[list[NamedModel], list[tuple]]:
     """Return the models with a level of detail that has openings, and each opening that was set with its model."""
     pierced, done, left = [], [], openings
     for one in models:

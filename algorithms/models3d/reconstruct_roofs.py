@@ -41,7 +41,7 @@ from .building_facts import (
 )
 from .building_models import LEVELS, Settings, model_building
 from .joined_terrain import PATCH, TERRAIN_FIELDS, on_terrain, terrain_layer, triangulate_terrain
-from .roof_points import RADIUS
+from .roof_limits import RADIUS
 from .solids import ROOF, SOFFIT, WALL
 
 # Number of footprints without a model that a warning names.

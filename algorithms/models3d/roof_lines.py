@@ -41,7 +41,7 @@ _PREFERENCE = 1.15
 
 
 @dataclass(frozen=True)
-class Piece:
+class LinePiece:
     """A piece of a line in plan: its ends (m), and its weight, the number of its contacts."""
 
     start: np.ndarray
@@ -49,7 +49,7 @@ class Piece:
     weight: float
 
 
-def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: float) -> list[Piece]:
+def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: float) -> list[LinePiece]:
     """Return where planes intersect and where they step, in the order in which they are to cut.
 
     Parameters
@@ -65,7 +65,7 @@ def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: f
 
     Returns
     -------
-    list of Piece
+    list of LinePiece
         Intersections first, heaviest first; without those that lie on a heavier one.
     """
     member = np.flatnonzero(planes.label >= 0)
@@ -126,7 +126,7 @@ class _Border:
         limit = max(_AT_LINE, _AT_LINE_SPACINGS * spacing)
         self.at_line = step <= limit * self.turn if self.turn > _LEAST_TURN else np.zeros(len(positions), bool)
 
-    def intersection(self) -> list[Piece]:
+    def intersection(self) -> list[LinePiece]:
         """Return the piece of the line in which the planes intersect, if they meet there."""
         if self.at_line.sum() < _LEAST_CONTACTS:
             return []
@@ -134,12 +134,12 @@ class _Border:
         position = -normal * self.difference[2] / self.turn
         return [self._piece(position, np.array([-normal[1], normal[0]]), self.positions[self.at_line])]
 
-    def steps(self, main: np.ndarray) -> list[Piece]:
+    def steps(self, main: np.ndarray) -> list[LinePiece]:
         """Return lines along the contacts where one plane is above the other."""
         remaining = self.positions[~self.at_line]
         directions, weight = self._directions(main)
         normals = np.column_stack([-directions[:, 1], directions[:, 0]])
-        found: list[Piece] = []
+        found: list[LinePiece] = []
         # Width (m) of the strip whose contacts are of one step.
         width = max(0.3, self.spacing)
         while len(remaining) >= _LEAST_CONTACTS:
@@ -189,14 +189,14 @@ class _Border:
         found = np.concatenate([preferred, np.column_stack([np.cos(fan), np.sin(fan)])])
         return found, np.repeat([_PREFERENCE, 1.0], [len(preferred), len(fan)])
 
-    def _piece(self, position: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> Piece:
+    def _piece(self, position: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> LinePiece:
         along = (contacts - position) @ direction
         beyond = max(_BEYOND, _BEYOND_SPACINGS * self.spacing)
         low, high = along.min() - beyond, along.max() + beyond
-        return Piece(position + low * direction, position + high * direction, float(len(contacts)))
+        return LinePiece(position + low * direction, position + high * direction, float(len(contacts)))
 
 
-def _without_doubles(pieces: list[Piece]) -> list[Piece]:
+def _without_doubles(pieces: list[LinePiece]) -> list[LinePiece]:
     """Return the pieces but those that an earlier one covers."""
     if not pieces:
         return []

@@ -27,7 +27,7 @@ _KEPT = 0.5
 
 
 @dataclass(frozen=True)
-class Opening:
+class WallOpening:
     """A window or door: number, kind and open ring (m, 3), counterclockwise seen from outside, m."""
 
     number: int
@@ -35,7 +35,7 @@ class Opening:
     ring: np.ndarray
 
 
-def with_openings(solid: Solid, openings: list[Opening]) -> tuple[Solid, list[Opening]]:
+def with_openings(solid: Solid, openings: list[WallOpening]) -> tuple[Solid, list[WallOpening]]:
     """Return a solid with the openings that lie in its walls as faces, and those openings as they were set.
 
     A wall gets a hole for each, which the face of the opening closes: the solid stays closed. ``planes`` of these faces
@@ -57,7 +57,7 @@ def with_openings(solid: Solid, openings: list[Opening]) -> tuple[Solid, list[Op
         faces.append([numbers])
         kinds.append(opening.kind)
         planes.append(opening.number)
-        done.append(Opening(opening.number, opening.kind, ring))
+        done.append(WallOpening(opening.number, opening.kind, ring))
     return Solid(np.array(vertices), faces, kinds, planes), done
 
 
@@ -75,7 +75,7 @@ class _Wall:
         return self.frame.local(positions)[:, :2]
 
 
-def _best_wall(walls: list[_Wall], opening: Opening) -> tuple:
+def _best_wall(walls: list[_Wall], opening: WallOpening) -> tuple:
     """Return the nearest wall that an opening can be set into, and its open ring (m, 2) there; None without any."""
     normal = area_vector(opening.ring)
     normal /= np.linalg.norm(normal)

@@ -61,7 +61,7 @@ class Points:
 
 
 @dataclass(frozen=True)
-class Evidence:
+class CylinderEvidence:
     """Noise, tolerance and spacing (m) of the points among which cylinders are looked for, and all these points."""
 
     noise: float

@@ -11,7 +11,7 @@ import numpy as np
 from ..neighborhoods.covariance import symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
-from .cylinder_evidence import FACING, MOST_LOOKED_AT, Evidence, Points
+from .cylinder_evidence import FACING, MOST_LOOKED_AT, CylinderEvidence, Points
 from .cylinder_fits import Cylinder, across_axis, fit_cylinder, upward
 from .hough_planes import PlaneDirections
 from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
@@ -111,7 +111,7 @@ class CylinderSearch:
         Points (m), sorted by elevation, and their unit normals; zero if undefined.
     shift : ndarray of shape (n,)
         How far (m) each was moved along x from where it lies in ``evidence.positions``.
-    evidence : Evidence
+    evidence : CylinderEvidence
         Noise, tolerance and spacing, and the criteria of a cylinder's points.
     min_seen : float
         Least share of the circumference with points.
@@ -124,7 +124,7 @@ class CylinderSearch:
         xyz: np.ndarray,
         normals: np.ndarray,
         shift: np.ndarray,
-        evidence: Evidence,
+        evidence: CylinderEvidence,
         min_seen: float,
         min_points: int,
     ) -> None:

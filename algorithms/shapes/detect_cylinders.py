@@ -8,7 +8,7 @@ import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_evidence import Evidence
+from .cylinder_evidence import CylinderEvidence
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
 from .joined_cylinders import joined, without_nested
 from .joined_pieces import whole_axis
@@ -131,7 +131,7 @@ def detect_cylinders(
     def search(measured: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[Found]:
         # Segments are searched apart; the surroundings of a cylinder, and other pieces of it, lie in several.
         positions = measured.xyz - np.column_stack([measured.shift, np.zeros((len(measured.shift), 2))])
-        evidence = Evidence(measured.noise, measured.tolerance, measured.spacing, positions)
+        evidence = CylinderEvidence(measured.noise, measured.tolerance, measured.spacing, positions)
         search = CylinderSearch(measured.xyz, measured.normals, measured.shift, evidence, min_seen, min_points)
         apart = [one.moved(-measured.shift[one.points[0]]) for one in search.find(low, high, monitor)]
         apart = without_nested(apart)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from .bodies import SolidArrays, dot, stack
 from .pairs import rank
 from .relief import Relief
 from .scene import Scene
-from .solids import SolidArrays, dot, stack
 
 # A wire this near (m) to the middle of the beam is in the beam, which is 0.2 m wide.
 _WIRE_REACH = 0.1

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from .bodies import Body, Rect, flat, inclined
 from .relief import Relief
 from .scene import Scene
-from .solids import Rect, Solid, flat, inclined
 
 # Side of a lot (m): the ramps of a fly-over are 46 m long on both sides of its span.
 LOT = 140.0
@@ -264,11 +264,11 @@ def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
         at += width + 1.5
         number = scene.new_id()
         deck_top = _deck_top(rect, top, obstacle.arch)
-        scene.solids.append(Solid(rect, deck_top, top - _THICKNESS, PointClass.BRIDGE_DECK, number))
+        scene.solids.append(Body(rect, deck_top, top - _THICKNESS, PointClass.BRIDGE_DECK, number))
         for side in (-1, 1):
             rail = rect.part(0.0, side * (width - _PARAPET_WIDTH) / 2, rect.length, _PARAPET_WIDTH)
             tops = _deck_top(rail, top + _PARAPET, obstacle.arch)
-            scene.solids.append(Solid(rail, tops, top - _THICKNESS, PointClass.UNCLASSIFIED, number))
+            scene.solids.append(Body(rail, tops, top - _THICKNESS, PointClass.UNCLASSIFIED, number))
         if rect.length > 40:
             for share in (-0.2, 0.2):
                 pier = rect.part(share * rect.length, 0.0, 1.2, width - 2.0)

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..stage import Monitor, tunable
 from .beams import Beams, Echoes, World, join
+from .bodies import dot
 from .pairs import in_boxes
 from .scanner import brightness
 from .scene import Scene
-from .solids import dot
 from .street_site import SIZE
 
 LINE_RATE = tunable(40.0, "Scan lines of each scanner.", within="[1, 500] 1/s", advanced=True)
@@ -112,7 +112,7 @@ class Flight:
         self, scene: Scene, scanners: tuple[str, ...], scan: LineScan, monitor: Monitor
     ) -> dict[str, np.ndarray]:
         """Return the dimensions of a scene scanned by some of the scanners, by name, in the order of time."""
-        world, parts = Surroundings(scene, scan.max_range), []
+        world, parts = DroneWorld(scene, scan.max_range), []
         blocks = [(name, time) for name in scanners for time in self._blocks(scan)]
         generators = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
         for i, (name, time) in enumerate(blocks):
@@ -166,7 +166,7 @@ def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flig
     return Flight(foot, height - _STANDING, duration, phases)
 
 
-class Surroundings(World):
+class DroneWorld(World):
     """Surroundings of a drone: beams go in all directions, and the ground is a plane."""
 
     def __init__(self, scene: Scene, reach: float) -> None:
@@ -231,7 +231,7 @@ def pulses_per_line(angular_step: float) -> int:
     return int(FIELD / angular_step + 1e-9) + 1
 
 
-def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:
+def first_met(world: DroneWorld, beams: Beams, rng: np.random.Generator) -> Echoes:
     """Return the first hit of each beam that meets anything within reach, in the order of the beams."""
     ends = world.surfaces(beams, *world.met("solids", beams))
     leaves = world.leaves(beams, *world.met("crowns", beams), rng)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from .bodies import Body, Rect, flat
 from .scene import Scene
-from .solids import Rect, Solid, flat
 from .town_houses import Site
 from .town_layout import CAR, TownPlan, build_town, park_car
 
@@ -100,7 +100,7 @@ def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
     scene.add_building("hall", rect.corners(), [site.solid(rect, flat(rect, site.eave)), *_parapets(site, rect)])
 
 
-def _parapets(site: Site, rect: Rect) -> list[Solid]:
+def _parapets(site: Site, rect: Rect) -> list[Body]:
     along, across = (rect.length - _PARAPET_WIDTH) / 2, (rect.width - _PARAPET_WIDTH) / 2
     parts = [rect.part(side * along, 0.0, _PARAPET_WIDTH, rect.width) for side in (-1, 1)]
     parts += [rect.part(0.0, side * across, rect.length, _PARAPET_WIDTH) for side in (-1, 1)]

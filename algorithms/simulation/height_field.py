@@ -9,8 +9,8 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..packages import ndimage
 from .beams import vegetation_class
+from .bodies import Body
 from .scene import Scene
-from .solids import Solid
 
 # Side of a cell, m: finer than the points of a drone's cloud lie apart.
 CELL = 0.1
@@ -96,7 +96,7 @@ def _raise_cells(field: HeightField, where: tuple, higher: np.ndarray, z: np.nda
     field.object_id[where][higher] = number
 
 
-def _add_solid(field: HeightField, solid: Solid) -> None:
+def _add_solid(field: HeightField, solid: Body) -> None:
     corners = solid.rect.corners()
     where, x, y = _window(field, corners.min(axis=0), corners.max(axis=0))
     z = solid.top(x, y)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .plant_parts import Part, beam, cylinder, disk, elbow, grating, heap, plate, sphere
+from .plant_parts import PlantPart, beam, cylinder, disk, elbow, grating, heap, plate, sphere
 
 # Distance between the middles of bays (m): a rack and an aisle.
 PITCH = 10.0
@@ -46,7 +46,7 @@ _UP = np.array([0.0, 0.0, 1.0])
 class Plant:
     """Parts, and the stations of the scanner, positions (3,), m."""
 
-    parts: list[Part] = field(default_factory=list)
+    parts: list[PlantPart] = field(default_factory=list)
     stations: list[np.ndarray] = field(default_factory=list)
 
 
@@ -179,6 +179,6 @@ def _spheres(plant: Plant, count: int, east: float, rng: np.random.Generator) ->
         plant.stations += [center + np.array([x, y, 1.7 - center[2]]) for x, y in ((-4.0, -3.0), (3.0, 3.0))]
 
 
-def _floor(west: float, east: float, depth: float) -> Part:
+def _floor(west: float, east: float, depth: float) -> PlantPart:
     corner, along = np.array([west, -2.0, 0.0]), np.array([east - west, 0.0, 0.0])
     return plate("floor", corner, along, np.array([0.0, depth + 4.0, 0.0]))

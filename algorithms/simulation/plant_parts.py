@@ -21,7 +21,7 @@ _BAR = (0.03, 0.004)
 
 
 @dataclass(frozen=True)
-class Part:
+class PlantPart:
     """One surface of a plant."""
 
     kind: str  #: "pipe", "tank", "sphere", "elbow", "flange", "beam", "grating", "roof", "floor" or "clutter"
@@ -34,7 +34,7 @@ class Part:
     radius: float = 0.0  #: Radius of a pipe, tank or sphere (m), otherwise 0
 
 
-def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Part:
+def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> PlantPart:
     """Return the side of a cylinder between two positions (3,), m.
 
     Parameters
@@ -57,10 +57,10 @@ def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Pa
 
     shape = Shape.NONE if kind == "flange" else Shape.CYLINDER
     ends = np.array([start, end])
-    return Part(kind, shape, 2 * np.pi * radius * length, ends.mean(axis=0), sample, ends, radius)
+    return PlantPart(kind, shape, 2 * np.pi * radius * length, ends.mean(axis=0), sample, ends, radius)
 
 
-def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer: float) -> Part:
+def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer: float) -> PlantPart:
     """Return a ring or disk across a normal (3,), between two radii (m).
 
     Parameters
@@ -83,10 +83,10 @@ def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer:
         return positions, np.broadcast_to(normal, positions.shape)
 
     shape = Shape.PLANE if kind == "roof" else Shape.NONE
-    return Part(kind, shape, float(np.pi * (outer**2 - inner**2)), center, sample)
+    return PlantPart(kind, shape, float(np.pi * (outer**2 - inner**2)), center, sample)
 
 
-def sphere(center: np.ndarray, radius: float) -> Part:
+def sphere(center: np.ndarray, radius: float) -> PlantPart:
     """Return a sphere around a center (3,), m, of a radius (m)."""
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -94,10 +94,10 @@ def sphere(center: np.ndarray, radius: float) -> Part:
         away /= np.linalg.norm(away, axis=1)[:, None]
         return center + radius * away, away
 
-    return Part("sphere", Shape.SPHERE, 4 * np.pi * radius**2, center, sample, np.array([center, center]), radius)
+    return PlantPart("sphere", Shape.SPHERE, 4 * np.pi * radius**2, center, sample, np.array([center, center]), radius)
 
 
-def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float, radius: float) -> Part:
+def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float, radius: float) -> PlantPart:
     """Return a quarter of a torus that turns a pipe from one direction (3,) to another across it.
 
     Parameters
@@ -121,10 +121,10 @@ def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float,
         away = np.cos(around) * outward + np.sin(around) * side
         return center + bend * outward + radius * away, away
 
-    return Part("elbow", Shape.NONE, float(np.pi**2 * bend * radius), center, sample)
+    return PlantPart("elbow", Shape.NONE, float(np.pi**2 * bend * radius), center, sample)
 
 
-def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> Part:
+def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> PlantPart:
     """Return a parallelogram that is seen from both sides, from a corner (3,) along two edges (3,), m.
 
     Parameters
@@ -145,10 +145,10 @@ def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) 
         positions = corner + share[:, :1] * first + share[:, 1:] * second + 0.005 * side * normal
         return positions, side * normal
 
-    return Part(kind, Shape.PLANE, 2 * area, corner + (first + second) / 2, sample)
+    return PlantPart(kind, Shape.PLANE, 2 * area, corner + (first + second) / 2, sample)
 
 
-def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np.ndarray) -> list[Part]:
+def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np.ndarray) -> list[PlantPart]:
     """Return the web and the two flanges of an I-beam between two positions (3,), m; its web lies along ``up``.
 
     Parameters
@@ -168,7 +168,7 @@ def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np
     return [web, *(plate("beam", start + sign * rise / 2 - side / 2, along, side) for sign in (-1, 1))]
 
 
-def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> Part:
+def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> PlantPart:
     """Return a level grating from a corner (3,) along two edges (3,), m: upright bars with gaps."""
     long, wide = float(np.linalg.norm(first)), float(np.linalg.norm(second))
     n_bars, (high, thick) = max(1, int(wide / _MESH)), _BAR
@@ -181,10 +181,10 @@ def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> Part:
         positions = corner + along * first + bar * second + thick / 2 * side * second / wide - down * [0.0, 0.0, 1.0]
         return positions, side * second / wide
 
-    return Part("grating", Shape.NONE, 2 * n_bars * long * high, corner + (first + second) / 2, sample)
+    return PlantPart("grating", Shape.NONE, 2 * n_bars * long * high, corner + (first + second) / 2, sample)
 
 
-def heap(center: np.ndarray, size: float) -> Part:
+def heap(center: np.ndarray, size: float) -> PlantPart:
     """Return clutter in a ball of a radius ``size`` (m): surfaces of random directions, as of hoses and bushes."""
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -192,4 +192,4 @@ def heap(center: np.ndarray, size: float) -> Part:
         away *= size * np.cbrt(rng.random((count, 1))) / np.linalg.norm(away, axis=1)[:, None]
         return center + away, normal / np.linalg.norm(normal, axis=1)[:, None]
 
-    return Part("clutter", Shape.NONE, 4 * np.pi * size**2, center, sample)
+    return PlantPart("clutter", Shape.NONE, 4 * np.pi * size**2, center, sample)

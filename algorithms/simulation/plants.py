@@ -6,8 +6,8 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..stage import Monitor
+from .bodies import Rect
 from .scene import Scene
-from .solids import Rect
 
 # Share of the trees outside the forest that grow in clumps.
 _CLUMP_SHARE = 0.4

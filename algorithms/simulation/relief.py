@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from .solids import Rect
+from .bodies import Rect
 
 # Half the width (m) of the level floor of the valley of a small regulated river.
 VALLEY = 16.0

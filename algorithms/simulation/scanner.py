@@ -120,7 +120,7 @@ class _Block:
 
 
 @dataclass(frozen=True)
-class Survey:
+class AirSurvey:
     """How a scanner flies over a scene and what it records: tunables of :func:`.simulate_town.simulate_town`."""
 
     density: float = 8.0  #: Pulses per m²
@@ -176,7 +176,7 @@ def refuse_large(
     refuse_many(density * size**2, f"{what} of {size:g} m with {density:g} {unit} per m²", remedy, unit, most)
 
 
-def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> dict[str, np.ndarray]:
+def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> dict[str, np.ndarray]:
     """Return the dimensions of a scene scanned from the air by name, in the order of time, then of return.
 
     In addition to those that scanners record there is ``pulse``, the number of the pulse. The same scene and survey

@@ -9,9 +9,9 @@ import numpy as np
 
 from ..geometry.groups import mask_of
 from ..stage import LayerFeatures
+from .bodies import Body, Rect, flat, rectangles
 from .pairs import in_boxes
 from .relief import CHANNEL, Relief
-from .solids import Rect, Solid, flat, rectangles
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Building:
     object_id: int  #: The ``segment_id`` of its points
     kind: str  #: Shape of its roof or its plan, such as "gable" or "L", or its use, such as "hall"
     outline: np.ndarray  #: (m, 2): closed ring of the walls, counterclockwise (m)
-    solids: tuple[Solid, ...]  #: Wings, dormers, chimneys; the roof is the highest of them
+    solids: tuple[Body, ...]  #: Wings, dormers, chimneys; the roof is the highest of them
 
     def roof(self, x, y) -> np.ndarray:
         """Elevation of the roof (m), NaN outside the building."""
@@ -49,7 +49,7 @@ class Scene:
     relief: Relief  #: Ground and water
     #: The buildings; their object ids are unique among all objects
     buildings: list[Building] = field(default_factory=list)
-    solids: list[Solid] = field(default_factory=list)  #: All solids, the buildings' too
+    solids: list[Body] = field(default_factory=list)  #: All solids, the buildings' too
     #: Ellipsoids that a beam gets through in part. Each has x, y, z of its center, horizontal and vertical radius (m),
     #: mean way of a beam to the next leaf (m) and object id
     crowns: list[tuple] = field(default_factory=list)
@@ -69,9 +69,9 @@ class Scene:
     def add_box(self, rect: Rect, bottom: float, top: float, classification: int, number: Optional[int] = None) -> None:
         """Add a solid with a level top between two elevations (m), of an object of its own without ``number``."""
         number = self.new_id() if number is None else number
-        self.solids.append(Solid(rect, flat(rect, top), bottom, classification, number))
+        self.solids.append(Body(rect, flat(rect, top), bottom, classification, number))
 
-    def add_building(self, kind: str, outline: np.ndarray, solids: list[Solid]) -> None:
+    def add_building(self, kind: str, outline: np.ndarray, solids: list[Body]) -> None:
         """Add a building made of ``solids``, which carry its id; ``outline`` (m, 2) is open."""
         building = Building(solids[0].object_id, kind, np.concatenate([outline, outline[:1]]), tuple(solids))
         self.buildings.append(building)

@@ -6,7 +6,7 @@ from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .bridge_site import KINDS, Deck, build_site, land
-from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_large, scan
+from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, AirSurvey, refuse_large, scan
 
 _ALL = "all"
 
@@ -82,7 +82,7 @@ def simulate_bridges(
     kinds = tuple(KINDS) if kind == _ALL else (kind,)
     scene, decks = build_site(kinds, angle, cars, trees, seed)
     refuse_large("The site", scene.size, density, "lower the density")
-    made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
+    made = scan(scene, AirSurvey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
     x, y, z = made["xyz"].T
     lies_on_land = land(scene, x, y) >= z - _ON_LAND
     made["classification"][(made["classification"] == PointClass.BRIDGE_DECK) & lies_on_land] = PointClass.GROUND

@@ -7,11 +7,11 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Monitor, stage, tunable
+from .bodies import Body, Rect, gable
 from .plants import plant_trees
 from .relief import Relief
-from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_large, scan
+from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, AirSurvey, refuse_large, scan
 from .scene import Scene
-from .solids import Rect, Solid, gable
 
 # Height of a tower (m).
 _TOWER = 30.0
@@ -107,7 +107,7 @@ def simulate_power_line(
     """
     refuse_large("The site", size, density, "lower the density or the size")
     scene = build_line_site(size, span, angle, trees, forest, seed)
-    made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
+    made = scan(scene, AirSurvey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
     return tuple(made[name] for name in RECORDED)
 
 
@@ -199,7 +199,7 @@ def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Ge
     rect = Rect(float(middle[0]), float(middle[1]), float(rng.uniform(9, 13)), 8.0, direction)
     ground = scene.relief.ground(*rect.corners().T)
     eave = float(ground.max()) + float(rng.uniform(3.5, 5.5))
-    solid = Solid(rect, gable(rect, eave, 0.7), float(ground.min()) - 1.0, PointClass.BUILDING, scene.new_id())
+    solid = Body(rect, gable(rect, eave, 0.7), float(ground.min()) - 1.0, PointClass.BUILDING, scene.new_id())
     scene.add_building("gable", rect.corners(), [solid])
     return eave
 

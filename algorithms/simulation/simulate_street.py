@@ -9,12 +9,12 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
+from .bodies import Rect
 from .drone import ANGULAR_STEP, LINE_RATE, LineScan
 from .plants import plant_tree
 from .relief import Relief
-from .scanner import RANGE_NOISE, RECORDED, Survey, refuse_large, refuse_many, scan
+from .scanner import RANGE_NOISE, RECORDED, AirSurvey, refuse_large, refuse_many, scan
 from .scene import Scene
-from .solids import Rect
 from .street_fronts import KINDS, Front, Line, Truth, between
 from .town_layout import park_car
 from .vehicle import Drive, pulses_of
@@ -194,7 +194,7 @@ def simulate_street(
     scene, truth, street = build_street(plan)
     if view == "airplane":
         refuse_large("The site", scene.size, density, "shorten the street or lower the pulse density")
-        made = scan(scene, Survey(density, range_noise=range_noise, seed=seed), monitor)
+        made = scan(scene, AirSurvey(density, range_noise=range_noise, seed=seed), monitor)
     else:
         made = _drive(scene, street, speed).scanned(scene, settings, monitor)
     made = _with_numbers(_through_glass(made, truth, glass, seed), truth, range_noise)

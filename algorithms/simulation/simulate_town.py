@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..params import SEED
 from ..stage import stage, tunable
-from .scanner import PATTERNS, PULSE_DENSITY, RANGE_NOISE, RECORDED, Survey, refuse_large, scan
+from .scanner import PATTERNS, PULSE_DENSITY, RANGE_NOISE, RECORDED, AirSurvey, refuse_large, scan
 from .town_layout import MAX_BUILDINGS, TownPlan, build_town
 
 
@@ -123,6 +123,6 @@ def simulate_town(
     """
     refuse_large("A town", size, density, "lower size or density")
     plan = TownPlan(size, slope, relief, terrace_height, buildings, trees, forest, river, clutter, seed)
-    survey = Survey(density, pattern, max_scan_angle, overlap, range_noise, returns, noise_points, seed)
+    survey = AirSurvey(density, pattern, max_scan_angle, overlap, range_noise, returns, noise_points, seed)
     made = scan(build_town(plan, monitor.part(0.0, 0.15)), survey, monitor.part(0.15, 1.0))
     return tuple(made[name] for name in RECORDED)

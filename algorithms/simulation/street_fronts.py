@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from .bodies import Body, Rect, gable
 from .scene import Scene
-from .solids import Rect, Solid, gable
 
 # Kinds of fronts.
 KINDS = ("plain", "recess", "bay", "curved", "balconies")
@@ -203,7 +203,7 @@ class Front:
             walls.put(along, inward, ground - 2 * _BELOW, top, number)
         rect = line.rect(across, (0.0, _DEPTH))
         tops = gable(rect, top, float(np.tan(np.deg2rad(pitch))))
-        scene.solids.append(Solid(rect, tops, top, PointClass.BUILDING, number))
+        scene.solids.append(Body(rect, tops, top, PointClass.BUILDING, number))
         third, front = line.length / 3, [(0.0, 0.0)]
         if kind == "bay":
             # Between its walls: a beam never meets two faces at once.

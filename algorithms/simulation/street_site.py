@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from .bodies import Body, Rect, flat, gable
 from .plants import plant_tree
 from .relief import Relief
 from .scene import Scene
-from .solids import Rect, Solid, flat, gable
 from .town_layout import park_car
 
 # Side of the site (m); a drone in its middle sees 30 m.
@@ -82,7 +82,7 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
     """Put a house with balconies on its front; heights count from the ground at the middle of the house."""
     number, ground = scene.new_id(), float(scene.relief.ground(rect.x, rect.y))
     tops = gable(rect, ground + eave, _PITCH) if has_gable else flat(rect, ground + eave)
-    solids = [Solid(rect, tops, ground - 3.0, PointClass.BUILDING, number)]
+    solids = [Body(rect, tops, ground - 3.0, PointClass.BUILDING, number)]
     long, deep = _BALCONY
     # A balcony each 5 m, of which seven in ten are there, with a parapet of 1 m, and none less than 2 m under the eave.
     for floor in np.arange(_STOREY, eave - 2.0, _STOREY):
@@ -90,7 +90,7 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
             if rng.random() < 0.7:
                 slab = rect.part(float(along), -(rect.width + deep) / 2, long, deep)
                 parapet = flat(slab, ground + floor + 1.0)
-                solids.append(Solid(slab, parapet, ground + floor, PointClass.BUILDING, number))
+                solids.append(Body(slab, parapet, ground + floor, PointClass.BUILDING, number))
     scene.add_building("block", rect.corners(), solids)
 
 

@@ -10,8 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from .bodies import Body, Rect, flat, gable, hip, inclined, lean_to
 from .scene import Building, Scene
-from .solids import Rect, Solid, flat, gable, hip, inclined, lean_to
 
 # Heights of eaves over the floor (m), of one storey and of two.
 _EAVES = (3.0, 5.7)
@@ -31,9 +31,9 @@ class Site:
         self.eave = self.floor + eave
         self.bottom = float(ground.min()) - 1.0
 
-    def solid(self, rect: Rect, tops: np.ndarray) -> Solid:
+    def solid(self, rect: Rect, tops: np.ndarray) -> Body:
         """Return a part of the building under the planes ``tops``, whose heights are elevations (m)."""
-        return Solid(rect, tops, self.bottom, PointClass.BUILDING, self.object_id)
+        return Body(rect, tops, self.bottom, PointClass.BUILDING, self.object_id)
 
 
 def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
@@ -143,13 +143,13 @@ def build_hall(scene: Scene, rect: Rect) -> None:
     scene.add_building("hall", rect.corners(), solids)
 
 
-def _chimney(site: Site, rect: Rect, pitch: float, rng: np.random.Generator) -> Solid:
+def _chimney(site: Site, rect: Rect, pitch: float, rng: np.random.Generator) -> Body:
     ridge = site.eave + pitch * rect.width / 2
     stack = rect.part(rng.uniform(-0.12, 0.12) * rect.length, rng.uniform(-1.0, 1.0), 0.7, 0.7)
     return site.solid(stack, flat(stack, ridge + 0.8))
 
 
-def _dormer(site: Site, rect: Rect, pitch: float, along: float, side: int) -> Solid:
+def _dormer(site: Site, rect: Rect, pitch: float, along: float, side: int) -> Body:
     """Return a dormer whose nearly flat roof runs from over the front into the roof plane behind it."""
     depth, back = 2.4, rect.width / 2 - 3.0
     box = rect.part(along, side * (back + depth / 2), 1.9, depth)

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..stage import Monitor
+from .bodies import Body, Rect, inclined
 from .plants import in_forest, plant_hedge, plant_trees
 from .relief import VALLEY, make_relief
 from .scene import Scene
-from .solids import Rect, Solid, inclined
 from .town_houses import build_hall, build_house
 
 # Distance (m) between the axes of neighboring streets, with two rows of plots between these.
@@ -159,11 +159,11 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor:
     _string_wires(scene)
 
 
-def _follow_ground(scene: Scene, rect: Rect, height: float, number: int) -> Solid:
+def _follow_ground(scene: Scene, rect: Rect, height: float, number: int) -> Body:
     """Return a solid whose top is parallel to the ground around its middle."""
     a, b, c = scene.relief.tangent(rect.x, rect.y)
     bottom = float(scene.relief.ground(*rect.corners().T).min()) - 1.0
-    return Solid(rect, np.array([[a, b, c + height]]), bottom, PointClass.UNCLASSIFIED, number)
+    return Body(rect, np.array([[a, b, c + height]]), bottom, PointClass.UNCLASSIFIED, number)
 
 
 def park_car(scene: Scene, body: Rect) -> None:
@@ -174,7 +174,7 @@ def park_car(scene: Scene, body: Rect) -> None:
     slants = [inclined(cabin, side * 1.3, 0.0, 0.85, side * -1.0, 0.0) + ground for side in (-1, 1)]
     roof = _follow_ground(scene, cabin, 1.45, number)
     scene.solids.append(_follow_ground(scene, body, 0.85, number))
-    scene.solids.append(Solid(cabin, np.vstack([roof.tops, slants]), roof.bottom, PointClass.UNCLASSIFIED, number))
+    scene.solids.append(Body(cabin, np.vstack([roof.tops, slants]), roof.bottom, PointClass.UNCLASSIFIED, number))
 
 
 def _string_wires(scene: Scene) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .beams import Beams
-from .drone import LineScan, Surroundings, bearing, first_met, in_time_order, recorded
+from .drone import DroneWorld, LineScan, bearing, first_met, in_time_order, recorded
 from .scene import Scene
 
 # Angle (°) from the perpendicular of the drive to the upright plane in which each scanner turns, positive ahead, by
@@ -42,7 +42,7 @@ class Drive:
 
     def scanned(self, scene: Scene, scan: LineScan, monitor: Monitor) -> dict[str, np.ndarray]:
         """Return the dimensions of a scene scanned on the way by name, in the order of time."""
-        world, parts = Surroundings(scene, scan.max_range), []
+        world, parts = DroneWorld(scene, scan.max_range), []
         blocks = [(number, time) for number in PLANES for time in self._blocks(scan)]
         for i, (number, time) in enumerate(blocks):
             rng = np.random.default_rng([scan.seed, _STREAM, i])

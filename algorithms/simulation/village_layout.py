@@ -9,10 +9,10 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..stage import Monitor
+from .bodies import Body, Rect, flat, gable, hip, inclined, lean_to
 from .plants import plant_hedge, plant_trees
 from .relief import make_relief
 from .scene import Building, Scene
-from .solids import Rect, Solid, flat, gable, hip, inclined, lean_to
 from .town_houses import Site, l_outline
 from .town_layout import park_car
 
@@ -126,16 +126,16 @@ class Home(Site):
         super().__init__(scene, rect, eave)
         self.roof_id = scene.new_id()
 
-    def slab(self, rect: Rect, tops: np.ndarray, under: np.ndarray) -> Solid:
+    def slab(self, rect: Rect, tops: np.ndarray, under: np.ndarray) -> Body:
         """Return a piece of roof, between its ``tops`` (k, 3) and ``under`` (3,), which lies below the first of them.
 
         Planes are z = a x + b y + c, by a, b and c.
         """
         a, b, c = under
         lowest = float((rect.corners() @ [a, b]).min() + c)
-        return Solid(rect, tops, lowest, PointClass.BUILDING, self.roof_id, under)
+        return Body(rect, tops, lowest, PointClass.BUILDING, self.roof_id, under)
 
-    def wing(self, rect: Rect, eave: float, pitch: float, overhang: float, cut: np.ndarray) -> list[Solid]:
+    def wing(self, rect: Rect, eave: float, pitch: float, overhang: float, cut: np.ndarray) -> list[Body]:
         """Return the walls on ``rect`` and the two slabs of a gable roof, all of them under the planes ``cut``."""
         middle = [0.0, 0.0, _THICKNESS / 2]
         solids = [self.solid(rect, np.concatenate([gable(rect, eave, pitch), cut]) - middle)]
@@ -201,7 +201,7 @@ def _rectangle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
     home = Home(scene, rect, eave)
     ridge = home.eave + pitch * rect.width / 2
     stack = rect.part(rng.uniform(-0.25, 0.25) * rect.length, 0.8, 0.6, 0.6)
-    chimney = Solid(stack, flat(stack, ridge + 0.6), home.bottom, PointClass.BUILDING, home.roof_id)
+    chimney = Body(stack, flat(stack, ridge + 0.6), home.bottom, PointClass.BUILDING, home.roof_id)
     solids = home.wing(rect, home.eave, pitch, overhang, _WHOLE)
     scene.add_building("rectangle", rect.corners(), [*solids, chimney])
     return home.roof_id

@@ -14,7 +14,7 @@ from ..sampling.surface_noise import LEAST_NEIGHBORS
 
 
 @rules
-class DECK:
+class ON_DECK:
     """Objects on the deck of a bridge."""
 
     hidden: float = rule(
@@ -26,7 +26,7 @@ class DECK:
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
 
 
-def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.rough) -> tuple[np.ndarray, np.ndarray]:
+def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -ON_DECK.rough) -> tuple[np.ndarray, np.ndarray]:
     """Find the points of objects on bridge decks, such as cars and parapets.
 
     Parameters
@@ -47,12 +47,12 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.rough) -
     """
     if len(deck) <= LEAST_NEIGHBORS or not len(points):
         return np.zeros(0, np.int64), np.zeros(0)
-    around = (points[:, :2] >= deck[:, :2].min(axis=0) - DECK.hidden).all(axis=1)
-    around &= (points[:, :2] <= deck[:, :2].max(axis=0) + DECK.hidden).all(axis=1)
+    around = (points[:, :2] >= deck[:, :2].min(axis=0) - ON_DECK.hidden).all(axis=1)
+    around &= (points[:, :2] <= deck[:, :2].max(axis=0) + ON_DECK.hidden).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
     near = max(DENSITY.least_link, DENSITY.link * _spacing(deck, tree))
-    distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, DECK.hidden))
+    distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, ON_DECK.hidden))
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]
     level = deck[nearest, 2]
@@ -69,7 +69,7 @@ def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
     if is_deck.any():
         others = np.flatnonzero(~is_deck)
         rows, level = on_decks(xyz[others], xyz[is_deck])
-        result[others[rows]] = xyz[others[rows], 2] <= level + DECK.traffic
+        result[others[rows]] = xyz[others[rows], 2] <= level + ON_DECK.traffic
     return result
 
 
@@ -87,5 +87,5 @@ def _has_deck_behind(positions: np.ndarray, nearest: np.ndarray, tree: Any) -> n
     """
     away = positions - nearest
     away /= np.linalg.norm(away, axis=1, keepdims=True)
-    distance, _ = tree.query(positions + DECK.hidden * away, distance_upper_bound=DECK.hidden)
+    distance, _ = tree.query(positions + ON_DECK.hidden * away, distance_upper_bound=ON_DECK.hidden)
     return np.isfinite(distance)

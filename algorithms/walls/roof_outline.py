@@ -8,7 +8,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from ..footprints.drawn_blocks import Drawing, draw_block
+from ..footprints.drawn_blocks import BlockDrawing, draw_block
 from ..footprints.outline_pieces import blocks_of, pieces_alone
 from ..footprints.soft_shares import LEAST_SPACING
 from ..geometry.grid import plan_box
@@ -58,7 +58,7 @@ def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
     blocks = blocks_of(pieces, spacing)
 
     def drawn(scale: float) -> list[list[np.ndarray]]:
-        how = Drawing(spacing, scale * spacing, area, area)
+        how = BlockDrawing(spacing, scale * spacing, area, area)
         polygons = [one.rings for block in blocks for one in draw_block(block, {1: shares}, {1: directions}, {}, how)]
         return without_nested(sorted(polygons, key=lambda part: -sum(map(signed_area, part))))
 

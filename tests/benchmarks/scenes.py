@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.simulation.bodies import Body, Rect, flat, gable, hip, lean_to
 from lidar_buildings.algorithms.simulation.plants import plant_hedge, plant_tree, plant_trees
 from lidar_buildings.algorithms.simulation.relief import Relief
-from lidar_buildings.algorithms.simulation.scanner import Survey, scan
+from lidar_buildings.algorithms.simulation.scanner import AirSurvey, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
-from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gable, hip, lean_to
 from lidar_buildings.algorithms.simulation.town_houses import Site
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -105,7 +105,7 @@ def solar_park() -> Scene:
         table = Rect(SIDE / 2, y, 90.0, 4.2, 0.0)
         tops = lean_to(table, float(field.relief.ground(table.x, y)) + 0.8, 0.44)
         under = tops[0] - [0.0, 0.0, 0.1]
-        field.solids.append(Solid(table, tops, 0.0, PointClass.UNCLASSIFIED, field.new_id(), under))
+        field.solids.append(Body(table, tops, 0.0, PointClass.UNCLASSIFIED, field.new_id(), under))
     return field
 
 
@@ -203,7 +203,7 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
 def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> dict[str, np.ndarray]:
     """Return the points of a scene at ``density`` pulses per m²."""
     scene = make()
-    made = scan(scene, Survey(density))
+    made = scan(scene, AirSurvey(density))
     made["xyz"][:, 2] += MISFIT * (misfit & (made["point_source_id"] % 2 == 0))
     if isinstance(scene, Farmland):
         _grow_maize(scene.fields, made)
@@ -234,4 +234,4 @@ def _add_box(scene: Scene, rect: Rect, height: float) -> None:
     """Put down a box that is no building."""
     ground = float(scene.relief.ground(rect.x, rect.y))
     top = flat(rect, ground + height)
-    scene.solids.append(Solid(rect, top, ground - 1.5, PointClass.UNCLASSIFIED, scene.new_id()))
+    scene.solids.append(Body(rect, top, ground - 1.5, PointClass.UNCLASSIFIED, scene.new_id()))

@@ -14,7 +14,7 @@ from qgis.core import QgsProcessingException, QgsVectorLayer
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Cancelled
-from lidar_buildings.provider import cloud_algorithm, layer_outputs, outputs
+from lidar_buildings.provider import cloud_algorithm, layer_outputs, run_outputs
 
 
 def run(name, parameters, context, log):
@@ -100,7 +100,7 @@ def test_a_cancelled_run_leaves_what_another_one_wrote_meanwhile(provider, conte
         write_cloud(create_cloud({"xyz": np.zeros((3, 3))}), target)
         log.cancel()
 
-    monkeypatch.setattr(outputs, "write_cloud", meanwhile)
+    monkeypatch.setattr(run_outputs, "write_cloud", meanwhile)
     assert run("toylift", {"INPUT": str(town_file), "OUTPUT": str(target)}, context, log) == {}
     assert len(read_cloud(target)) == 3
     assert [path.name for path in out.iterdir()] == ["a.laz"]
@@ -154,7 +154,7 @@ def test_errors_name_the_file_that_the_user_gave(provider, context, log, town_fi
             return write_cloud(cloud, path, *args, **kwargs)
         raise ValueError(f"The disk is full: {path} was not written; free some space or choose another folder.")
 
-    monkeypatch.setattr(outputs, "write_cloud", full)
+    monkeypatch.setattr(run_outputs, "write_cloud", full)
     for name in ("toylift", "toychain"):
         with pytest.raises(QgsProcessingException, match=f"The disk is full: {out / 'a.laz'} was not written"):
             run(name, {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
@@ -169,7 +169,7 @@ def test_a_cancelled_run_logs_this_and_no_error(provider, context, log, town_fil
         write_cloud(*args, **kwargs)
         log.cancel()
 
-    monkeypatch.setattr(outputs, "write_cloud", cancelled)
+    monkeypatch.setattr(run_outputs, "write_cloud", cancelled)
     results = run(name, {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
     assert results == {}
     assert log.infos.count("Cancelled; nothing was written.") == 1

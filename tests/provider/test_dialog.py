@@ -12,9 +12,9 @@ from qgis.PyQt.QtWidgets import QLineEdit, QMainWindow
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.presets import PRESETS
 from lidar_buildings.algorithms.tiling.settings import READ_SETTINGS, SETTINGS
+from lidar_buildings.provider.options import CODES, PRESET, THREADS, apply_options
 from lidar_buildings.provider.pickers import Picker, fill_with_classes, with_class
 from lidar_buildings.provider.sections import Section, sections_of
-from lidar_buildings.provider.settings import CODES, PRESET, THREADS, apply_options
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import pytest
 from qgis.core import QgsFeature, QgsGeometry, QgsProcessingException
 
-from lidar_buildings.provider import layer_outputs, outputs
+from lidar_buildings.provider import layer_outputs, run_outputs
 
 from .helpers import run
 
@@ -61,7 +61,7 @@ def many_features(monkeypatch):
 @pytest.fixture
 def no_look_ahead(monkeypatch):
     """Leave out what finds out before a run that there is no space, so that the writing itself fails."""
-    monkeypatch.setattr(outputs, "_LEAST_SPACE", 0)
+    monkeypatch.setattr(run_outputs, "_LEAST_SPACE", 0)
 
 
 def contents(folder):

@@ -523,7 +523,7 @@ def test_a_full_disk_is_reported_before_the_work(provider, context, town_file, o
         def write(self, _):
             raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("lidar_buildings.provider.outputs.tempfile.TemporaryFile", lambda dir: Full())
+    monkeypatch.setattr("lidar_buildings.provider.run_outputs.tempfile.TemporaryFile", lambda dir: Full())
     algorithm = {"OUTPUT": "toylift", "PICTURE": "toypicture", "FOOTPRINTS": "toyoutline"}[name]
     message = refused(provider, algorithm, {"INPUT": str(town_file), name: str(out / file)}, context)
     assert message == f"The disk is full: {out / file} was not written; free some space or choose another folder."

@@ -8,8 +8,8 @@ from qgis.core import QgsVectorLayer
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.provider.crs import crs_of
 from lidar_buildings.provider.crs_authority import crs_reader
+from lidar_buildings.provider.qgis_crs import crs_of
 from lidar_buildings.tests.las_files import made_las
 from lidar_buildings.tests.provider.helpers import run
 

@@ -14,8 +14,8 @@ from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.algorithms.tiling.survey import files_of_survey
 from lidar_buildings.provider import schedulers
 from lidar_buildings.provider.given import Given
+from lidar_buildings.provider.options import SCHEDULERS
 from lidar_buildings.provider.pipeline_algorithm import pipeline_tunables
-from lidar_buildings.provider.settings import SCHEDULERS
 from lidar_buildings.tests.builders import roof
 from lidar_buildings.tests.las_files import made_las
 from lidar_buildings.tests.provider.helpers import opened, squares, values_of

@@ -25,7 +25,7 @@ from lidar_buildings.algorithms.cloud.web_requests import transport
 from lidar_buildings.provider import menu, web
 from lidar_buildings.provider.clouds import file_of_layer
 from lidar_buildings.provider.menu import open_dialog, view_parameters
-from lidar_buildings.provider.settings import WEB_CACHE, WEB_HOSTS, WEB_LIMIT, apply_options
+from lidar_buildings.provider.options import WEB_CACHE, WEB_HOSTS, WEB_LIMIT, apply_options
 from lidar_buildings.provider.web import QgisTransport
 from lidar_buildings.tests.ept_files import made_points, write_ept
 from lidar_buildings.tests.provider.helpers import Interface, run

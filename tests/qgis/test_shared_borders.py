@@ -5,7 +5,7 @@ import pytest
 from qgis.core import QgsGeometry, QgsPointXY
 
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
-from lidar_buildings.algorithms.simulation.scanner import Survey, scan
+from lidar_buildings.algorithms.simulation.scanner import AirSurvey, scan
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
 from lidar_buildings.tests.builders import is_inside, turned
 
@@ -163,7 +163,7 @@ def test_order_position_and_direction_change_nothing(rng):
 def test_houses_of_a_simulated_town():
     """Every house of a town on a slope, with shadows, trees over eaves and rows of different heights."""
     scene = build_town(TownPlan(size=120.0, slope=5.0, forest=0.0, river=False, seed=4))
-    made = scan(scene, Survey(seed=4))
+    made = scan(scene, AirSurvey(seed=4))
     cluster = np.where(made["classification"] == 6, made["segment_id"], 0)
     found = extract_footprints(made["xyz"], made["classification"], cluster)
     polygons = dict(zip(found.columns["cluster_id"], found.geometries))

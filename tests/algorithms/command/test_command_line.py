@@ -11,7 +11,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.command import command_line
-from lidar_buildings.algorithms.command.arguments import dashed, find_algorithm, parser_of
+from lidar_buildings.algorithms.command.command_arguments import dashed, find_algorithm, parser_of
 from lidar_buildings.algorithms.command.command_line import main, overview
 from lidar_buildings.algorithms.command.feature_files import read_layer
 from lidar_buildings.algorithms.geometry.rings import signed_area

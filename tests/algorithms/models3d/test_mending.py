@@ -6,9 +6,9 @@ import pytest
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.models3d import mending
 from lidar_buildings.algorithms.models3d.mending import mended
+from lidar_buildings.algorithms.models3d.roof_limits import HeightsAround
 from lidar_buildings.algorithms.models3d.roof_partition import Partition, empty_partition
 from lidar_buildings.algorithms.models3d.roof_planes import RoofPlanes, find_roof_planes, with_level_patches
-from lidar_buildings.algorithms.models3d.roof_points import HeightsAround
 from lidar_buildings.algorithms.models3d.solid_faults import fault_of, faults_of
 from lidar_buildings.algorithms.models3d.solids import ROOF
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
-from lidar_buildings.algorithms.models3d.set_openings import Opening, with_openings
+from lidar_buildings.algorithms.models3d.set_openings import WallOpening, with_openings
 from lidar_buildings.algorithms.models3d.solid_faults import fault_of
 from lidar_buildings.algorithms.models3d.solids import Solid
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, Monitor
@@ -93,7 +93,10 @@ def pane(west, low, east, high, y=0.0):
 
 
 def test_openings_are_set_into_the_wall_before_them_and_cut_back_to_it():
-    door, window = Opening(1, "door", pane(1, -0.2, 2, 2.0, y=-0.2)), Opening(2, "window", pane(4, 1, 5, 2.5, y=0.15))
+    door, window = (
+        WallOpening(1, "door", pane(1, -0.2, 2, 2.0, y=-0.2)),
+        WallOpening(2, "window", pane(4, 1, 5, 2.5, y=0.15)),
+    )
     solid, done = with_openings(box(), [door, window])
     assert fault_of(solid) == ""
     assert solid.volume == pytest.approx(300.0)
@@ -105,7 +108,7 @@ def test_openings_are_set_into_the_wall_before_them_and_cut_back_to_it():
 
 
 def test_an_opening_across_a_bend_is_set_into_the_wall_with_most_of_it():
-    solid, done = with_openings(box(), [Opening(1, "window", pane(9, 1, 10.5, 2))])
+    solid, done = with_openings(box(), [WallOpening(1, "window", pane(9, 1, 10.5, 2))])
     assert fault_of(solid) == ""
     assert done[0].ring[:, 0].max() == pytest.approx(9.97)
 
@@ -121,13 +124,13 @@ def test_an_opening_across_a_bend_is_set_into_the_wall_with_most_of_it():
     ids=["across a corner", "0.7 m behind", "facing inward", "over the eaves"],
 )
 def test_openings_that_lie_in_no_wall_are_left_out(ring):
-    solid, done = with_openings(box(), [Opening(1, "window", ring)])
+    solid, done = with_openings(box(), [WallOpening(1, "window", ring)])
     assert not done
     assert len(solid.faces) == 6
 
 
 def test_of_two_openings_that_cross_the_first_is_set():
-    crossing = [Opening(1, "window", pane(2, 1, 4, 2)), Opening(2, "window", pane(3, 1.5, 5, 3))]
+    crossing = [WallOpening(1, "window", pane(2, 1, 4, 2)), WallOpening(2, "window", pane(3, 1.5, 5, 3))]
     assert [opening.number for opening in with_openings(box(), crossing)[1]] == [1]
 
 

@@ -10,10 +10,10 @@ import pytest
 from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.simulation.beams import Beams
-from lidar_buildings.algorithms.simulation.drone import FIELD, Flight, Surroundings, plan_flight, pulses_per_line
+from lidar_buildings.algorithms.simulation.bodies import Body, Rect, stack
+from lidar_buildings.algorithms.simulation.drone import FIELD, DroneWorld, Flight, plan_flight, pulses_per_line
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.simulate_flight import simulate_flight
-from lidar_buildings.algorithms.simulation.solids import Rect, Solid, stack
 from lidar_buildings.algorithms.simulation.street_site import build_site
 from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.tests.monitors import Listening
@@ -123,7 +123,7 @@ def test_no_beam_misses_what_is_sought_in_its_direction_only(place):
     start = place + rng.uniform(-0.5, 0.5, (3000, 3))
     aim = np.column_stack([np.arctan2(way[:, 1], way[:, 0]), np.arcsin(way[:, 2])])
     beams = Beams(np.arange(3000), start, way, aim)
-    world = Surroundings(build_site(trees=22, slope=1.5, seed=1), 30.0)
+    world = DroneWorld(build_site(trees=22, slope=1.5, seed=1), 30.0)
     crowns = world.crowns
     hits = {}
     for kind, count in (("solids", len(world.solids.low)), ("crowns", len(crowns))):
@@ -144,7 +144,7 @@ def test_no_beam_misses_what_is_sought_in_its_direction_only(place):
 
 
 def test_what_lies_behind_a_beam_is_not_met():
-    box = stack([Solid(Rect(0.0, 0.0, 2.0, 2.0, 0.0), np.array([[0.0, 0.0, 1.0]]), -1.0, 1, 1)])
+    box = stack([Body(Rect(0.0, 0.0, 2.0, 2.0, 0.0), np.array([[0.0, 0.0, 1.0]]), -1.0, 1, 1)])
     way = np.array([[1.0, 0, 0], [-1.0, 0, 0], [1.0, 0, 0]])
     start = np.array([[-3.0, 0, 0], [-3.0, 0, 0], [0.0, 0, 0]])
     assert box.enter(np.zeros(3, int), start, way).tolist() == [2.0, np.inf, np.inf]

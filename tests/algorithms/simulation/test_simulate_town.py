@@ -9,7 +9,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import NOISE, VEGETATION, PointClass
 from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.simulation.scanner import Survey, scan
+from lidar_buildings.algorithms.simulation.scanner import AirSurvey, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
@@ -23,7 +23,7 @@ NAMES = simulate_town.stage.creates
 def exact_town(slope: float = 3.0) -> tuple[Scene, dict[str, np.ndarray]]:
     """A town of 150 m scanned without range noise."""
     scene = build_town(TownPlan(size=150.0, slope=slope, buildings=30.0))
-    return scene, scan(scene, Survey(density=6.0, range_noise=0.0))
+    return scene, scan(scene, AirSurvey(density=6.0, range_noise=0.0))
 
 
 @cache
@@ -81,7 +81,7 @@ def test_nothing_is_seen_inside_a_building():
 
 def test_range_noise_moves_points_along_the_beam_only():
     scene = build_town(TownPlan(size=100.0))
-    exact, rough = (scan(scene, Survey(density=4.0, range_noise=sigma)) for sigma in (0.0, 0.05))
+    exact, rough = (scan(scene, AirSurvey(density=4.0, range_noise=sigma)) for sigma in (0.0, 0.05))
     shift = rough["xyz"] - exact["xyz"]
     assert np.linalg.norm(shift, axis=1).std(ddof=0) > 0.02
     assert np.sqrt((shift**2).sum(axis=1).mean()) == pytest.approx(0.05, rel=0.02)
@@ -162,7 +162,7 @@ def test_wider_strips_show_more_of_walls():
     scene = build_town(TownPlan(size=150.0))
     seen = []
     for angle in (5.0, 30.0):
-        made = scan(scene, Survey(max_scan_angle=angle, range_noise=0.0))
+        made = scan(scene, AirSurvey(max_scan_angle=angle, range_noise=0.0))
         x, y, z = made["xyz"][of(made, PointClass.BUILDING)].T
         height = np.full(len(x), -np.inf)
         for building in scene.buildings:
@@ -240,7 +240,7 @@ def test_noise_points_are_as_many_as_asked_and_lie_far_off():
         counts = [int((made["classification"] == noise).sum()) for noise in NOISE]
         assert counts == [per_hectare / 2, per_hectare / 2]
     scene = build_town(TownPlan(size=100.0))
-    made = scan(scene, Survey(density=3.0, noise_points=200.0))
+    made = scan(scene, AirSurvey(density=3.0, noise_points=200.0))
     height = made["xyz"][:, 2] - scene.relief.ground(*made["xyz"][:, :2].T)
     low, high = (height[of(made, noise)] for noise in (PointClass.LOW_NOISE, PointClass.HIGH_NOISE))
     # Heights lie along the beam; where the ground is steep that is a little less straight down.

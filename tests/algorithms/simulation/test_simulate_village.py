@@ -9,9 +9,9 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
 from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.simulation.bodies import Body, Rect, inclined, stack
 from lidar_buildings.algorithms.simulation.camera import photograph
 from lidar_buildings.algorithms.simulation.simulate_village import simulate_village
-from lidar_buildings.algorithms.simulation.solids import Rect, Solid, inclined, stack
 from lidar_buildings.algorithms.simulation.village_layout import VillagePlan, build_village
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import is_inside
@@ -95,7 +95,7 @@ def test_walls_have_the_density_of_their_views():
 
 def test_a_slab_has_an_inclined_underside():
     slope = inclined(Rect(0.0, 0.0, 4.0, 4.0, 0.0), 0.0, 0.0, 5.0, 0.5, 0.0)
-    slab = Solid(Rect(0.0, 0.0, 4.0, 4.0, 0.0), slope[None], 3.8, 6, 1, slope - [0.0, 0.0, 0.2])
+    slab = Body(Rect(0.0, 0.0, 4.0, 4.0, 0.0), slope[None], 3.8, 6, 1, slope - [0.0, 0.0, 0.2])
     arrays = stack([slab, slab])
     origin = np.array([[1.0, 0.0, 0.0], [1.0, 0.0, 10.0]])
     way = arrays.enter(np.array([0, 1]), origin, np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))

@@ -59,7 +59,7 @@ class Rect:
 
 
 @dataclass(frozen=True)
-class Solid:
+class Body:
     """A rectangle from its bottom to the lowest of its top planes."""
 
     rect: Rect  #: The footprint
@@ -152,13 +152,13 @@ def dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return one[:, 0] * other[:, 0] + one[:, 1] * other[:, 1] + one[:, 2] * other[:, 2]
 
 
-def rectangles(solids: Sequence[Solid]) -> Rect:
+def rectangles(solids: Sequence[Body]) -> Rect:
     """Return the footprints of solids as one rectangle whose fields are arrays (m,)."""
     rows = [(s.rect.x, s.rect.y, s.rect.length, s.rect.width, s.rect.angle) for s in solids]
     return Rect(*np.array(rows, float).reshape(-1, 5).T)
 
 
-def stack(solids: Sequence[Solid]) -> SolidArrays:
+def stack(solids: Sequence[Body]) -> SolidArrays:
     """Return solids as arrays."""
     rects, bottom = rectangles(solids), np.array([solid.bottom for solid in solids], float)
     # Faces that a solid doesn't have are (0, 0, 0, 1): every point is inside of them.

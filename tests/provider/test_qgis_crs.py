@@ -23,8 +23,8 @@ from qgis.PyQt.QtCore import QEventLoop, QTimer
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.crs import crs_of_text
 from lidar_buildings.algorithms.cloud.files import write_cloud
-from lidar_buildings.provider import crs, crs_authority
-from lidar_buildings.provider.crs import is_hollow
+from lidar_buildings.provider import crs_authority, qgis_crs
+from lidar_buildings.provider.qgis_crs import is_hollow
 
 _EXPIRY = 20  # ms
 
@@ -137,8 +137,8 @@ def test_a_system_of_a_thread_that_is_gone_is_made_again(wait_for_threads, monke
     wait_for_threads()
     assert is_hollow(kept[0]), "QGIS has mended this: the work-around can go"
     given = iter([kept[0], QgsCoordinateReferenceSystem.fromWkt(RD_NEW)])
-    monkeypatch.setattr(crs, "_made", lambda wkt: next(given))
-    assert "Amersfoort / RD New" in crs.crs_of(RD_NEW).toWkt()
+    monkeypatch.setattr(qgis_crs, "_made", lambda wkt: next(given))
+    assert "Amersfoort / RD New" in qgis_crs.crs_of(RD_NEW).toWkt()
 
 
 def test_a_compound_system_keeps_its_code_for_text_files():
