@@ -5,7 +5,8 @@
 
     make new-stage NAME=segmentation.segment_storeys
 
-Then edit the module and its test; both run as they are.
+Then edit the module and its test; both run as they are. What was begun is undone by deleting both, and
+their lines in ``algorithms/stages.py`` and ``CHANGELOG.md``.
 """
 
 from __future__ import annotations
@@ -90,7 +91,8 @@ def main(words: list[str]) -> int:
         print(error, file=sys.stderr)
         return 1
     print("\n".join(str(file.relative_to(ROOT)) for file in files))
-    print(f"Edit them; then: make pictures IDS={name.replace('_', '')}, and make check.")
+    print("Edit the two modules, and put the line of CHANGELOG.md under its heading.")
+    print(f"Then run: make pictures IDS={name.replace('_', '')} && make check")
     return 0
 
 

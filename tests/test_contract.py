@@ -408,7 +408,7 @@ def test_sentence_case_is_recognized():
 @each_stage
 def test_name_is_a_verb_and_shows_what_is_set(stage):
     verb = stage.name.split("_")[0]
-    assert verb in VERBS
+    assert verb in VERBS, f"choose a verb of the other stages: {', '.join(sorted(VERBS))}"
     # Points that are made of others have a class of theirs too.
     classifies = verb in CLASSIFYING and stage.name not in OWN_CLASSES
     assert stage.selects or stage.merges or classifies == ("classification" in stage.writes)
@@ -418,6 +418,8 @@ def test_name_is_a_verb_and_shows_what_is_set(stage):
 def test_title_group_and_tags_are_there(stage):
     assert is_sentence_case(stage.title)
     assert is_sentence_case(stage.group)
+    icon = f"resources/icons/groups/{stage.group.replace(' ', '').lower()}.svg"
+    assert (Path(__file__).parent.parent / icon).is_file(), f"{stage.group!r} is no group with an icon"
     assert [tag for tag in stage.tags.split(",") if tag.strip()]
 
 
@@ -474,8 +476,9 @@ def test_number_has_bounds_and_a_unit_where_one_fits(stage, tunable):
 def test_dimensions_are_those_of_the_table(stage):
     for name in (*stage.reads, *stage.optional):
         plain = name[len(REFERENCE_PREFIX) :] if name.startswith(REFERENCE_PREFIX) else name
-        assert plain in DIMENSIONS or plain == VALUES
-    assert set(stage.writes) | set(stage.creates) <= set(DIMENSIONS)
+        assert plain in DIMENSIONS or plain == VALUES, f"cloud/dimensions.py has no {plain!r} to read"
+    unknown = {*stage.writes, *stage.creates} - set(DIMENSIONS)
+    assert not unknown, f"cloud/dimensions.py has no {unknown}: add a row"
     assert stage.makes_cloud or any((stage.layers, stage.rasters, stage.measures, stage.files)), (
         "the stage makes nothing"
     )

@@ -14,7 +14,7 @@ from .arguments import REFERENCE_PREFIX, check_arrays
 from .docstrings import before_first_section, sections, with_tunables, with_values
 from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
-from .tunables import Tunable, in_words
+from .tunables import Param, Tunable, in_words
 
 # Names of the outputs that have no declaration of their own: the cloud, and the page of a report.
 CLOUD, REPORT = "output", "report"
@@ -56,7 +56,7 @@ class Stage:
     selects: bool = False  #: Whether it returns which points stay
     merges: bool = False  #: Whether it reads several clouds
     #: How far (m) from a point others may lie that decide on it, a number or a function of all tunables by name. Where
-    #: a cloud is worked on in parts, each is seen with the points around it that far.
+    #: a cloud is worked on in parts, each is seen with the points around it that far; infinite if all points decide.
     reach: Reach = 0.0
     #: Processor time (s) per million points of a town, as measured; in a chain, its share of the progress
     cost: float = 1.0
@@ -257,6 +257,9 @@ def _declared(function: Callable, title: str, group: str, tags: str, fields: dic
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY:
             if name not in (MONITOR, SAMPLING):
+                if name not in hints or not isinstance(parameter.default, Param):
+                    example = f"{name}: float = tunable(…)"
+                    raise TypeError(f"{function.__name__} must declare {name!r} with its type, as in '{example}'.")
                 tunables[name] = Tunable(name, _kind(hints[name]), parameter.default)
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
@@ -289,6 +292,8 @@ def _check_declaration(declared: Stage) -> None:
         raise TypeError(f"{declared.name} must take the sampling None, which is measured on its own points.")
     if VALUES in (*declared.reads, *declared.optional) and DIMENSION not in declared.tunables:
         raise TypeError(f"{declared.name} reads {VALUES!r} and has no tunable {DIMENSION!r} that names them.")
+    if MONITOR not in arguments:
+        raise TypeError(f"{declared.name} must take 'monitor=None', to which it reports progress.")
 
 
 def _kind(hint: Any) -> type:

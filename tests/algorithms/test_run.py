@@ -553,3 +553,22 @@ def test_what_can_not_be_kept_is_refused_when_it_is_declared(declared, sentence)
 def test_values_need_the_tunable_that_names_them():
     with pytest.raises(TypeError, match="has no tunable 'dimension'"):
         stage("Toys", title="Toy", selects=True)(lambda xyz, values: None)
+
+
+SHARED = tunable(1.0, "Radius.")
+
+
+def test_a_tunable_needs_its_type_and_its_declaration():
+    with pytest.raises(TypeError, match="must declare 'radius' with its type"):
+        stage("Toys", title="Toy")(lambda xyz, *, radius=SHARED, monitor=None: None)
+
+    def compute_toys(xyz, *, radius: float = 1.0, monitor=None):
+        """Compute."""
+
+    with pytest.raises(TypeError, match="'radius: float = tunable"):
+        stage("Toys", title="Toy")(compute_toys)
+
+
+def test_every_stage_takes_a_monitor():
+    with pytest.raises(TypeError, match="must take 'monitor=None'"):
+        stage("Toys", title="Toy")(lambda xyz: None)
