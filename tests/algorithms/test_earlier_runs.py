@@ -23,6 +23,15 @@ SCENES = {
     "model_industry": ("simulate_plant", {"pipes": 1, "tanks": 0, "spheres": 1, "density": 1500.0, "clutter": False}),
     "interpret_structure": ("simulate_flight", {"duration": 6.0, "scanners": "both", "trees": 1}),
 }
+# One composite of each kind of scene; all are read in test_no_step_reads_what_only_a_later_one_writes.
+QUICK = ("detect_buildings", "model_buildings", "model_terrain", "model_facades", "interpret_structure")
+# Read two clouds, or leave out points.
+CHANGES_ITS_INPUT = {name for name, one in PIPELINES.items() if name.startswith("map_footprints") or one.merges}
+
+
+def marked(names):
+    """The composites, those that take long as slow."""
+    return [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in names]
 
 
 @cache
@@ -81,7 +90,7 @@ def aged(cloud, names, rng):
     return old
 
 
-@pytest.mark.parametrize("name", PIPELINES)
+@pytest.mark.parametrize("name", marked(NAMES))
 def test_a_composite_finds_the_same_whatever_an_earlier_run_has_left(name, rng):
     """Cylinders were looked for only among points without the Shape of an earlier run: 1 axis instead of 66."""
     cloud, first = scene(name)
@@ -89,17 +98,16 @@ def test_a_composite_finds_the_same_whatever_an_earlier_run_has_left(name, rng):
     assert_same(first, modeled(name, aged(cloud, written(name), rng), monitor), name)
 
 
-@pytest.mark.parametrize(
-    "name", [name for name, one in PIPELINES.items() if not (name.startswith("map_footprints") or one.merges)]
-)
+@pytest.mark.parametrize("name", marked(one for one in NAMES if one not in CHANGES_ITS_INPUT))
 def test_a_composite_finds_the_same_on_its_own_result(name):
     _, first = scene(name)
     assert_same(first, modeled(name, first.cloud), name)
 
 
-def test_the_scenes_have_something_to_find():
-    layers = {name: scene(name)[1].layers for name in NAMES}
-    assert [name for name, found in layers.items() if found and not any(map(len, found.values()))] == []
+@pytest.mark.parametrize("name", marked(NAMES))
+def test_the_scenes_have_something_to_find(name):
+    found = scene(name)[1].layers
+    assert not found or any(map(len, found.values()))
 
 
 def test_the_log_says_once_what_was_cleared():

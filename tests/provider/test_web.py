@@ -367,7 +367,7 @@ def test_a_survey_on_the_web_is_cut_into_tiles_of_its_extent(provider, context, 
     assert server.sent < 0.6 * (folder / "a.copc.laz").stat().st_size
 
 
-@pytest.mark.parametrize("processes", [1, 2])
+@pytest.mark.parametrize("processes", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_blocks_of_tiles_read_their_own_ranges(provider, context, log, server, folder, out, processes):
     given = {"EXTENT": "85000,85100,446000,446100 [EPSG:28992]", "PROCESSES": processes, "BLOCK_SIDE": 50.0}
     points = []
