@@ -11,6 +11,7 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsPointCloudAttributeByRampRenderer,
     QgsPointCloudLayer,
+    QgsProcessingException,
     QgsProject,
     QgsStyle,
 )
@@ -22,6 +23,7 @@ from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.files import read_cloud, write_cloud
 from ..algorithms.run import run_stage
 from ..algorithms.stages import STAGES
+from .errors import as_processing_errors
 from .named_clouds import SIMULATED_CRS, named
 from .styles import Styler, show_in_3d
 
@@ -45,14 +47,18 @@ def sample_folder() -> Path:
 
 def open_sample(iface: Any) -> None:
     """Make the town, if it is not there, and open it in a new project; a changed project is saved first, or kept."""
-    if not iface.newProject(True):
-        return
     QApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
     try:
-        make_sample(sample_folder())
-        fill_project(QgsProject.instance(), sample_folder())
+        with as_processing_errors():
+            make_sample(sample_folder())
+    except QgsProcessingException as error:
+        iface.messageBar().pushWarning("Sample data", str(error))
+        return
     finally:
         QApplication.restoreOverrideCursor()
+    if not iface.newProject(True):
+        return
+    fill_project(QgsProject.instance(), sample_folder())
     iface.mapCanvas().zoomToFullExtent()
     iface.messageBar().pushInfo(
         "Sample data",

@@ -1,9 +1,14 @@
 """The sample data, and the view in three dimensions."""
 
+from types import SimpleNamespace
+
 import numpy as np
+import pytest
 from qgis.core import QgsProject, QgsVectorLayer
+from qgis.PyQt.QtWidgets import QApplication
 
 from lidar_buildings.algorithms.cloud.files import read_cloud
+from lidar_buildings.provider import sample
 from lidar_buildings.provider.sample import PROJECT, TOWN, TRUTH, fill_project, make_sample
 from lidar_buildings.provider.view3d import heights_of, layers_to_show, view_angles
 from lidar_buildings.tests.provider.helpers import vector
@@ -32,6 +37,28 @@ def test_the_sample_is_small_has_no_classes_and_is_a_project(provider, tmp_path)
     assert low < high
     nodes = {node.name(): node.itemVisibilityChecked() for node in again.layerTreeRoot().findLayers()}
     assert nodes == {"Town": True, "Town, true classes": False}
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (ValueError("Point clouds need laspy; install it."), "Point clouds need laspy; install it."),
+        (OSError(28, "No space left on device"), "A file can't be read or written: No space left on device."),
+    ],
+)
+def test_a_sample_that_can_t_be_made_is_a_sentence_and_keeps_the_project(monkeypatch, error, said):
+    """It was a traceback, and an empty project."""
+
+    def fail(folder):
+        raise error
+
+    told = []
+    bar = SimpleNamespace(pushWarning=lambda title, text: told.append(text))
+    iface = SimpleNamespace(messageBar=lambda: bar, newProject=lambda asks: pytest.fail("a new project"))
+    monkeypatch.setattr(sample, "make_sample", fail)
+    sample.open_sample(iface)
+    assert told == [said]
+    assert QApplication.overrideCursor() is None
 
 
 def test_models_of_the_current_group_are_shown_alone(context):
