@@ -50,7 +50,8 @@ def merge_best_pairs(
     In a round every pair is merged that both of its planes prefer to all their others. The partition is as by a queue
     from which the most similar pair of all is taken each time. This holds if no merged plane is more similar to a third
     one than both of its parts were. A fixed shuffle of all pairs orders equal costs: in the order of their numbers, one
-    pair of a row of equal planes would be merged in a round.
+    pair of a row of equal planes would be merged in a round. Planes that are not similar enough may be so when one of
+    them has been merged.
     """
     # The plane that each given plane has become, and the first one of the given planes in each.
     group, first = np.arange(len(planes)), np.arange(len(planes))
@@ -59,11 +60,10 @@ def merge_best_pairs(
     price = cost(planes, low, high)
     n_first = max(len(planes), 1)
     while True:
-        similar = np.isfinite(price)
-        low, high, price = low[similar], high[similar], price[similar]
-        if not len(low):
+        similar = np.flatnonzero(np.isfinite(price))
+        if not len(similar):
             return planes, group
-        best = _mutually_best(low, high, price, first, len(planes))
+        best = similar[_mutually_best(low[similar], high[similar], price[similar], first, len(planes))]
         target = np.arange(len(planes))
         target[high[best]] = low[best]
         stays = target == np.arange(len(planes))

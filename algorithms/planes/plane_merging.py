@@ -8,6 +8,7 @@ from ..geometry.boxes import Boxes, around
 from ..geometry.groups import items
 from ..stage import Monitor
 from ..threads import in_chunks
+from .best_pairs import merge_best_pairs
 from .least_squares_planes import Planes, planes_of
 
 # Points spread evenly within a tolerance lie this share of it off the middle (root mean square).
@@ -103,38 +104,16 @@ def join_pieces(pieces: Planes, voxel: np.ndarray, boxes: Boxes, tolerance: floa
     Notes
     -----
     Of two neighbors the one with fewer points belongs to the other's plane if its points lie no farther off it, as
-    root mean square, than points would that are spread evenly within the tolerance. In each round every plane picks
-    the larger neighbor that it fits best, and is joined to it unless that one picks another plane itself. Then planes
-    are fitted again. So they grow from their largest pieces on.
+    root mean square, than points would that are spread evenly within the tolerance. Pairs that are the best of both
+    are joined in rounds, and planes are fitted again: what does not fit at first may fit a better plane later.
     """
-    a, b = _neighbors(voxel, boxes)
-    group, planes = np.arange(len(pieces)), pieces
-    for step in range(_MAX_ROUNDS):
-        monitor.progress(step / _MAX_ROUNDS)
-        one, other = group[a], group[b]
-        apart = one != other
-        a, b, one, other = a[apart], b[apart], one[apart], other[apart]
-        swap = (planes.count[one] > planes.count[other]) | ((planes.count[one] == planes.count[other]) & (one < other))
-        small, large = np.where(swap, other, one), np.where(swap, one, other)
-        off = planes.deviation(small, large)
-        # What doesn't fit now may fit a better plane later.
-        fits = off <= tolerance * _EVEN
-        joined = _joined(small[fits], large[fits], off[fits], len(planes))
-        if (joined == np.arange(len(planes))).all():
-            break
-        number, group_of = np.unique(joined, return_inverse=True)
-        planes, group = planes.merged(group_of, len(number)), group_of[group]
-    return group
 
+    def cost(planes: Planes, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        is_larger = planes.count[one] > planes.count[other]
+        off = planes.deviation(np.where(is_larger, other, one), np.where(is_larger, one, other))
+        return np.where(off <= tolerance * _EVEN, off, np.inf)
 
-def _joined(small: np.ndarray, large: np.ndarray, off: np.ndarray, n: int) -> np.ndarray:
-    """Return the plane (n,) that each of n planes is joined to, itself where it stays."""
-    order = np.lexsort((large, off, small))
-    picking, first = np.unique(small[order], return_index=True)
-    joined = np.arange(n)
-    joined[picking] = large[order][first]
-    stays = joined == np.arange(n)
-    return np.where(stays[joined], joined, np.arange(n))
+    return merge_best_pairs(pieces, *_neighbors(voxel, boxes), cost, monitor)[1]
 
 
 def _neighbors(voxel: np.ndarray, boxes: Boxes) -> tuple[np.ndarray, np.ndarray]:

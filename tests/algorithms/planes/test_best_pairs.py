@@ -33,3 +33,18 @@ def test_a_row_of_planes_that_are_all_alike_takes_few_rounds():
     assert len(merged) == 1
     assert not group.any()
     assert len(rounds) < 40
+
+
+def test_what_does_not_fit_at_first_may_fit_a_larger_plane_later():
+    """A third plane fits no single one of the others, but both together."""
+    xyz = np.array([[x + dx, dy, 0.0] for x in range(3) for dx, dy in ((0, 0), (0.5, 0), (0, 1), (0.5, 1))])
+
+    def cost(planes, one, other):
+        is_large = np.maximum(planes.count[one], planes.count[other]) > 4
+        return np.where(is_large | (one + other == 1), 1.0, np.inf)
+
+    merged, group = merge_best_pairs(
+        planes_of(xyz, np.repeat(np.arange(3), 4), 3), np.array([0, 1]), np.array([1, 2]), cost, Monitor()
+    )
+    assert len(merged) == 1
+    assert not group.any()
