@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.tiling.run_in_tiles import tunables_of
+from lidar_buildings.algorithms.tiling.tiled_steps import in_blocks
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -49,3 +51,18 @@ def test_all_three_ways_to_give_a_constant_are_read(constants):
     assert value["refine_buildings._RULES.becomes"] == "0.65"
     assert value["classify_water._RULES.window"] == "5.0"
     assert value["soft_shares._NEAR"] == "0.9"
+
+
+def test_pages_name_the_distances_that_are_read_around_blocks():
+    page = (ROOT / "docs" / "surveys.md").read_text(encoding="utf-8")
+    named = re.findall(r"^\| (\*.+\*) \| ([\d.]+) m \|", page, re.MULTILINE)
+    assert len(named) == 7
+    reaches = {one.title: (in_blocks(one), tunables_of(in_blocks(one), {})) for one in PIPELINES.values()}
+    for titles, meters in named:
+        for title in re.findall(r"\*([^*]+)\*", titles):
+            composite, tunables = reaches[title]
+            assert composite.reach(tunables) == pytest.approx(float(meters), abs=0.5), title
+    methods = (ROOT / "docs" / "methods" / "in_tiles.md").read_text(encoding="utf-8")
+    detected = named[0][1]
+    assert f"{detected} m for *Detect buildings*" in methods
+    assert f"That is {detected} m for *Detect buildings*" in page

@@ -78,7 +78,7 @@ BUILDING_FIELDS = (
     Field(
         "check",
         int,
-        f"2: a level under 2.2 and the one asked for, or over {CHECKS.poor:.0%} of the roof points off. "
+        f"2: a level under 2.2 and under the one asked for, or over {CHECKS.poor:.0%} of the roof points off. "
         f"1: over {CHECKS.doubtful:.0%} off, or "
         f"points on less than {CHECKS.covered:.0%} of the area, or less than {CHECKS.weakest:.0%} of the points of a "
         "large face on it. 0: sound",

@@ -11,14 +11,11 @@ from .survey import Survey
 # of them with a window that was enlarged, and the main process need less than 4 GB.
 MOST_POINTS = 5_300_000
 
-# Sides of blocks are multiples of this, m.
-_SIDE_STEP = 50.0
+# Sides of blocks are multiples of this, m: round numbers, and little smaller than what fits.
+_SIDE_STEP = 10.0
 
 # Least and greatest side unless a cloud is dense, m; smaller blocks would work mostly on what lies around them.
 _LEAST_SIDE, _MOST_SIDE = 100.0, 1600.0
-
-# In dense clouds sides are multiples of this, m.
-_DENSE_STEP = 10.0
 
 # Least side in dense clouds, in distances that are read around a block: the block is then a seventh of its window.
 _LEAST_HALOS = 1.25
@@ -40,11 +37,11 @@ def side_of_blocks(density: float, halo: float) -> float:
     halo : float
         Distance around a block within which points are read, m.
     """
-    fits = np.sqrt(MOST_POINTS / density) - 2 * halo
+    fits = np.floor((np.sqrt(MOST_POINTS / density) - 2 * halo) / _SIDE_STEP) * _SIDE_STEP
     if fits >= _LEAST_SIDE:
-        return float(min(np.floor(fits / _SIDE_STEP) * _SIDE_STEP, _MOST_SIDE))
-    least = max(np.ceil(_LEAST_HALOS * halo / _DENSE_STEP), 1.0) * _DENSE_STEP
-    return float(min(max(np.floor(fits / _DENSE_STEP) * _DENSE_STEP, least), _LEAST_SIDE))
+        return float(min(fits, _MOST_SIDE))
+    least = max(np.ceil(_LEAST_HALOS * halo / _SIDE_STEP), 1.0) * _SIDE_STEP
+    return float(min(max(fits, least), _LEAST_SIDE))
 
 
 def blocks_of(survey: Survey, side: float) -> list[Block]:

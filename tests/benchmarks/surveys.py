@@ -42,7 +42,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # no
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
-from lidar_buildings.algorithms.tiling.block_plan import MOST_POINTS  # noqa: E402
+from lidar_buildings.algorithms.tiling.block_plan import side_of_blocks  # noqa: E402
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles  # noqa: E402
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles  # noqa: E402
 from lidar_buildings.algorithms.tiling.survey import open_survey  # noqa: E402
@@ -260,7 +260,7 @@ def cost(n_tiles: int, seed: int = 0) -> list[Table]:
     facts = json.loads((FOLDER / "survey_tries.json").read_text())
     tries = np.array(facts["tries"])
     halo = tries[:, 0].min()
-    side = float(np.floor((np.sqrt(MOST_POINTS / _DENSITY) - 2 * halo) / 50.0) * 50.0)
+    side = side_of_blocks(_DENSITY, halo)
     window = side + 2 * halo
     in_window, in_block, in_tile = (length**2 * _DENSITY for length in (window, side, 1000.0))
     # Every point of a window costs what points of a measured block did, windows that were worked on again among them.

@@ -467,7 +467,7 @@ def test_reviewed_buildings_stay_in_tiles_each_once(points, tmp_path):
 
 @pytest.mark.parametrize(
     ("density", "halo", "side"),
-    [(7.7, 80.0, 650), (100, 80, 100), (0.01, 80, 1600), (400, 26, 60), (20_000, 26, 40), (1e6, 0, 10)],
+    [(7.7, 80, 660), (20, 160.5, 190), (100, 80, 100), (0.01, 80, 1600), (400, 26, 60), (20_000, 26, 40), (1e6, 0, 10)],
 )
 def test_blocks_have_room_for_their_points(density, halo, side):
     """In a dense plant, where little is looked at around a block, it is smaller than 100 m."""
