@@ -8,6 +8,7 @@ import numpy as np
 
 from ..geometry.groups import least_of, placed, run_starts
 from ..geometry.polylines import simplify
+from ..geometry.principal_axes import principal_axes
 from ..neighborhoods.covariance import full_matrices
 from ..planes.least_squares_planes import planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
@@ -224,9 +225,8 @@ def _splits(xyz: np.ndarray, tolerance: float) -> np.ndarray:
 
 def _across(xyz: np.ndarray) -> np.ndarray:
     """Return positions (n,) along the direction in plan in which a line extends most (m)."""
-    offset = xyz[:, :2] - xyz[:, :2].mean(axis=0)
-    direction = np.linalg.eigh(offset.T @ offset)[1][:, 1]
-    return offset @ direction
+    center, _, axes = principal_axes(xyz[:, :2])
+    return (xyz[:, :2] - center) @ axes[:, 1]
 
 
 def _described(

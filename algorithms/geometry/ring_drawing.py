@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .principal_axes import principal_axes
+
 # Shortest run, in samples: shorter edges are drawn as steps between two runs.
 _SHORTEST = 3
 
@@ -307,10 +309,9 @@ class _Chain:
         left_out = min(2, (last - first - 1) // 3)
         inner = slice(first + left_out, last - left_out)
         samples, unit, is_main = self.middles[inner], self.ways.unit[way], bool(self.ways.is_main[way])
-        mean = samples.mean(axis=0)
+        mean, _, axes = principal_axes(samples)
         if not is_main and len(samples) > _SHORTEST:
-            _, vectors = np.linalg.eigh(np.cov((samples - mean).T))
-            fitted = vectors[:, -1] * np.sign(vectors[:, -1] @ unit)
+            fitted = axes[:, 1] * np.sign(axes[:, 1] @ unit)
             unit = fitted if fitted @ unit > np.cos(np.radians(_FAN / 2)) else unit
         return mean, unit, is_main
 

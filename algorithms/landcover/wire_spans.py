@@ -9,6 +9,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.groups import members
+from ..geometry.principal_axes import principal_axes
 from ..packages import spatial
 from ..rules import rules
 
@@ -292,10 +293,9 @@ def fitted(xyz: np.ndarray) -> Optional[Span]:
     """Return the span through points (n, 3), m, by least squares; None if too few, too short or not bent as a wire."""
     if len(xyz) < RULES.least_points:
         return None
-    middle = xyz[:, :2].mean(axis=0)
-    offset = xyz[:, :2] - middle
-    direction = np.linalg.eigh(offset.T @ offset)[1][:, 1]
-    along = offset @ direction
+    middle, _, axes = principal_axes(xyz[:, :2])
+    direction = axes[:, 1]
+    along = (xyz[:, :2] - middle) @ direction
     if np.ptp(along) < RULES.least_length:
         return None
     curve, covariance = np.polyfit(along, xyz[:, 2], 2, cov=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.groups import components, placed
+from ..geometry.principal_axes import principal_axes
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..packages import spatial
 from ..planes.least_squares_planes import planes_of
@@ -185,10 +186,8 @@ class _Growth:
 
 def _plane(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return center and upward normal of the least-squares plane of points."""
-    center = xyz.mean(axis=0)
-    offset = xyz - center
-    normal = np.linalg.eigh(offset.T @ offset)[1][:, 0]
-    return center, normal if normal[2] >= 0 else -normal
+    center, _, axes = principal_axes(xyz)
+    return center, axes[:, 0] if axes[2, 0] >= 0 else -axes[:, 0]
 
 
 def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray, tolerance: float) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.boxes import Boxes
+from ..geometry.principal_axes import principal_axes
 from ..planes.voxel_planes import more_than_chance
 from ..stage import Monitor
 from ..threads import in_chunks
@@ -225,8 +226,6 @@ class HoughPlanes:
         for _ in range(_REFINEMENTS):
             if on_plane.sum() < _LEAST_POINTS:
                 return np.zeros(len(xyz), bool)
-            center = xyz[on_plane].mean(axis=0)
-            offset = xyz[on_plane] - center
-            normal = np.linalg.eigh(offset.T @ offset)[1][:, 0]
-            on_plane = np.abs((xyz - center) @ normal) <= self.tolerance
+            center, _, axes = principal_axes(xyz[on_plane])
+            on_plane = np.abs((xyz - center) @ axes[:, 0]) <= self.tolerance
         return on_plane

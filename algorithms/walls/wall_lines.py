@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..geometry.principal_axes import principal_axes
 from ..neighborhoods.covariance import MIN_NEIGHBORS, Shapes, Within, reduce_neighborhoods
 from ..stage import Monitor
 
@@ -263,11 +264,9 @@ def _longest_run(along: np.ndarray) -> np.ndarray:
 
 def fit_line(xy: np.ndarray, points: np.ndarray) -> WallLine:
     """Return the line of least squares across through points."""
-    middle = xy[points].mean(axis=0)
-    offsets = xy[points] - middle
-    values, vectors = np.linalg.eigh(offsets.T @ offsets / len(points))
-    direction = vectors[:, 1]
-    return WallLine(middle, direction, points, offsets @ direction, float(np.sqrt(max(values[0], 0.0))))
+    middle, variances, axes = principal_axes(xy[points])
+    direction = axes[:, 1]
+    return WallLine(middle, direction, points, (xy[points] - middle) @ direction, float(np.sqrt(variances[0])))
 
 
 def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[WallLine]:
