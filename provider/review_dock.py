@@ -198,6 +198,7 @@ class ReviewDock(QDockWidget):
         """Review a layer, or none; the decisions on the one before are saved."""
         if self.review is not None:
             self.review.layer.willBeDeleted.disconnect(self._forget)
+            self._end_division()
             self._try(Review.end)
         self.review, self._fid = None, None
         if layer is not None:
@@ -262,10 +263,7 @@ class ReviewDock(QDockWidget):
     def _show(self, *_: Any) -> None:
         """Show the current building: in words, on the map and in space."""
         before, self._fid = self._fid, self._listed[self.row].id() if 0 <= self.row < len(self._listed) else None
-        if self._tool is not None:
-            self.canvas.setMapTool(self._tool)
-            self.review.layer.removeSelection()
-            self._tool = None
+        self._end_division()
         self._band.reset(Qgis.GeometryType.Polygon)
         if self._fid is None:
             self.facts.setText(_nothing())
@@ -312,6 +310,13 @@ class ReviewDock(QDockWidget):
         review.prepare_division(self._current())
         self._tool = self.canvas.mapTool()
         self.iface.actionSplitFeatures().trigger()
+
+    def _end_division(self) -> None:
+        """Give the tool back that was there before a line was drawn."""
+        if self._tool is not None:
+            self.canvas.setMapTool(self._tool)
+            self.review.layer.removeSelection()
+            self._tool = None
 
     def run_again(self, review: Review) -> None:
         """Open the dialog of the run that made the buildings, with its parameters and with these decisions.

@@ -252,7 +252,8 @@ def _eave(solids: Sequence[Solid]) -> float:
             # The middles of the quarters of an edge have its heights.
             for share in (0.125, 0.375, 0.625, 0.875):
                 edges.append(np.column_stack([(start + share * (end - start))[is_upper, 2], length / 4]))
-    height, length = np.concatenate(edges)[np.argsort(np.concatenate(edges)[:, 0], kind="stable")].T
+    found = np.concatenate(edges)
+    height, length = found[np.argsort(found[:, 0], kind="stable")].T
     return float(height[np.searchsorted(np.cumsum(length), _EAVE * length.sum())])
 
 

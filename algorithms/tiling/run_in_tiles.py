@@ -103,11 +103,6 @@ def check_can_be_tiled(pipeline: Pipeline) -> None:
         raise ValueError(f"{pipeline.title} can't be run in tiles: {why}; run it on each tile by itself.")
 
 
-def can_be_tiled(pipeline: Pipeline) -> bool:
-    """Whether a composite can be run in tiles: it works on one cloud, and no step of it is decided by the whole."""
-    return not why_whole(pipeline)
-
-
 class _Plan(NamedTuple):
     """How a survey is sampled, by step that asks, the side of its blocks (m), and what is read around each (m)."""
 

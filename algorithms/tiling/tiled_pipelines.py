@@ -10,10 +10,9 @@ from ..packages import ESSENTIAL
 from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
 from ..stage import Layer, Raster, TextFile
-from .run_in_tiles import can_be_tiled
 from .settings import CUT_SETTINGS, SETTINGS, Setting
 from .tiled_run import TilesOptions
-from .tiled_steps import afterwards, of_survey
+from .tiled_steps import afterwards, of_survey, why_whole
 
 # What the help says of every composite in tiles.
 _DESCRIPTION = f"""
@@ -147,7 +146,7 @@ def survey_tool_help(tool: SurveyTool) -> str:
 
 
 TILED_PIPELINES = {
-    tiled.name: tiled for tiled in (TiledPipeline(of_survey(one)) for one in PIPELINES.values() if can_be_tiled(one))
+    tiled.name: tiled for tiled in (TiledPipeline(of_survey(one)) for one in PIPELINES.values() if not why_whole(one))
 }
 
 

@@ -22,6 +22,7 @@ from qgis.core import (
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
+from qgis.gui import QgsMapToolPan
 from qgis.PyQt.QtCore import QCoreApplication, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QDockWidget, QPushButton
@@ -237,6 +238,17 @@ def split(layer):
     layer.beginEditCommand("Features split")
     layer.splitFeatures(QgsLineString([QgsPoint(44, -1), QgsPoint(44, 11)]), False, False)
     layer.endEditCommand()
+
+
+def test_a_window_that_is_closed_while_a_line_is_drawn_gives_the_tool_back(dock, layer, qgis_iface):
+    canvas = qgis_iface.mapCanvas()
+    before, drawing = QgsMapToolPan(canvas), QgsMapToolPan(canvas)
+    canvas.setMapTool(before)
+    press(dock, Qt.Key.Key_L)
+    canvas.setMapTool(drawing)
+    dock.close()
+    assert (canvas.mapTool(), layer.selectedFeatureIds()) == (before, [])
+    canvas.unsetMapTool(before)
 
 
 def test_a_divided_building_shares_its_numbers(dock, layer, qgis_iface):

@@ -17,9 +17,10 @@ from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
 from lidar_buildings.algorithms.tiling.block_plan import side_of_blocks
-from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
+from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
+from lidar_buildings.algorithms.tiling.tiled_steps import why_whole
 from lidar_buildings.algorithms.tiling.tiles import rows_of
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import crown, roof
@@ -410,7 +411,7 @@ def test_tiles_and_their_folder_are_checked_before_anything_runs(points, tmp_pat
         run([tmp_path / "empty"], tmp_path / "result")
     with pytest.raises(ValueError, match="has no tunable 'nonsense'"):
         run(paths, tmp_path / "result", tunables={"nonsense": 1})
-    assert can_be_tiled(DETECT)
+    assert not why_whole(DETECT)
     assert not (tmp_path / "result").exists()
 
 
