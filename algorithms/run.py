@@ -268,8 +268,9 @@ def _result(
     stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: StageResults, monitor: Monitor
 ) -> Optional[Cloud]:
     """Return the cloud with the results of the stage: the same one, or a new one."""
+    written = {name: values for name, values in made.dimensions.items() if values is not None}
     if stage.creates:
-        return create_cloud({name: values for name, values in made.dimensions.items() if values is not None})
+        return create_cloud(written)
     if not clouds:
         return None
     left_out = sum(int((~points).sum()) for points in used if points is not None)
@@ -277,17 +278,15 @@ def _result(
         monitor.inform(f"{left_out:,} withheld points are left out.")
     if stage.merges:
         seen = [cloud if points is None else cloud.take(np.flatnonzero(points)) for cloud, points in zip(clouds, used)]
-        cloud, points = merge_records(seen, made.dimensions.pop("xyz", None), monitor), None
+        cloud, points = merge_records(seen, written.pop("xyz", None), monitor), None
     elif stage.selects:
         cloud, points = _selected(stage, clouds[0], made.selected), None
     else:
         cloud, points = clouds[0], used[0]
-    written = [name for name, values in made.dimensions.items() if values is not None]
     _warn_of_foreign(cloud, written, monitor)
     _clear(cloud, written, monitor)
-    for name, values in made.dimensions.items():
-        if values is not None:
-            cloud.set(name, _of_all_points(cloud, name, values, points))
+    for name, values in written.items():
+        cloud.set(name, _of_all_points(cloud, name, values, points))
     return cloud
 
 

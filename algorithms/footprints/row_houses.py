@@ -403,7 +403,7 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float, along: float) -> 
 
 @dataclass(frozen=True)
 class _Sums:
-    """Sums over the points within half a meter along a line: of 1, y, y², z, yz and z², y from the sample itself."""
+    """Sums over the points near each sample along a line: of 1, y, y², z, yz and z², y from the sample itself."""
 
     n: np.ndarray
     y: np.ndarray

@@ -189,7 +189,6 @@ def extract_wall_footprints(
     >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
     >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
     >>> xyz = np.column_stack([x, y, z])
-    >>> classes = np.where(z > 0, 6, 2)
     >>> footprints, edges, corners, report = extract_wall_footprints(xyz, np.where(z > 0, 1, 0))
     >>> len(footprints)
     1
