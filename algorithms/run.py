@@ -240,7 +240,8 @@ def _argument(
         dimension = name[len(REFERENCE_PREFIX) :]
         if reference is None or (name in stage.optional and not reference.has(dimension)):
             return None
-        return _present(reference, dimension)
+        values, shown = _present(reference, dimension), _used(reference)
+        return values if shown is None else values[shown]
     if name == VALUES:
         if name in stage.optional and not tunables[DIMENSION]:
             return None

@@ -263,6 +263,13 @@ def test_two_clouds_are_compared_from_one_origin(cloud):
     assert report.values["same"]
 
 
+def test_withheld_points_of_a_reference_are_not_shown_either(cloud):
+    """Of the same points, those left out of the cloud were compared with the points of the reference after them."""
+    withhold(cloud, 1)
+    report = run_stage(assess_toy.stage, cloud, reference=cloud.copy()).report
+    assert report.values == {"distance": 0.0, "same": True}
+
+
 def test_the_cloud_keeps_its_origin_when_a_reference_has_another(cloud):
     other = create_cloud({"xyz": cloud.get("xyz")})
     other.origin = np.array([500_000.0, 0.0, 0.0])
