@@ -38,11 +38,12 @@ FIELDS = (
     Field("regularized", int, "1 straightened along main directions, 0 outline as traced or in chords of it"),
 )
 
-# Percentile of the roof's heights along the outline that is the eaves': gables rise from eaves.
-_EAVE = 25
+# Percentile of the roof's heights along the outline that is the eaves', of footprints and models: gables rise
+# from eaves.
+EAVE = 25
 
-# Percentile of the roof's heights that is the ridge's: chimneys rise above it.
-_RIDGE = 98
+# Percentile of the heights of a roof's points that is the ridge's: chimneys rise above it.
+RIDGE = 98
 
 # Points of the roof to which a plane is fitted next to each position on the outline.
 _PLANE = 12
@@ -167,8 +168,8 @@ def roof_heights(
         Values of the fields ``eave_height``, ``ridge_height`` and ``height``.
     """
     eaves = _eave_heights(along, is_outer, plan, height, spacing)
-    percentiles = {"ridge_height": _percentile(height, _RIDGE), "height": _percentile(height, 50)}
-    return {"eave_height": _percentile(eaves, _EAVE), **percentiles}
+    percentiles = {"ridge_height": _percentile(height, RIDGE), "height": _percentile(height, 50)}
+    return {"eave_height": _percentile(eaves, EAVE), **percentiles}
 
 
 class _Owners:

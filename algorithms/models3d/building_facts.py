@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..footprints.footprint_attributes import EAVE
 from ..geometry.groups import split_groups
 from ..rules import rules
 from ..stage import Field, LayerFeatures
@@ -48,9 +49,6 @@ class CHECKS:
     #: Share of the points of a large face that lie on it: on the other side of a half it is not the face that was seen
     weakest: float = 0.5
 
-
-# Quantile of the heights along the outline that is the eaves', as in 'Extract footprints': gables rise from eaves.
-_EAVE = 0.25
 
 BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
@@ -254,7 +252,7 @@ def _eave(solids: Sequence[Solid]) -> float:
                 edges.append(np.column_stack([(start + share * (end - start))[is_upper, 2], length / 4]))
     found = np.concatenate(edges)
     height, length = found[np.argsort(found[:, 0], kind="stable")].T
-    return float(height[np.searchsorted(np.cumsum(length), _EAVE * length.sum())])
+    return float(height[np.searchsorted(np.cumsum(length), EAVE / 100 * length.sum())])
 
 
 def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:

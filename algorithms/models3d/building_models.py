@@ -8,6 +8,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..footprints.footprint_attributes import RIDGE
 from ..geometry.groups import components, placed
 from ..geometry.line_segments import distances_to_rings
 from ..sampling.points_on_top import are_on_roof, distances, root_mean_square
@@ -26,9 +27,6 @@ LEVELS = ("1.2", "1.3", COARSE, FINE, OVERHANGS)
 # Area (m²) of the smallest plane without dormers, as the level is defined, and its least share of the largest plane:
 # roofs of small buildings keep all their sides.
 _COARSE_AREA, _COARSE_SHARE = 10.0, 0.5
-
-# Percentile of the heights of roof points that is the ridge's, as in 'Extract footprints': chimneys rise above it.
-_RIDGE = 98
 
 # Points within this distance (m) of the outline, in plan, are on a parapet if they are so high above a level face (m):
 # above chimney caps and gutters, below a storey. This share of them is that high where there is a parapet: one of 0.3 m
@@ -285,7 +283,7 @@ def _describe(model: BuildingModel, top: _Top, partition: Partition, above: np.n
     model.explained = _explained(off, top)
     model.off = share_off(off)
     roof = over & are_on_roof(above, top.is_low)
-    model.ridge = float(np.percentile(top.xyz[roof, 2], _RIDGE)) if roof.any() else np.nan
+    model.ridge = float(np.percentile(top.xyz[roof, 2], RIDGE)) if roof.any() else np.nan
     model.covered = covered_share(top.rings, top.xyz, top.settings.spacing)
     off_of = {int(plane): _off(top, above, label == plane) for plane in np.unique(label[over])}
     model.face_rms = {plane: root_mean_square(off) for plane, off in off_of.items()}

@@ -31,7 +31,7 @@ from ..sampling.points_on_top import RULES
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage
 from .building_facts import CHECKS, type_of_faces
 from .roof_partition import cells_inside, covered_share
-from .roof_planes import RoofPlanes, find_roof_planes
+from .roof_planes import STEEPEST, RoofPlanes, find_roof_planes
 
 SEEN, PARTLY, TREES, ABSENT, EMPTY = "seen", "partly seen", "under trees", "no building", "no points"
 
@@ -47,8 +47,8 @@ _BESIDE = 4
 # Points that no class calls building are of roofs and crowns from this height (m) above the ground on: cars are lower.
 _LEAST_HEIGHT = 2.0
 
-# Area (m²) of the smallest plane of a roof, and slope (°) of the steepest, as in 'Reconstruct roofs'.
-_MIN_AREA, _STEEPEST = 1.5, 75.0
+# Area (m²) of the smallest plane of a roof, as in 'Reconstruct roofs'.
+_MIN_AREA = 1.5
 
 # Least share of the points of a building that lie on planes where only these are its roof: less is a dome or a wreck.
 _ON_PLANES = 0.5
@@ -277,7 +277,7 @@ def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], 
     if not are_classified:
         building = building[points.xyz[building, 2] >= base + _LEAST_HEIGHT]
     least = max(5, round(_MIN_AREA / points.spacing**2))
-    planes = find_roof_planes(points.xyz[building] - points.xyz[building[:1]], tolerance, _STEEPEST, least)
+    planes = find_roof_planes(points.xyz[building] - points.xyz[building[:1]], tolerance, STEEPEST, least)
     if not are_classified:
         is_plant = _are_plants(points.xyz[building], planes.label >= 0, points.spacing)
         plants = np.concatenate([plants, building[is_plant]])

@@ -6,11 +6,12 @@ import numpy as np
 
 from ..geometry.line_segments import edge_distances
 from ..geometry.rings import sides_of_rings, signed_area
+from ..geometry.subdivision import SNAP
 from .mending import connected
 from .roof_partition import Partition, are_inside
 from .solid_faces import build_solid
 from .solid_faults import fault_of
-from .solid_levels import Levels
+from .solid_levels import ON_OUTLINE, Levels
 from .solids import Solid
 
 # Least and greatest overhang (m): level 2.3 is defined from 0.2 m on; wider ones are porches and lower roofs.
@@ -39,7 +40,7 @@ _ON_SIDE = 0.02
 _PARALLEL = 0.17
 
 # Distances (m) from which cuts go through vertices: as for footprints, and where that has a fault as for roofs.
-_SNAPS = 0.005, 0.05
+_SNAPS = ON_OUTLINE, SNAP
 
 
 def wall_rings(xyz: np.ndarray, rings: list, solids: list[Solid], base: float, spacing: float) -> list[np.ndarray]:

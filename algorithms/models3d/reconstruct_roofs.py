@@ -42,6 +42,7 @@ from .building_facts import (
 from .building_models import LEVELS, Settings, model_building
 from .joined_terrain import PATCH, TERRAIN_FIELDS, on_terrain, terrain_layer, triangulate_terrain
 from .roof_limits import RADIUS
+from .roof_planes import STEEPEST
 from .solids import ROOF, SOFFIT, WALL
 
 # Number of footprints without a model that a warning names.
@@ -111,7 +112,7 @@ def reconstruct_roofs(
         "usual. 0: no terrain, and a level ground under each building.",
         within="[0, 10] m",
     ),
-    max_slope: float = tunable(75.0, "Slope of the steepest roof plane.", within="[1, 85]°", advanced=True),
+    max_slope: float = tunable(STEEPEST, "Slope of the steepest roof plane.", within="[1, 85]°", advanced=True),
     tolerance: Optional[float] = tunable(
         None,
         "Distance at which a point lies on a plane. A larger one gives fewer planes.",

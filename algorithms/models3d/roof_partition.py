@@ -15,9 +15,7 @@ from ..geometry.subdivision import SNAP, Subdivision
 from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
 from .solid_faults import RULES
-
-# The footprint itself is kept to this, m.
-_SNAP_OUTLINE = 0.005
+from .solid_levels import ON_OUTLINE
 
 # A tip of a cell narrower than this (m) is closed: twice the distance that edges of a face keep from each other.
 _TIP = 2 * RULES.apart
@@ -99,7 +97,7 @@ def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarra
     pieces = sides_of_rings(rings)
     length = np.hypot(*(pieces[:, 1] - pieces[:, 0]).T)
     for start, end in pieces[np.argsort(-length, kind="stable")]:
-        cells.cut(start, end, _SNAP_OUTLINE)
+        cells.cut(start, end, ON_OUTLINE)
     cells.close_tips(_TIP)
     inside = are_inside(cells, rings)
     cells.close(~inside)

@@ -15,6 +15,9 @@ from ..planes.least_squares_planes import planes_of
 # Points of the neighborhood whose plane shows which way a roof faces: two rings around a point.
 _NEIGHBORS = 12
 
+# Slope (°) of the steepest plane of a roof; steeper ones are walls.
+STEEPEST = 75.0
+
 # Largest angle (°) between the normals of a point and of its plane; normals of a dozen points with 3 cm of noise
 # vary by less than half.
 _FACING = 25.0

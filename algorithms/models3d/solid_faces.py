@@ -14,10 +14,8 @@ from ..geometry.rings import rings_of_edges
 from .solid_levels import BASE, Levels, Position
 from .solids import GROUND, ROOF, SOFFIT, WALL, Ring, Solid, edges_around, groups_of
 
-# A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous.
-_SUPERFLUOUS = 0.0005
-
-# Walls whose corners are off their common plane by less than this (m) are one face.
+# A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous, and walls whose
+# corners are off their common plane by less are one face.
 _STRAIGHT = 0.0005
 
 
@@ -244,4 +242,4 @@ def _is_between(position: Position, one: Position, other: Position) -> bool:
     """Return whether a position lies in line with two others, from the first one toward the second one."""
     (x, y, z), (a, b, c) = ([p - q for p, q in zip(end, one)] for end in (position, other))
     across = math.hypot(y * c - z * b, z * a - x * c, x * b - y * a)
-    return across < _SUPERFLUOUS * max(math.hypot(a, b, c), 1e-12) and x * a + y * b + z * c > 0
+    return across < _STRAIGHT * max(math.hypot(a, b, c), 1e-12) and x * a + y * b + z * c > 0

@@ -21,8 +21,8 @@ _SAME_HEIGHT = 0.016
 # Vertices that are nearer to an intersection of planes than this (m) are not moved.
 _EXACT = 0.0001
 
-# A vertex this close (m) to the line of its neighbors on the outline is no corner of it.
-_ON_OUTLINE = 0.005
+# The outline of a footprint is kept to this (m): a vertex as close to the line of its neighbors on it is no corner.
+ON_OUTLINE = 0.005
 
 # Directions of lines whose spread is less than this share of the greatest one have no intersection to go to.
 _LEAST_TURN = 0.05
@@ -164,7 +164,7 @@ class Levels:
         (beyond,) = beside - {neighbor}
         (x0, y0), (x1, y1), (x, y) = (self.plan[v] for v in (neighbor, beyond, vertex))
         across = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
-        return abs(across) < _ON_OUTLINE * math.hypot(x1 - x0, y1 - y0)
+        return abs(across) < ON_OUTLINE * math.hypot(x1 - x0, y1 - y0)
 
     def _join_at(self, kept: int, gone: int, plan: tuple[float, float]) -> bool:
         """Join two vertices at a position if no cell turns over or falls apart; return whether they were joined.

@@ -11,7 +11,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.candidate_points import candidates
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .cylinder_fits import Cylinder, across_axis, fit_cylinder
-from .stem_search import BREAST, find_stems, ground_level
+from .stem_search import BREAST, FAR, LEAST_POINTS, ROUND, find_stems, ground_level
 from .surface_normals import refuse_line
 from .tree_structure import Branch, Slices, branches_of, lengths_beyond, self_supporting_slices, smooth, voxels_of
 
@@ -23,10 +23,6 @@ _LEAST_VOXEL = 0.02
 
 # Gaps that paths cross with nothing set (voxels).
 _GAP_VOXELS = 8.0
-
-# Largest median absolute deviation of the distances of points from the line, as a share of the radius, of a piece whose
-# cross section is a circle. Stems at breast height are recognized by the same share.
-_ROUND = 0.2
 
 # Largest measured radius (of that estimated): wider ones are leaves.
 _WIDEST = 3.0
@@ -40,15 +36,6 @@ _AHEAD = 5
 
 # Length (m) of the pieces of a branch that have a radius of their own: branches taper little over it.
 _PIECE = 0.5
-
-# Distance from its line within which the points of a piece lie (median of their distances): farther ones are leaves.
-_WITHIN = 2.5
-
-# Fewest points of a cylinder that is fitted to a piece: twice those that determine it, and a few leaves.
-_FITTED = 12
-
-# Distance from a fitted cylinder within which points are bark (median of their distances): 0.9 of them by chance.
-_OF_BARK = 2.5
 
 _FIELDS = (
     Field("id", int, "number of the branch, as SegmentID of its points"),
@@ -130,11 +117,11 @@ def segment_tree(
     Deviation from the paper: it thins the voxels to a skeleton and finds paths on that. Scanned stems are hollow and
     have holes, and their skeleton is a net; slices by the length of the path have their middle inside the stem. The
     ground below a tree is the lowest point within 1 to 2 m. Gaps up to the maximum are crossed at three times their
-    length: shadows part stems and branches in every scan. Points farther from the middle line than ``_WITHIN`` times
+    length: shadows part stems and branches in every scan. Points farther from the middle line than ``FAR`` times
     the median of their piece of ``_PIECE`` m are leaves. A cylinder is fitted to each piece by least squares, also
     where one side of it is seen. Where none fits, the radius is the median distance of the points from the line. A
     radius must be at least half a voxel and at most ``_WIDEST`` times the estimated one, and the distances scatter by
-    less than ``_ROUND`` of it, as on a circle. Nor may it exceed radii nearer to the root by more than a tenth, or be
+    less than ``ROUND`` of it, as on a circle. Nor may it exceed radii nearer to the root by more than a tenth, or be
     thinner than the next ones. Elsewhere it is estimated from the nearest one measured toward the root, or from the
     stem's at breast height. Forks keep the area of the wood (pipe model), in proportion to the length of all branches
     beyond. A stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if
@@ -227,7 +214,7 @@ def _measured(
         distance = _off_line(line, at, xyz[own])
         piece, n_pieces = (along[at] / _PIECE).astype(np.int64), int(along[-1] / _PIECE) + 1
         reach = _medians(distance, piece, n_pieces)
-        label[own[distance <= _WITHIN * reach[piece]]] = number
+        label[own[distance <= FAR * reach[piece]]] = number
         length = float(along[-1])
         ends = np.append(np.arange(n_pieces) * _PIECE, length)
         stem = int(np.argmin(np.linalg.norm(feet[:, None] - line, axis=2).min(axis=1)))
@@ -239,8 +226,8 @@ def _measured(
             ahead[0] = ahead[1] + steps[0]
         ahead = np.interp((ends[1:] + ends[:-1]) / 2, along, ahead)
         round_pieces = _are_round(distance, piece, reach)
-        for k, bark in enumerate(split_groups(np.where(distance <= _WITHIN * reach[piece], piece, -1), n_pieces)):
-            if len(bark) < _FITTED:
+        for k, bark in enumerate(split_groups(np.where(distance <= FAR * reach[piece], piece, -1), n_pieces)):
+            if len(bark) < LEAST_POINTS:
                 continue
             chord = line[at[bark].max()] - line[at[bark].min()]
             fitted = _fitted(xyz[own[bark]], chord, float(reach[k]))
@@ -286,9 +273,9 @@ def _fitted(xyz: np.ndarray, chord: np.ndarray, reach: float) -> Optional[float]
     for _ in range(3):
         cylinder = fit_cylinder(bark, cylinder)
         off = np.abs(cylinder.local(xyz)[1] - cylinder.radius)
-        bark = xyz[off <= _OF_BARK * np.median(off)]
+        bark = xyz[off <= FAR * np.median(off)]
     # The line lies in the branch or next to it: a cylinder that is thinner runs through some leaves only.
-    is_round = np.median(off) <= _ROUND * cylinder.radius and reach / _SWELLING <= cylinder.radius <= _WIDEST * reach
+    is_round = np.median(off) <= ROUND * cylinder.radius and reach / _SWELLING <= cylinder.radius <= _WIDEST * reach
     return cylinder.radius if is_round else None
 
 
@@ -340,7 +327,7 @@ def _off_line(line: np.ndarray, at: np.ndarray, xyz: np.ndarray) -> np.ndarray:
 def _are_round(distance: np.ndarray, piece: np.ndarray, reach: np.ndarray) -> np.ndarray:
     """Return the mask of pieces (p,) that have points at about one distance (k,), m, ``reach`` (p,), from the line."""
     scatter = _medians(np.abs(distance - reach[piece]), piece, len(reach))
-    return (scatter <= _ROUND * reach) & (np.bincount(piece, minlength=len(reach)) > 0)
+    return (scatter <= ROUND * reach) & (np.bincount(piece, minlength=len(reach)) > 0)
 
 
 def _medians(values: np.ndarray, group: np.ndarray, n_groups: int) -> np.ndarray:

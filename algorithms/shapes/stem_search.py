@@ -21,8 +21,9 @@ _HALF_SLICE = 0.3
 # Largest distance between neighboring points of one stem in the slice (m).
 _APART = 0.15
 
-# Fewest points of a stem in the slice.
-_LEAST_POINTS = 12
+# Fewest points of a stem in the slice, or of a piece of a branch, to which a cylinder is fitted: twice those that
+# determine it, and a few leaves.
+LEAST_POINTS = 12
 
 # Least share of the height of the slice that a stem crosses.
 _CROSSED = 0.7
@@ -30,14 +31,16 @@ _CROSSED = 0.7
 # Least and greatest radius of a stem (m).
 _RADII = (0.015, 1.0)
 
-# Largest median distance of the points from the cylinder, as a share of its radius.
-_ROUGH = 0.2
+# Largest median distance of the points from the cylinder, or from the middle line of a branch that is round, as a share
+# of its radius.
+ROUND = 0.2
 
 # Largest median distance (m) of the points from a cylinder so thin that the share of its radius is less.
 _ROUGHNESS = 0.01
 
-# Distance from the cylinder, in the median of these distances, beyond which points are of leaves and twigs.
-_FAR = 2.5
+# Distance from a cylinder or a line, in the median of these distances, beyond which points are of leaves and twigs: 0.9
+# of those on bark lie nearer by chance.
+FAR = 2.5
 
 # Least cosine of the lean of a stem: 37°.
 _LEAN = 0.8
@@ -82,7 +85,7 @@ def find_stems(xyz: np.ndarray, level: np.ndarray, monitor: Monitor) -> list[tup
     for number, part in enumerate(parts):
         monitor.progress(0.3 + 0.7 * number / len(parts))
         rows = inside[part]
-        stem = _stem(xyz[rows]) if len(rows) >= _LEAST_POINTS else None
+        stem = _stem(xyz[rows]) if len(rows) >= LEAST_POINTS else None
         if stem is not None:
             found.append((stem, float(np.median(level[rows]))))
     return found
@@ -97,10 +100,10 @@ def _stem(xyz: np.ndarray) -> Optional[Cylinder]:
     stem = Cylinder(middle, np.array([0.0, 0.0, 1.0]), max(radius, 1e-3))
     for _ in range(3):
         off = np.abs(stem.local(xyz)[1] - stem.radius)
-        near = off <= max(_FAR * float(np.median(off)), 1e-4)
-        if near.sum() < _LEAST_POINTS:
+        near = off <= max(FAR * float(np.median(off)), 1e-4)
+        if near.sum() < LEAST_POINTS:
             return None
         stem = fit_cylinder(xyz[near], stem)
     off = float(np.median(np.abs(stem.local(xyz)[1] - stem.radius)))
     is_stem = _RADII[0] <= stem.radius <= _RADII[1] and abs(stem.axis[2]) > _LEAN
-    return stem if is_stem and off <= max(_ROUGH * stem.radius, _ROUGHNESS) else None
+    return stem if is_stem and off <= max(ROUND * stem.radius, _ROUGHNESS) else None

@@ -31,12 +31,10 @@ _CHUNK = 1_000
 # Rounds in which a line is smoothed: its steps are from voxel to voxel.
 _SMOOTHINGS = 4
 
-# Height (m) at which a column of wood with a diameter of 1 m buckles under its own weight, growing with the diameter to
-# the power of 2/3. McMahon (1973): 0.79 times the cube root of elasticity over weight, 1.7e6 m for green wood.
-_BUCKLING = 95.0
-
-# Share of that height that trees do not exceed: forest spruces a hundred diameters high, of 30 cm, reach 0.7 of it.
-_SLENDER = 0.75
+# Height (m) that a tree with a diameter of 1 m does not exceed, growing with the diameter to the power of 2/3. A column
+# of green wood buckles under its own weight at 95 m: McMahon (1973), 0.79 times the cube root of 1.7e6 m, which is
+# elasticity over weight. Forest spruces a hundred diameters high, of 30 cm, reach 0.7 of that; this is three quarters.
+_SLENDER = 71.25
 
 # Branches leave their stem at least this high over its root (m): lower points are grass.
 _CLEAR = 0.5
@@ -169,7 +167,7 @@ def self_supporting_slices(voxels: Voxels, stems: np.ndarray, radii: np.ndarray,
         nearest = np.argmin(np.linalg.norm(foot[:, None, :2] - stems[:, :2], axis=2), axis=1)
         height = np.zeros(len(stems))
         np.maximum.at(height, nearest, top[tree] - foot[:, 2])
-        is_slender = height > _SLENDER * _BUCKLING * (2 * radii) ** (2 / 3)
+        is_slender = height > _SLENDER * (2 * radii) ** (2 / 3)
         if not is_slender[1:].any():
             return slices
         # The thinnest one goes first: its wood may belong to any of the others.

@@ -9,11 +9,8 @@ import numpy as np
 
 from ..geometry.rings import signed_area
 from .wall_edges import SEEN, closed
-from .wall_lines import WallLine
+from .wall_lines import MOST, WallLine
 from .wall_outline import Limits, WallOutline
-
-# Walls along an alley are parallel within this angle (cosine): that by which walls of one building are.
-_PARALLEL = np.cos(np.deg2rad(8.0))
 
 # The narrowest alley (m): less is a wall that is seen from both sides, or twice.
 _NARROWEST = 0.3
@@ -39,7 +36,7 @@ def find_alley(outline: WallOutline, limits: Limits) -> Optional[WallLine]:
 def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
     """Return the line halfway between two that are nearly parallel, None where they are not."""
     sign = np.sign(one.direction @ other.direction)
-    if abs(one.direction @ other.direction) < _PARALLEL:
+    if abs(one.direction @ other.direction) < np.cos(MOST):
         return None
     direction = one.direction + sign * other.direction
     # Where lines are not quite parallel, halfway is measured opposite the middle of the second one's points.

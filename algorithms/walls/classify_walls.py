@@ -24,6 +24,7 @@ from ..sampling.surface_noise import ON_PLANE, SURFACES, plane_roughness, surfac
 from ..segmentation.candidate_points import NO_OBJECTS
 from ..stage import Monitor, stage, tunable
 from ..threads import n_threads
+from .surroundings import CELL
 
 # The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
 _REACH_DEVIATIONS = SURFACES.reach
@@ -33,9 +34,6 @@ _LEAST_NEIGHBORS = 8
 
 # Largest number of points of a normal that is set automatically: more would reach around corners.
 _MOST_NEIGHBORS = 30
-
-# Side (m) of the cells of which one roof point is taken when the nearest roof in plan is searched for.
-_ROOF_CELL = 0.25
 
 # Largest distance (m) in plan of a wall from its roof where the roof was seen in part; other walls are under it.
 _NEAR = 2.0
@@ -176,9 +174,9 @@ def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: 
         return owner
     start = all_xy[roof[0]]
     roofs = members(cluster_id)
-    cell = np.floor((all_xy[roof] - start) / _ROOF_CELL).astype(np.int64)
+    cell = np.floor((all_xy[roof] - start) / CELL).astype(np.int64)
     _, first = np.unique(np.column_stack([cell, cluster_id[roof]]), axis=0, return_index=True)
-    positions = (cell[first] + 0.5) * _ROOF_CELL
+    positions = (cell[first] + 0.5) * CELL
     nearest = spatial.cKDTree(positions).query(xy - start, distance_upper_bound=_NEAR + margin, workers=n_threads())[1]
     found = np.flatnonzero(nearest < len(first))
     owner[found] = cluster_id[roof[first]][nearest[found]]

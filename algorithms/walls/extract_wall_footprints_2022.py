@@ -16,7 +16,7 @@ from ..packages import csgraph, sparse
 from ..params import MIN_MAPPED_AREA, SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .candidate_corners import CORNER, OFF_OUTLINE
-from .wall_lines import WallLine, fit_line
+from .wall_lines import LEAST_PAIR, TRIALS, WallLine, fit_line
 from .wall_report import MEASURES, WALL, point_counts, wall_report
 
 # A geometry and its attributes.
@@ -50,14 +50,8 @@ _CORNER_FIELDS = (
     Field("edges", int, "edges that end in it"),
 )
 
-# Pairs of points that lines are tried through, for each line.
-_TRIALS = 500
-
 # Most points that trial lines are scored on: a sample of as many ranks them as all do.
 _SCORED = 3000
-
-# Least distance (m) between the two points of a trial line, as in the authors' program.
-_LEAST_PAIR = 0.5
 
 # Corners are looked for up to this far (m) outside of the box around the wall points, as in the authors' program.
 _AROUND = 10.0
@@ -318,10 +312,10 @@ def sequential_lines(xy: np.ndarray, tolerance: float, min_points: int, seed: in
 
 def _on_best_line(xy: np.ndarray, tolerance: float, rng: np.random.Generator) -> np.ndarray:
     """Return the mask of points (n,) on the line that holds most, of those through pairs of points."""
-    start, end = xy[rng.integers(0, len(xy), (2, _TRIALS))]
+    start, end = xy[rng.integers(0, len(xy), (2, TRIALS))]
     step = end - start
     length = np.hypot(*step.T)
-    is_long = length >= _LEAST_PAIR
+    is_long = length >= LEAST_PAIR
     if not is_long.any():
         return np.zeros(len(xy), bool)
     normal = np.column_stack([-step[is_long, 1], step[is_long, 0]]) / length[is_long, None]

@@ -15,7 +15,7 @@ from ..geometry.grid import plan_box
 from ..geometry.points_in_polygons import are_within
 from ..geometry.rings import sides_of_rings, signed_area
 from ..packages import ndimage
-from .surroundings import without_nested
+from .surroundings import CELL, without_nested
 
 # Area of the smallest part and of the smallest courtyard (square spacings).
 _LEAST_AREA = 16.0
@@ -24,10 +24,7 @@ _LEAST_AREA = 16.0
 # 0.8 and at 1, and one at 0.6. The price of corners leaves superfluous lines out.
 _FINE = 0.6
 
-# Side (m) of the cells in which a roof is compared with walls.
-_CELL = 0.25
-
-# Most cells of one building: extended ones have larger cells.
+# Most cells in which one roof is compared with walls: extended ones have larger cells.
 _MOST_CELLS = 5e5
 
 # Side (m) of the largest cells.
@@ -71,7 +68,7 @@ class RoofCover:
 
     def __init__(self, rings: list[np.ndarray]) -> None:
         low, high = plan_box(np.concatenate(rings))
-        self.cell = float(np.clip(np.sqrt((high - low).prod() / _MOST_CELLS), _CELL, _LARGEST_CELL))
+        self.cell = float(np.clip(np.sqrt((high - low).prod() / _MOST_CELLS), CELL, _LARGEST_CELL))
         shape = np.ceil((high - low + 2 * _ROOM) / self.cell).astype(np.int64)
         self.low, self.high = low - _ROOM, low - _ROOM + shape * self.cell
         self.positions = self.low + (np.indices(shape).reshape(2, -1).T + 0.5) * self.cell

@@ -13,8 +13,8 @@ from ..geometry.rings import along_sides, sides_of_rings, signed_area
 from ..packages import ndimage
 from ..sampling.cloud_sampling import CloudSampling
 
-# Least side (m) of the cells in which surroundings are looked up.
-_CELL = 0.25
+# Least side (m) of the cells in which roofs and their surroundings are looked up.
+CELL = 0.25
 
 # Least side of these cells in point spacings: chance leaves less than one cell of a surface in two hundred empty.
 _CELL_SPACINGS = 2.5
@@ -58,7 +58,7 @@ class Surroundings:
     @cached_property
     def grid(self) -> Grid:
         """The cells."""
-        return grid_over(self._xyz, max(_CELL, _CELL_SPACINGS * self._sampling.spacing))
+        return grid_over(self._xyz, max(CELL, _CELL_SPACINGS * self._sampling.spacing))
 
     @cached_property
     def _table(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

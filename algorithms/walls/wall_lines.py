@@ -12,13 +12,13 @@ from ..neighborhoods.covariance import MIN_NEIGHBORS, Shapes, Within, reduce_nei
 from ..stage import Monitor
 
 # Hypotheses for each line: where a wall holds a tenth of the points, one pair in a hundred lies on it.
-_TRIALS = 500
+TRIALS = 500
 
 # Most points that hypotheses are scored on: a sample of as many ranks them as all do.
 _SCORED = 1500
 
 # Least distance (m) between the two points of a hypothesis: the direction of nearer ones is noise.
-_LEAST_PAIR = 0.5
+LEAST_PAIR = 0.5
 
 # A wall goes on over a gap of this length (m): bushes, cars and holes.
 _GAP = 1.5
@@ -35,8 +35,8 @@ _SAME = 3.0
 # Angles (radians) that are the same in any case: walls are built no straighter.
 _BUILT = np.deg2rad(0.7)
 
-# Angles (radians) that are not the same, however uncertain they are.
-_MOST = np.deg2rad(8.0)
+# Angles (radians) that are not the same, however uncertain they are: walls and sides of a roof within it run alike.
+MOST = np.deg2rad(8.0)
 
 # Points deviate from their line by more than noise does if their variance exceeds its by this many standard errors.
 _CERTAIN = 2.0
@@ -204,10 +204,10 @@ def _best_line(
 ) -> Optional[WallLine]:
     """Return the line that covers the longest stretch of wall, fitted to its points; None without any."""
     scored = left if len(left) <= _SCORED else np.sort(rng.choice(left, _SCORED, replace=False))
-    pair = xy[left[rng.integers(0, len(left), (_TRIALS, 2))]]
+    pair = xy[left[rng.integers(0, len(left), (TRIALS, 2))]]
     step = pair[:, 1] - pair[:, 0]
     length = np.hypot(*step.T)
-    pair, step, length = (values[length >= _LEAST_PAIR] for values in (pair, step, length))
+    pair, step, length = (values[length >= LEAST_PAIR] for values in (pair, step, length))
     if not len(pair):
         return None
     directions = step / length[:, None]
@@ -274,7 +274,7 @@ def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[Wal
     merged: list[WallLine] = []
     for line in sorted(lines, key=lambda line: -np.ptp(line.along)):
         for i, other in enumerate(merged):
-            if abs(other.direction @ line.direction) <= np.cos(2 * _MOST):
+            if abs(other.direction @ line.direction) <= np.cos(2 * MOST):
                 continue
             both = fit_line(xy, np.union1d(other.points, line.points))
             if both.deviation <= _ONE_WALL * scale.tolerance:
@@ -304,7 +304,7 @@ def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
         first = open_lines[0]
         apart = np.abs(np.angle(np.exp(4j * (angles[open_lines] - angles[first]))) / 4)
         is_sure, may_be = (
-            apart <= np.minimum(_SAME * np.hypot(own[open_lines], own[first]), _MOST) for own in (sure, unsure)
+            apart <= np.minimum(_SAME * np.hypot(own[open_lines], own[first]), MOST) for own in (sure, unsure)
         )
         group = [i for i, near in zip(open_lines, may_be) if near]
         deviations = np.where(is_sure, sure[open_lines], unsure[open_lines])[may_be]

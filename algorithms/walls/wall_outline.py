@@ -14,16 +14,13 @@ from ..stage import Monitor
 from .cheapest_outline import OutlineCells, simplified
 from .roof_outline import RoofCover, RoofOutline
 from .wall_edges import WallEdge
-from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
+from .wall_lines import MOST, Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
 # Fewest points that show where a wall is, where a side of the roof makes it likely.
 _FEW = 5
 
 # Least share of the length of a wall that the few points which show it must cover.
 _LEAST_COVERED = 0.2
-
-# Largest angle (radians) between a side of the roof and walls that are seen, whose direction the side then takes.
-_LIKE = np.deg2rad(8.0)
 
 # Largest angle (radians) between a wall and its eave.
 _EAVE_ANGLE = np.deg2rad(3.0)
@@ -118,10 +115,10 @@ def _expected(side: np.ndarray, overhang: float, seen: list[WallLine]) -> WallLi
 
 
 def _like_walls(direction: np.ndarray, seen: list[WallLine]) -> np.ndarray:
-    """Return the direction of the wall that is most nearly parallel or square to one, where that is near."""
+    """Return the direction of the wall that is most nearly parallel or square to one, where that is within ``MOST``."""
     ways = [sign * way for line in seen for way in (line.direction, line.normal) for sign in (1, -1)]
     best = max(ways, key=lambda way: float(way @ direction), default=direction)
-    return best if best @ direction > np.cos(_LIKE) else direction
+    return best if best @ direction > np.cos(MOST) else direction
 
 
 def _is_eave_of(wall: WallLine, line: WallLine) -> bool:
