@@ -131,12 +131,15 @@ def _shortest(positions: np.ndarray, piece: np.ndarray, pairs: np.ndarray) -> np
     return pairs[order[run_starts(ends[order, 0].astype(np.int64) * len(positions) + ends[order, 1])]]
 
 
-def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
-    """Return the lowest voxel of each of the stems at positions (s, 3) of their axes at breast height (m)."""
+def roots_of(voxels: Voxels, stems: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """Return the lowest voxel of each of the stems at positions (s, 3) of their axes at breast height (m).
+
+    The ``radii`` (s,), m, say how far from its axis a stem has voxels: it is a tube.
+    """
     roots = []
-    for stem in stems:
+    for stem, widest in zip(stems, np.maximum(_SAME_STEM, 2 * radii)):
         reach = np.linalg.norm(voxels.positions[:, :2] - stem[:2], axis=1)
-        near = np.flatnonzero((reach <= _SAME_STEM) & (voxels.positions[:, 2] <= stem[2] + _SAME_STEM))
+        near = np.flatnonzero((reach <= widest) & (voxels.positions[:, 2] <= stem[2] + _SAME_STEM))
         if len(near):
             # Of several equally low voxels, the one nearest to the axis.
             roots.append(near[np.lexsort((reach[near], voxels.positions[near, 2]))[0]])
@@ -160,7 +163,7 @@ def self_supporting_slices(voxels: Voxels, stems: np.ndarray, radii: np.ndarray,
     thickest_first = np.argsort(-radii, kind="stable")
     stems, radii = stems[thickest_first], radii[thickest_first]
     while True:
-        slices = slices_of(voxels, roots_of(voxels, stems), voxel_size)
+        slices = slices_of(voxels, roots_of(voxels, stems, radii), voxel_size)
         foot, tree = slices.positions[slices.parent < 0], slices.tree[slices.parent < 0]
         top = np.full(int(tree.max(initial=-1)) + 1, -np.inf)
         np.maximum.at(top, slices.tree, slices.positions[:, 2])

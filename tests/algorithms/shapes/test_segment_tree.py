@@ -79,6 +79,15 @@ def test_leaves_do_not_swell_branches(found):
     assert radius[order > 0].max() < 0.6 * radius[0]
 
 
+def test_a_stem_of_a_meter_and_a_half_has_its_root():
+    """No voxel of it is within half a meter of its axis, and the stage ended in an IndexError."""
+    xyz, classification, *_ = simulate_tree(height=20.0, dbh=1.5, n_branches=4, density=150.0, noise=0.01)
+    columns = segment_tree(xyz, classification)[1].columns
+    assert columns["branch_order"].count(0) == 1
+    assert columns["dbh"][0] == pytest.approx(1.5, rel=0.02)
+    assert columns["length"][0] == pytest.approx(20.0, rel=0.05)
+
+
 def test_a_measured_radius_that_swells_is_estimated():
     """From 0.1 m at 4 m of branches beyond: half of the length has 0.71 of the radius, whatever is measured there."""
     reach, ahead = np.array([0.1, 0.25, 0.07]), np.array([4.0, 2.0, 1.0])
