@@ -218,8 +218,8 @@ def _write_grid(surface: RasterSurface, place: _Place, path: Path) -> None:
     head = (
         f"ncols {columns}\nnrows {rows}\nxllcorner {west!r}\nyllcorner {south!r}\ncellsize {(north - south) / rows!r}\n"
     )
-    filled = np.where(np.isnan(surface.values), -9999.0, surface.values)
-    np.savetxt(path, filled, fmt="%.6g", header=f"{head}NODATA_value -9999", comments="")
+    filled = np.where(np.isnan(surface.values), _NO_HEIGHT, surface.values)
+    np.savetxt(path, filled, fmt="%.6g", header=f"{head}NODATA_value {_NO_HEIGHT:g}", comments="")
 
 
 def _say(text: str) -> None:

@@ -26,9 +26,6 @@ _FIELDS = (
     Field("picked", int, "1 picked, 0 not"),
 )
 
-# Measures that can be limited, fields of the layer.
-_LIMITED = ("area", "height", "slope", "roughness")
-
 
 def _limit(text: str, within: str) -> Any:
     """Return the declaration of a limit of a measure."""

@@ -16,7 +16,7 @@ from ..packages import csgraph, sparse
 from ..params import MIN_MAPPED_AREA, SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .candidate_corners import CORNER, OFF_OUTLINE
-from .wall_lines import LEAST_PAIR, TRIALS, WallLine, fit_line
+from .wall_lines import LEAST_PAIR, SCORED, TRIALS, WallLine, fit_line
 from .wall_report import MEASURES, WALL, point_counts, wall_report
 
 # A geometry and its attributes.
@@ -49,9 +49,6 @@ _CORNER_FIELDS = (
     Field("cluster_id", int, "building that it belongs to"),
     Field("edges", int, "edges that end in it"),
 )
-
-# Most points that trial lines are scored on: a sample of as many ranks them as all do.
-_SCORED = 3000
 
 # Corners are looked for up to this far (m) outside of the box around the wall points, as in the authors' program.
 _AROUND = 10.0
@@ -320,7 +317,7 @@ def _on_best_line(xy: np.ndarray, tolerance: float, rng: np.random.Generator) ->
         return np.zeros(len(xy), bool)
     normal = np.column_stack([-step[is_long, 1], step[is_long, 0]]) / length[is_long, None]
     level = np.einsum("ij,ij->i", normal, start[is_long])
-    scored = xy if len(xy) <= _SCORED else xy[rng.choice(len(xy), _SCORED, replace=False)]
+    scored = xy if len(xy) <= SCORED else xy[rng.choice(len(xy), SCORED, replace=False)]
     best = int(np.argmax(np.count_nonzero(np.abs(scored @ normal.T - level) <= tolerance, axis=0)))
     return np.abs(xy @ normal[best] - level[best]) <= tolerance
 

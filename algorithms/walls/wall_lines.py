@@ -15,7 +15,7 @@ from ..stage import Monitor
 TRIALS = 500
 
 # Most points that hypotheses are scored on: a sample of as many ranks them as all do.
-_SCORED = 1500
+SCORED = 1500
 
 # Least distance (m) between the two points of a hypothesis: the direction of nearer ones is noise.
 LEAST_PAIR = 0.5
@@ -203,7 +203,7 @@ def _best_line(
     xy: np.ndarray, ways: np.ndarray, left: np.ndarray, scale: Scale, rng: np.random.Generator
 ) -> Optional[WallLine]:
     """Return the line that covers the longest stretch of wall, fitted to its points; None without any."""
-    scored = left if len(left) <= _SCORED else np.sort(rng.choice(left, _SCORED, replace=False))
+    scored = left if len(left) <= SCORED else np.sort(rng.choice(left, SCORED, replace=False))
     pair = xy[left[rng.integers(0, len(left), (TRIALS, 2))]]
     step = pair[:, 1] - pair[:, 0]
     length = np.hypot(*step.T)
