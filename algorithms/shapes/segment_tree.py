@@ -13,7 +13,16 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .cylinder_fits import Cylinder, across_axis, fit_cylinder
 from .stem_search import BREAST, FAR, LEAST_POINTS, ROUND, find_stems, ground_level
 from .surface_normals import refuse_line
-from .tree_structure import Branch, Slices, branches_of, lengths_beyond, self_supporting_slices, smooth, voxels_of
+from .tree_structure import (
+    Branch,
+    Slices,
+    branches_of,
+    lengths_beyond,
+    roots_of,
+    self_supporting_slices,
+    smooth,
+    voxels_of,
+)
 
 # Side of a voxel (spacings): chance leaves few voxels of bark empty.
 _VOXEL_SPACINGS = 2.0
@@ -158,12 +167,19 @@ def segment_tree(
     segment_id = np.zeros(len(xyz), np.int32)
     level = ground_level(everything, positions[:, :2])
     stems = find_stems(positions, level, monitor.part(0, 0.1)) if len(rows) else []
+    nothing = segment_id, LayerFeatures([], {field.name: [] for field in _FIELDS})
     if not stems:
         monitor.none_found("No stem was found at a height of 1.3 m; no point has a SegmentID.")
-        return segment_id, LayerFeatures([], {field.name: [] for field in _FIELDS})
+        return nothing
     voxels = voxels_of(positions, voxel_size, min_count, max_gap, monitor.part(0.1, 0.4))
     feet = np.array([_at_breast(stem, level) for stem, level in stems])
     radii = np.array([stem.radius for stem, _ in stems])
+    if not len(roots_of(voxels, feet, radii)):
+        monitor.none_found(
+            f"No voxel of a stem holds {min_count} points ('Minimum points of a voxel'); no point has a SegmentID. "
+            "Lower it, or take larger voxels."
+        )
+        return nothing
     slices = self_supporting_slices(voxels, feet, radii, voxel_size)
     monitor.progress(0.7)
     branches, of_slice = branches_of(slices, min_length, monitor.part(0.7, 0.9))

@@ -168,6 +168,18 @@ def test_a_cloud_without_stems_says_so(rng):
         segment_tree(np.column_stack([np.arange(50.0)] * 3), np.ones(50, np.uint8))
 
 
+def test_where_no_voxel_of_a_stem_is_full_it_says_so(tree):
+    """It was an error of numpy's."""
+    monitor = Monitor()
+    ids, layer = segment_tree(tree[0], tree[1], min_count=1000, monitor=monitor)
+    assert not ids.any()
+    assert len(layer) == 0
+    assert monitor.warnings == [
+        "No voxel of a stem holds 1000 points ('Minimum points of a voxel'); no point has a SegmentID. "
+        "Lower it, or take larger voxels."
+    ]
+
+
 def test_position_and_order_do_not_matter(rng):
     xyz, classification, *_ = simulate_tree(height=5.0, dbh=0.12, n_branches=3, density=1500.0)
     xyz = np.round(xyz * 1024) / 1024
