@@ -188,7 +188,7 @@ class Decks:
             yield from np.split(candidates[order], run_starts(part[order])[1:])
 
     def _is_joined(self, deck: np.ndarray, others: np.ndarray, axis: np.ndarray) -> bool:
-        """Return whether a deck goes on into the terrain at both of its ends along its ``axis`` (2,)."""
+        """Return whether terrain continues a deck at both ends along its ``axis`` (2,)."""
         if not len(others):
             return False
         along = deck[:, :2] @ axis
@@ -210,13 +210,13 @@ class Decks:
         return all(len(np.unique(strip[near[is_next & end]])) >= least for end in ends)
 
     def _leads_to(self, deck: np.ndarray, ground: Any, axis: np.ndarray) -> bool:
-        """Return whether there is ground ahead of both ends of a deck at its height; ``ground`` is a stretched tree."""
+        """Return whether ground lies ahead of both ends of a deck, at its height; ``ground`` is a stretched tree."""
         along = deck[:, :2] @ axis
         low, high = along.min() + DECK.edge * np.ptp(along), along.max() - DECK.edge * np.ptp(along)
         return self._goes_on(deck[along <= low], ground, -axis) and self._goes_on(deck[along >= high], ground, axis)
 
     def _goes_on(self, end: np.ndarray, ground: Any, axis: np.ndarray) -> bool:
-        """Return whether there is ground some way ahead of an end of a deck, beyond the edge of a wall."""
+        """Return whether ground lies ahead of an end of a deck, beyond the edge of a wall."""
         along = end[:, :2] @ axis
         to_tip = (along.max() - along)[:, None]
         forward = np.append(axis, 0.0)
@@ -275,7 +275,7 @@ def cell_size(spacing: float) -> float:
 
 
 def _numbered(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
-    """Return the rows of points of pieces, the numbers of these from 0 without gaps, and how many there are."""
+    """Return the rows of the points of pieces, their piece numbers from 0 without gaps, and the number of pieces."""
     rows = np.flatnonzero(piece >= 0)
     is_there = np.bincount(piece[rows]) > 0
     return rows, (np.cumsum(is_there) - 1)[piece[rows]], int(is_there.sum())
@@ -291,7 +291,7 @@ def _of_chosen(rows: np.ndarray, number: np.ndarray, chosen: np.ndarray, count: 
 def _count_below(
     along: np.ndarray, height: np.ndarray, first: np.ndarray, last: np.ndarray, least: float
 ) -> np.ndarray:
-    """Return how many points (m,) lie under pieces, by at least ``least`` (m), where slanting beams do not reach."""
+    """Count the points (m,) at least ``least`` m under each piece, where slanting beams do not reach."""
     which, item = items(last - first + 1)
     rows = first[which] + item
     depth = np.minimum(height[first], height[last])[which] - height[rows]

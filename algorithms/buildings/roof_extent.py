@@ -125,7 +125,7 @@ class RoofExtent:
         return found
 
     def _is_vehicle(self, inside: np.ndarray, height: np.ndarray) -> bool:
-        """Return whether cells (rows, columns) with heights (k,), m, are of the size of a vehicle."""
+        """Return whether cells (rows, columns) with heights (k,), m, have the size of a vehicle."""
         # Sides are known to a cell.
         cell = self.surface.size
         width, length = smallest_rectangle(inside, cell)

@@ -41,7 +41,7 @@ def find_algorithm(word: str) -> Pipeline:
 
 
 def parser_of(algorithm: Pipeline) -> argparse.ArgumentParser:
-    """Return what reads the arguments of an algorithm: clouds, layers, parameters and outputs."""
+    """Return the parser of the arguments of an algorithm: clouds, layers, parameters and outputs."""
     parser = argparse.ArgumentParser(
         usage=f"lidar-buildings {dashed(algorithm.name)} {'CLOUD ' * algorithm.reads_cloud}[options]",
         description=f"{algorithm.summary} {algorithm.description}".replace("%", "%%").replace("``", ""),
@@ -108,7 +108,7 @@ def _metavar(tunable: Tunable) -> str:
 
 
 def _typed(tunable: Tunable) -> Callable[[str], Any]:
-    """Return what turns a word into the checked value of a tunable."""
+    """Return the function that converts a word to the checked value of a tunable."""
 
     def value_of(word: str) -> Any:
         try:

@@ -96,7 +96,7 @@ class Atlas:
     starts: np.ndarray
 
     def coordinates(self, number: int, texture: Optional[Texture], corners: np.ndarray) -> np.ndarray:
-        """Return where corners (n, 3), m, are in the image (n, 2), 0 to 1, by the number of their own image."""
+        """Return the image coordinates (n, 2), 0 to 1, of corners (n, 3), m, on the texture with this number."""
         place = np.full((len(corners), 2), 0.5) if texture is None else (corners - texture.start) @ texture.axes.T
         return (self.starts[number] + place) / self.image.shape[1::-1]
 

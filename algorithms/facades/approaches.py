@@ -69,7 +69,7 @@ class Approach:
 
 
 def _between(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return the positions (k, 2), of those in order along the wall, between the sides of a box."""
+    """Return the positions (k, 2) between the sides of a box; ``positions`` are sorted along the wall."""
     first, last = np.searchsorted(positions[:, 0], box[:, 0])
     return positions[first:last]
 

@@ -170,7 +170,7 @@ def _shares_of(
 
 
 def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:
-    """Return the mask (rows, columns) of cells whose nearest part of a building has some of these rings."""
+    """Return the mask (rows, columns) of cells nearest to a part of a building with one of these rings."""
     part, count = ndimage.label(own.share > own.rest)
     if count <= 1:
         return np.ones(part.shape, bool)

@@ -358,7 +358,7 @@ def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> 
         return found
     layer, staying = review.layer, review.rows[: review.stay]
     own, given = as_polygons(found.geometries), as_polygons(layer.geometries)
-    # Ascending by what they share, so that of several the one that shares most counts.
+    # Ascending by shared area: of several, the one with the largest shared area is assigned last.
     one, other, shared = overlaps(own, given, Monitor())
     order = np.argsort(shared)
     one, other, shared = one[order], other[order], shared[order]

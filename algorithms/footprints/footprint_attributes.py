@@ -198,7 +198,7 @@ class _Owners:
         return (row - self.first[1]) * self.columns + column - self.first[0]
 
     def at(self, plan: np.ndarray, within: float = APART) -> np.ndarray:
-        """Return the outline (n,) that positions (n, 2) belong to, -1 of those far from all, in spacings."""
+        """Return the outline (n,) nearest to positions (n, 2), -1 farther than ``within`` spacings from all."""
         column, row = np.rint(plan / self.step).astype(np.int64).T
         is_near = (column > self.first[0]) & (column < self.first[0] + self.columns - 1)
         found, there = find_cells(self.occupied, np.where(is_near, self._number(column, row), -1))

@@ -15,7 +15,7 @@ from ..stage import Monitor
 # Rings with less area (m²) are no footprints.
 NO_AREA = 0.5
 
-# Vertices of footprints nearer than this (m) to each other, or to the line of those kept, are superfluous.
+# Vertices nearer than this (m) to each other, or to the line between the kept ones, are superfluous.
 _CLOSE = 0.01
 
 # Fewer points than this over a footprint show no roof.
@@ -95,7 +95,7 @@ def sound_rings(rings: list) -> list:
 
 
 def shows_roof(count: int, spacing: float, rings: list) -> bool:
-    """Return whether so many points, with that spacing (m), over a footprint show its roof."""
+    """Return whether ``count`` points over a footprint, ``spacing`` m apart, show its roof."""
     return count >= _LEAST_POINTS and count * spacing**2 >= _LEAST_COVERED * polygon_area(rings)
 
 

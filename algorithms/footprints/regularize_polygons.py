@@ -22,13 +22,13 @@ from .soft_shares import LEAST_SPACING, Lattice, Shares
 # of more than one of them. With samples one scale apart outlines of rasters have a fifth more corners, no closer.
 _TOLERANCE_SCALES, _SAMPLE_SCALES = 1.75, 1.5
 
-# Automatic scale: so many times the standard deviation across straight pieces; stairs of 1 m deviate by 0.25 m.
+# Automatic scale: the standard deviation across straight pieces times this; stairs of 1 m deviate by 0.25 m.
 _SCALE_DEVIATIONS = 2.5
 
-# Length of these pieces: so many edges, and least and greatest (m). Longer ones go around corners.
+# Length of these pieces: in edges, then its bounds (m). Longer pieces go around corners.
 _PIECE_EDGES, _SHORTEST, _LONGEST = 4.0, 2.0, 4.0
 
-# Most rings that they are measured on: those of a country would take hours and gigabytes.
+# Largest number of rings that are measured: the rings of a country would take hours and gigabytes.
 _MEASURED = 20_000
 
 # Step (m) of the samples along which they are measured.

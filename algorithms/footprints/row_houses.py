@@ -346,7 +346,7 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[fl
     before = np.zeros(saved.shape, np.int64)
     saved[:, 0] = 0
     for end in range(narrowest, count + 1):
-        # Houses that end here begin before the last of these; the first of equal ones counts.
+        # The last house begins before this position; of equal costs the first counts.
         last = min(end - narrowest + 1, int(np.searchsorted(area, area[end] - ROWS.least_area, "right")))
         if last > 0:
             total = saved[:, :last] - unlike[:, end - last : end][:, ::-1]

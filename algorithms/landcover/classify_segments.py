@@ -104,8 +104,8 @@ def classify_segments(
     Raises
     ------
     ValueError
-        If no point has a segment, numbers are none of segments, the layer has no numbers, heights are limited and not
-        known, or a minimum is above its maximum.
+        If no point has a segment, or a picked number is not that of one. If the layer has no attribute id, heights are
+        limited without being known, or a minimum is above its maximum.
 
     Notes
     -----
@@ -158,7 +158,7 @@ def classify_segments(
 
 
 def _numbers(selection: LayerFeatures) -> np.ndarray:
-    """Return the attribute ``id`` of features as numbers, NaN where there is none."""
+    """Return the attribute ``id`` of features as numbers, NaN for NULL."""
     try:
         return np.array(list(selection.columns["id"]), float)
     except (KeyError, TypeError, ValueError):

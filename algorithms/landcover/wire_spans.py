@@ -120,7 +120,7 @@ class SpanSurroundings:
         is_left, aside, inside = aside > 0, np.abs(aside), (along >= span.start) & (along <= span.end)
         is_level = inside & (np.abs(above) <= self.off)
         on_wire = is_level & (aside <= RULES.aside)
-        # Wires are lines; a strip of half their width next to a line on a surface has half as many points as the line.
+        # A wire is a line: next to a line drawn on a surface, a strip half as wide has half as many points.
         beside = is_level & (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside)
         sheet = max((beside & is_left).sum(), (beside & ~is_left).sum())
         # Points nearer than twice the tolerance may be of the wire itself.

@@ -318,7 +318,7 @@ def type_of_faces(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray, low:
 
 
 def _has_flat_top(low: np.ndarray, high: np.ndarray, is_level: np.ndarray) -> bool:
-    """Return whether all level faces (n,), bool, are nearer to the ridge of the others than to their middle, m."""
+    """Return whether all level faces, a mask (n,), lie in the top quarter of the heights of the other faces."""
     if is_level.all() or not is_level.any():
         return False
     eave, ridge = low[~is_level].min(), high[~is_level].max()

@@ -204,7 +204,7 @@ def _patch(
 
 
 def _worst(mesh, nodes: np.ndarray, points: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return the point of each triangle that is farthest above or below it, of those farther than the tolerance."""
+    """Return the point farthest above or below each triangle, where that is farther than the tolerance."""
     facet = mesh.find_simplex(points[:, :2])
     points, facet = points[facet >= 0], facet[facet >= 0]
     to_weights = mesh.transform[facet]
@@ -261,7 +261,7 @@ class _Foot:
         on_roof = {v for rings, kind in zip(solid.faces, solid.kinds) if kind == ROOF for ring in rings for v in ring}
         base = sorted({v for ring in grounds for v in ring} - on_roof)
         # Nodes of a neighbor whose wall is a millimeter off bend this one. Where that is a fault, only their heights
-        # count, and of these none in line, which rounding would turn into a narrow triangle that faces anywhere.
+        # count, but no three in line: rounding would turn them into a narrow triangle of any direction.
         for is_straight in (False, True):
             vertices = solid.vertices.copy()
             vertices[base, 2] = self._height(vertices[base])

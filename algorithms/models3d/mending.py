@@ -31,7 +31,7 @@ _SPARED = 30
 # Parts of a roof with more area than this (m²) are more than dormers: one fault does not cost all of it.
 LARGE = 5.0
 
-# First of these rounds, in which parts with faults are lowered: high cells still change in as many after them.
+# The first rounds lower parts with faults; as many rounds follow in which high cells still change.
 _LOWERINGS = _ROUNDS // 2
 
 # How far (m) a part with a fault is lowered first: more than corners may be apart, and less than heights of points are
@@ -460,7 +460,7 @@ class _Mending:
         return float(np.minimum(off, FARTHEST).mean()) * area if len(rows) else 0.0
 
     def _is_high(self, corners: np.ndarray, plane: np.ndarray) -> bool:
-        """Return whether a plane is above the limit of one of some corners."""
+        """Return whether a plane exceeds the height limit at any of the corners."""
         return bool((self._above(corners, plane) > 10**-DECIMALS).any())
 
     def _above(self, corners: np.ndarray, plane: np.ndarray) -> np.ndarray:

@@ -75,9 +75,10 @@ def wall_rings(xyz: np.ndarray, rings: list, solids: list[Solid], base: float, s
 
 
 def _overhang(xyz: np.ndarray, side: np.ndarray, corners: np.ndarray, step: float) -> float:
-    """Return how far (m) a roof overhangs the wall under a side (2, 2), 0 where none was seen; its left is inside.
+    """Measure how far (m) a roof overhangs the wall under a side (2, 2), 0 where no wall was seen.
 
-    The wall is looked for in points above the ground, by pieces of a length ``step`` (m); ``corners`` are the solid's.
+    The building is to the left of the side. The wall is looked for in points above the ground, by pieces of a length
+    ``step`` (m); ``corners`` are the solid's.
     """
     start, way = side[0], side[1] - side[0]
     length = float(np.hypot(*way))

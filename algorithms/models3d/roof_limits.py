@@ -9,7 +9,7 @@ from ..packages import spatial
 # Distance (m) in plan within which points limit the height of a corner: ridges and eaves are sampled that closely.
 RADIUS = 1.5
 
-# Height (m) above the highest of these points up to which a corner may lie: noise is less.
+# A corner lies at most this much (m) above the highest of these points: noise is less.
 _ABOVE = 0.5
 
 # A roof point farther from the model than this (m) is off it: more than any noise, less than half a storey.

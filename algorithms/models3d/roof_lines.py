@@ -50,7 +50,7 @@ class LinePiece:
 
 
 def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: float) -> list[LinePiece]:
-    """Return where planes intersect and where they step, in the order in which they are to cut.
+    """Find the lines along which planes intersect or step, sorted by the order in which they cut.
 
     Parameters
     ----------
@@ -94,9 +94,9 @@ def main_directions(rings: list) -> np.ndarray:
 
 
 def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return where neighboring points (n, 2) lie on different planes.
+    """Find pairs of neighboring points (n, 2) on different planes.
 
-    These are the numbers (m,), (m,) of the two planes, the smaller one first, and the middles (m, 2) of the points.
+    Returns the numbers (m,), (m,) of the two planes, the smaller one first, and the middles (m, 2) of the pairs.
     """
     if np.linalg.matrix_rank(xy - xy.mean(axis=0)) < 2:
         return np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2))

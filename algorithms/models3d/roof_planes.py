@@ -194,7 +194,7 @@ def _plane(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return the labels after each point has taken the nearest plane of those that its neighbors have."""
+    """Return the labels after each point took the nearest plane among the planes of its neighbors."""
     for _ in range(_CHOICES):
         if label.max() < 0:
             break

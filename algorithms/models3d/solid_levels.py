@@ -54,7 +54,7 @@ class Levels:
         self.coefficients = [tuple(row) for row in coefficients.tolist()]
         # What each cell ends in below: the ground, or the number of its soffit.
         self.bottom = [BASE] * len(self.label)
-        # The planes at each vertex, and the vertices at the other end of its edges, of all and of those on the outline.
+        # Per vertex: its planes, the vertices joined to it by an edge, and the same along the outline.
         self.around: dict[int, set[int]] = defaultdict(set)
         self._spokes: dict[int, list[int]] = defaultdict(list)
         self._outline: dict[int, list[int]] = defaultdict(list)

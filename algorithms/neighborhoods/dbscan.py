@@ -12,7 +12,7 @@ _CORNER = 0.25
 
 
 def points_at_corner(radius: float, density: float) -> int:
-    """Return how many points, at least 1, lie within ``radius`` (m) of the corner of a level surface."""
+    """Return the number of points, at least 1, within ``radius`` (m) of the corner of a level surface."""
     return max(1, round(_CORNER * np.pi * radius**2 * density))
 
 

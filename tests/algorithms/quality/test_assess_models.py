@@ -95,6 +95,18 @@ def test_walls_do_not_count():
     assert report.values["rms"] == pytest.approx(0.03, rel=0.1)
 
 
+def test_a_wall_under_the_edge_of_a_roof_is_no_missing_plane():
+    """Its points less than a meter below the model are taken for the roof's, and lie on one upright plane."""
+    points, _ = SHAPES["flat"].scanned()
+    rng = np.random.default_rng(1)
+    wall = np.column_stack([rng.uniform(0, 12, 600), rng.normal(0.05, 0.01, 600), rng.uniform(5.05, 5.8, 600)])
+    xyz = np.concatenate([points, wall])
+    ring = np.array([[0, 0, 6], [12, 0, 6], [12, 8, 6], [0, 8, 6], [0, 0, 6.0]])
+    *_, report = assess_models(xyz, np.full(len(xyz), 6, np.uint8), LayerFeatures([[ring]], {}))
+    assert report.values["points"] == len(xyz)
+    assert report.values["missing"] == 0
+
+
 def test_what_has_no_heights_or_buildings_is_refused():
     flat = [[ring[:, :2] for ring in rings] for rings in gable()]
     with pytest.raises(ValueError, match="None of the 2 roof faces has heights"):
