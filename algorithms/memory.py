@@ -1,13 +1,26 @@
-"""Freed memory: shared by threads, and returned to the system."""
+"""Memory of this computer: how much it has; freed memory is shared by threads, and returned to the system."""
 
 from __future__ import annotations
 
 import ctypes
+import os
 import sys
 from typing import Callable, Optional
 
 # The parameter of GNU's C library that is the most arenas (heaps) of a process, by its number in malloc.h.
 _MOST_ARENAS = -8
+
+
+def installed_memory() -> float:
+    """Return the bytes of memory of this computer, infinity where the system doesn't report it."""
+    try:
+        if sys.platform == "win32":
+            kilobytes = ctypes.c_ulonglong()
+            is_known = ctypes.windll.kernel32.GetPhysicallyInstalledSystemMemory(ctypes.byref(kilobytes))
+            return 1024.0 * kilobytes.value if is_known else float("inf")
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return float("inf")
 
 
 def _of_libc(name: str) -> Optional[Callable[..., int]]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-
+from ..algorithms.memory import installed_memory
 from ..algorithms.stage import Monitor
 from ..algorithms.stages import less_memory
 
@@ -22,11 +21,3 @@ def warn_if_memory_is_short(n_points: int, monitor: Monitor) -> None:
             f"{n_points:,} points may need {needed / _GB:.1f} GB of memory, this computer has {installed / _GB:.1f}; "
             f"if that is not enough, {less_memory()}."
         )
-
-
-def installed_memory() -> float:
-    """Return the bytes of memory of this computer, infinity where the system doesn't report it."""
-    try:
-        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
-    except (AttributeError, ValueError, OSError):
-        return float("inf")

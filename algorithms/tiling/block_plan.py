@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Optional
+
 import numpy as np
 
 from .blocks import Block
 from .survey import Survey
 
-# A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point). Two workers, one
-# of them with a window that was enlarged, and the main process need less than 4 GB.
+# Bytes that a worker needs per point of a window: the most that was measured.
+_BYTES_PER_POINT = 340
+
+# A window has at most about this many points, so that a worker needs 1.8 GB. Two workers, one of them with a window
+# that was enlarged, and the main process need less than 4 GB.
 MOST_POINTS = 5_300_000
 
 # Sides of blocks are multiples of this, m: round numbers, and little smaller than what fits.
@@ -20,6 +25,12 @@ _LEAST_SIDE, _MOST_SIDE = 100.0, 1600.0
 # Least side in dense clouds, in distances that are read around a block: the block is then a seventh of its window.
 _LEAST_HALOS = 1.25
 
+# Larger blocks are advised where they save a third of the work or more.
+_WORTH_SAYING = 1.5
+
+# Fewest blocks along the longer side of a survey: with fewer, processes would wait for the last one.
+_LEAST_BLOCKS = 3
+
 # Largest number of blocks, unless their points are many: a single point far away makes the extent too large.
 _MANY_BLOCKS = 10_000
 
@@ -27,8 +38,8 @@ _MANY_BLOCKS = 10_000
 _POINTS_PER_BLOCK = 100
 
 
-def side_of_blocks(density: float, halo: float) -> float:
-    """Return the largest side of a block, m, whose window holds no more than ``MOST_POINTS``, or the least side.
+def side_of_blocks(density: float, halo: float, most_points: float = MOST_POINTS) -> float:
+    """Return the largest side of a block, m, whose window holds no more than ``most_points``, or the least side.
 
     Parameters
     ----------
@@ -36,12 +47,54 @@ def side_of_blocks(density: float, halo: float) -> float:
         Points per m².
     halo : float
         Distance around a block within which points are read, m.
+    most_points : float
+        Most points of a window, that is of a block with those around it.
     """
-    fits = np.floor((np.sqrt(MOST_POINTS / density) - 2 * halo) / _SIDE_STEP) * _SIDE_STEP
+    fits = np.floor((np.sqrt(most_points / density) - 2 * halo) / _SIDE_STEP) * _SIDE_STEP
     if fits >= _LEAST_SIDE:
         return float(min(fits, _MOST_SIDE))
     least = max(np.ceil(_LEAST_HALOS * halo / _SIDE_STEP), 1.0) * _SIDE_STEP
     return float(min(max(fits, least), _LEAST_SIDE))
+
+
+def memory_of_window(density: float, side: float, halo: float, points: float) -> float:
+    """Return the bytes that a worker needs for a block and what is around it.
+
+    Parameters
+    ----------
+    density : float
+        Points per m².
+    side, halo : float
+        Side of a block, and distance around it within which points are read, m.
+    points : float
+        Points of the whole survey, which a window has at most.
+    """
+    return _BYTES_PER_POINT * min(density * (side + 2 * halo) ** 2, points)
+
+
+def larger_blocks(density: float, side: float, halo: float, memory: float, extent: float) -> Optional[str]:
+    """Return the advice to take larger blocks for which a worker has the memory; None where they save little.
+
+    Parameters
+    ----------
+    density : float
+        Points per m².
+    side, halo : float
+        Side of a block, and distance around it within which points are read, m.
+    memory : float
+        Bytes for a worker.
+    extent : float
+        Longer side of the survey, m.
+    """
+    larger = min(side_of_blocks(density, halo, memory / _BYTES_PER_POINT), extent / _LEAST_BLOCKS)
+    now, then = ((1 + 2 * halo / one) ** 2 for one in (side, larger))
+    if now < _WORTH_SAYING * then:
+        return None
+    needed = _BYTES_PER_POINT * density * (larger + 2 * halo) ** 2
+    return (
+        f"Each point is worked on {now:.1f} times. With {larger:.0f} m as 'Side of a block' it would be {then:.1f} "
+        f"times, and each process would need {needed / 1e9:.1f} GB of memory."
+    )
 
 
 def blocks_of(survey: Survey, side: float) -> list[Block]:

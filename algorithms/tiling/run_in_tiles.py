@@ -22,7 +22,7 @@ from ..cloud.web_file import file_at, is_on_web
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
-from .block_plan import blocks_of, side_of_blocks
+from .block_plan import blocks_of, larger_blocks, memory_of_window, side_of_blocks
 from .block_result import BlockResult, flat
 from .blocks import MOST_HALOS, Block, BlockTask, feature_boxes, take_features, work_on_block
 from .cutting import cut_into_tiles
@@ -104,11 +104,15 @@ def check_can_be_tiled(pipeline: Pipeline) -> None:
 
 
 class _Plan(NamedTuple):
-    """How a survey is sampled, by step that asks, the side of its blocks (m), and what is read around each (m)."""
+    """How a survey is sampled, by step that asks, the side of its blocks (m), and what is read around each (m).
+
+    ``memory`` is what a process needs for a block (bytes).
+    """
 
     samplings: dict[str, CloudSampling]
     side: float
     halo: float
+    memory: float
 
 
 class _Run:
@@ -131,7 +135,7 @@ class _Run:
         plan = self._plan()
         outcome = TilesOutcome(self.survey, [], sampling=plan.samplings[""], side=plan.side, points=len(self.survey))
         steps = SurveySteps(settings, outcome)
-        with settings.options.workers.open(folders | {settings.folder}) as executor:
+        with settings.options.workers.open(folders | {settings.folder}, plan.memory) as executor:
             blocks = self._work_on_blocks(executor, plan)
             outcome.take(blocks)
             kept = self._join(blocks, outcome)
@@ -152,11 +156,19 @@ class _Run:
         working = settings.working
         halo = working.reach(tunables_of(working, settings.tunables))
         samplings = samplings_of(working, self.survey, settings.tunables, self.monitor.part(0.0, SAMPLED))
-        side = settings.options.block_side or side_of_blocks(samplings[""].density, halo)
+        density = samplings[""].density
+        side = settings.options.block_side or side_of_blocks(density, halo)
+        plan = _Plan(samplings, side, halo, memory_of_window(density, side, halo, len(self.survey)))
         self.monitor.resolved(sampling=samplings[""])
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
+        workers = settings.options.workers
+        if not (settings.options.block_side or workers.scheduler):
+            extent = float(np.ptp(self.survey.box, axis=0).max())
+            advice = larger_blocks(density, side, halo, workers.memory(workers.count(plan.memory)), extent)
+            if advice:
+                self.monitor.inform(advice)
         self._cut_large_files(side)
-        return _Plan(samplings, side, halo)
+        return plan
 
     def _join(self, blocks: WorkedOn, outcome: TilesOutcome) -> dict[str, np.ndarray]:
         """Give objects that go on in the next block one number, and join layers; return the features kept of each."""

@@ -64,7 +64,8 @@ SETTINGS = by_name(
         Setting(
             "PROCESSES",
             "Processes (empty = one for each core)",
-            "How many blocks are worked on at once; each takes about 2 GB of memory.",
+            "How many blocks are worked on at once; each takes about 2 GB of memory. Empty: one for each core, no more "
+            "than have room in three quarters of the memory.",
         ),
         Setting(
             "SCHEDULER",

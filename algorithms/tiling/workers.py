@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Callable, Optional
 
 from ..cloud.outputs import DiskFullError
+from ..memory import installed_memory
 from ..stage import Cancelled, Monitor
 from ..threads import n_threads
 from .processes import FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
@@ -46,6 +47,9 @@ _DROPPED = (
     "The Dask scheduler has ended or dropped the work; start it and the same run again, which goes on from there."
 )
 
+# Share of this computer's memory for the processes of a run: the rest is for the system, QGIS and enlarged windows.
+_SHARE_OF_MEMORY = 0.75
+
 # The most processes that concurrent.futures allows on Windows.
 _MOST_PROCESSES = 61
 
@@ -54,8 +58,8 @@ _MOST_PROCESSES = 61
 class Workers:
     """Where blocks are worked on."""
 
-    #: Processes of this machine; None is one for each core that this program may use. With 1 the work is done in this
-    #: process.
+    #: Processes of this machine; None is one for each core that this program may use, as far as memory reaches. With 1
+    #: the work is done in this process.
     processes: Optional[int] = None
     #: Address of a Dask scheduler ("tcp://host:8786", "tls://host:8786"); "" for processes of this machine
     scheduler: str = ""
@@ -63,13 +67,15 @@ class Workers:
     certificates: tuple[str, ...] = ()
 
     @contextmanager
-    def open(self, distrusted: Iterable[Path] = ()) -> Iterator[Executor]:
+    def open(self, distrusted: Iterable[Path] = (), memory: float = 1.0) -> Iterator[Executor]:
         """Give an executor, as ``concurrent.futures`` has them; it is closed at the end.
 
         Parameters
         ----------
         distrusted : iterable of Path
             Folders of data: processes of this machine import no module from them.
+        memory : float
+            Bytes that a process needs.
 
         Raises
         ------
@@ -80,9 +86,7 @@ class Workers:
             with self._cluster() as executor:
                 yield executor
             return
-        count = self.processes or n_threads()
-        if os.name == "nt":
-            count = min(count, _MOST_PROCESSES)
+        count = self.count(memory)
         if count == 1:
             with ThreadPoolExecutor(1) as thread:
                 yield thread
@@ -92,6 +96,16 @@ class Workers:
             yield processes
         finally:
             processes.shutdown(cancel_futures=True)
+
+    def count(self, memory: float) -> int:
+        """Return how many processes of this machine work at once, each of which needs ``memory`` bytes."""
+        have_room = self.memory(1) / memory
+        count = self.processes or int(max(1, min(n_threads(), have_room)))
+        return min(count, _MOST_PROCESSES) if os.name == "nt" else count
+
+    def memory(self, count: int) -> float:
+        """Return the bytes of memory that each of so many processes may take."""
+        return _SHARE_OF_MEMORY * installed_memory() / count
 
     @contextmanager
     def _cluster(self) -> Iterator[Executor]:

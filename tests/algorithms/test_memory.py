@@ -5,6 +5,7 @@ import platform
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,27 @@ from lidar_buildings.algorithms import memory
 def held():
     """Return the bytes of memory that this process holds."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * mmap.PAGESIZE
+
+
+def test_this_computers_memory_is_known_or_taken_for_enough(monkeypatch):
+    assert 1e8 < memory.installed_memory() < 1e15
+    monkeypatch.delattr(memory.os, "sysconf")
+    assert memory.installed_memory() == float("inf")
+
+
+@pytest.mark.parametrize(("answers", "expected"), [(True, 16 * 1024.0**3), (False, float("inf"))])
+def test_windows_is_asked_for_its_memory(monkeypatch, answers, expected):
+    class Windows:
+        """Answers in kilobytes; false without a table of the hardware."""
+
+        @staticmethod
+        def GetPhysicallyInstalledSystemMemory(kilobytes):  # noqa: N802 - Windows' name
+            kilobytes._obj.value = 16 * 1024**2
+            return answers
+
+    monkeypatch.setattr(memory.sys, "platform", "win32")
+    monkeypatch.setattr(memory.ctypes, "windll", SimpleNamespace(kernel32=Windows), raising=False)
+    assert memory.installed_memory() == expected
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems return it by themselves")

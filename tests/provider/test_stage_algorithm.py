@@ -335,12 +335,6 @@ def test_it_is_reported_before_the_cloud_is_read(provider, context, log, town_fi
     assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"]
 
 
-def test_this_computers_memory_is_known_or_taken_for_enough(monkeypatch):
-    assert memory_needs.installed_memory() > 1e8
-    monkeypatch.delattr(memory_needs.os, "sysconf")
-    assert memory_needs.installed_memory() == float("inf")
-
-
 def test_a_cancelled_stage_is_an_error_and_leaves_nothing(provider, context, log, town_file, out):
     with pytest.raises(QgsProcessingException, match="Cancelled; nothing was written"):
         run("toytrouble", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "KIND": "cancel"}, context, log)

@@ -16,7 +16,7 @@ from lidar_buildings.algorithms.stage import Cancelled, Layer, LayerFeatures, Mo
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
-from lidar_buildings.algorithms.tiling.block_plan import side_of_blocks
+from lidar_buildings.algorithms.tiling.block_plan import larger_blocks, side_of_blocks
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
@@ -473,6 +473,30 @@ def test_reviewed_buildings_stay_in_tiles_each_once(points, tmp_path):
 def test_blocks_have_room_for_their_points(density, halo, side):
     """In a dense plant, where little is looked at around a block, it is smaller than 100 m."""
     assert side_of_blocks(density, halo) == side
+
+
+def test_larger_blocks_are_advised_where_there_is_memory_for_them():
+    """At 20 points per m² (190 m + 320 m)² is 7.2 times the block, (600 m + 320 m)² 2.4 times and 17 million points."""
+    advice = larger_blocks(20.0, 190.0, 160.0, 340 * 20 * 925.0**2, 10_000.0)
+    assert advice == (
+        "Each point is worked on 7.2 times. With 600 m as 'Side of a block' it would be 2.4 times, and each process "
+        "would need 5.8 GB of memory."
+    )
+    # Memory for no more points, and a survey so small that processes would wait for the last block.
+    assert larger_blocks(20.0, 190.0, 160.0, 2e9, 10_000.0) is None
+    assert larger_blocks(20.0, 190.0, 160.0, 340 * 20 * 925.0**2, 570.0) is None
+
+
+@pytest.mark.parametrize(("side", "advised"), [(None, True), (100.0, False)])
+def test_the_advice_reaches_the_log_unless_a_side_is_chosen(points, tmp_path, monkeypatch, side, advised):
+    monkeypatch.setattr(module, "larger_blocks", lambda *_: "Larger ones.")
+    xyz, times, _ = points
+    paths, monitor, asked = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool)), Monitor(), []
+    monkeypatch.setattr(Workers, "count", lambda self, memory: asked.append(memory) or 1)
+    run(paths, tmp_path / "result", monitor, pipeline=QUICK, block_side=side)
+    assert ("Larger ones." in monitor.infos) == advised
+    # Each process holds all points, as the survey is smaller than a window.
+    assert set(asked) == {340 * len(xyz)}
 
 
 def test_an_extent_without_points_is_refused(tmp_path, points):

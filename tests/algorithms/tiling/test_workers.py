@@ -38,6 +38,15 @@ def tile(tmp_path):
     return tmp_path / "tile.las"
 
 
+@pytest.mark.parametrize(("installed", "processes"), [(16e9, 6), (4e9, 1), (1e9, 1), (256e9, 8), (np.inf, 8)])
+def test_there_are_no_more_processes_than_memory_has_room_for(monkeypatch, installed, processes):
+    """Of 16 GB three quarters are 12: six processes of 1.8 GB. A number that is given counts as it is."""
+    monkeypatch.setattr(workers_module, "installed_memory", lambda: installed)
+    monkeypatch.setattr(workers_module, "n_threads", lambda: 8)
+    assert Workers().count(1.8e9) == processes
+    assert Workers(processes=3).count(1.8e9) == 3
+
+
 def certificates(folder):
     """Make an authority, and a certificate and key that it has signed."""
     for arguments in (
