@@ -64,7 +64,7 @@ class CloudParameter(_TakesFiles, QgsProcessingParameterPointCloudLayer):
     """A point cloud layer, or the path of a file that QGIS itself may be unable to open."""
 
     def clone(self) -> CloudParameter:
-        """Return a copy of this very type; the base class would return its own."""
+        """Return a copy of this subclass; QGIS's clone() returns the base class."""
         return self._as_this(CloudParameter(self.name(), self.description(), self.defaultValue()))
 
 
@@ -188,7 +188,7 @@ def _known(title: str, path: Path) -> Path:
 
 
 def names_of(value: Any) -> Optional[list]:
-    """Return the texts of a list of layers and paths, without empty ones; None of anything else."""
+    """Return the sources of a list of layers and paths, without empty ones; None for any other value."""
     values = [one for one in _flat(value) if one is not None and one != ""]
     if not all(isinstance(one, (str, QgsMapLayer)) for one in values):
         return None

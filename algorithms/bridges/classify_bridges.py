@@ -1,4 +1,4 @@
-"""Bridges in the ground of a filter, by how they lie over what they cross."""
+"""Find bridge decks among ground points: smooth surfaces with free air at both sides."""
 
 from __future__ import annotations
 

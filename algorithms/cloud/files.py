@@ -42,7 +42,7 @@ NOWHERE = np.full((2, 2), np.nan)
 # One sentence for every step of a chain.
 _WAVEFORMS_APART = (
     "The waveforms of the input are in a file of their own (.wdp), which is not copied; "
-    "copy it next to the output, under the name of that."
+    "copy it next to the output and give it the output's name."
 )
 
 

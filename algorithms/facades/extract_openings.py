@@ -47,8 +47,8 @@ PIERCED = (
     Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
 )
 
-# An opening is left out where others have this share of its points, as it is one of them seen through another wall.
-# It is left out, too, where a wall lies in front of more than this share of it. Half is the greater part of both.
+# Drop an opening if this share of its points belongs to others: it is one of those, seen through a second wall. Drop
+# it, too, if a wall lies in front of more than this share of it. Half is the greater part of both.
 _SHARED = 0.5
 
 # Walls whose normals enclose less than this angle (cosine: 20°) face the same way.

@@ -28,11 +28,11 @@ from .soft_shares import Lattice, Shares, spread_out
 # Delft are 0.04 m farther off; with 6 there are more corners, no closer.
 _CORNER = 8.0
 
-# An outline is straight where more than this share of it runs along a main direction and square to that: of a circle
-# drawn along two main directions it is half.
+# An outline is straight if more than this share of its length runs along or square to one main direction; of a circle
+# it is half.
 _STRAIGHT_SHARE = 0.6
 
-# The middle of a border between cells lies this close (m) to the drawn edge that it is a part of.
+# A border between cells is part of a drawn edge if its midpoint lies within this distance (m).
 _ON_EDGE = 0.03
 
 
@@ -89,8 +89,8 @@ def draw_block(
     """
     drawn = [(ring, directions[piece.building], how.prices(piece.building)) for piece in pieces for ring in piece.rings]
     rings = [draw_ring(*each) for each in drawn]
-    # Edges on both sides of a border, or of a front that goes on, were drawn from the same points and are less than a
-    # spacing apart: they get one line. So does an edge next to a party wall: no strip lies between.
+    # Merge edges less than a spacing apart into one line: both sides of a border and a continued front come from the
+    # same points. An edge next to a party wall merges, too, so that no strip is left between.
     numbers = sorted({piece.building for piece in pieces})
     both = [ends for number in numbers if number in houses for ends in houses[number].walls]
     there_and_back = [[Edge(start, end, True), Edge(end, start, True)] for start, end in both]
@@ -182,7 +182,7 @@ def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:
 
 
 def _moved(values: np.ndarray, own: Lattice, lattice: Lattice) -> np.ndarray:
-    """Return values of one lattice at the nodes of another one of the same step, 0 beyond the first."""
+    """Resample values to the nodes of another lattice with the same step; 0 outside the first lattice."""
     column, row = np.subtract(lattice.first, own.first)
     at = [np.arange(size) + start for size, start in zip(lattice.shape, (row, column))]
     is_there = np.outer(*((one >= 0) & (one < size) for one, size in zip(at, own.shape)))
@@ -190,7 +190,7 @@ def _moved(values: np.ndarray, own: Lattice, lattice: Lattice) -> np.ndarray:
 
 
 def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
-    """Return the cells that the edges cut the box of the lattice into; longest edges first."""
+    """Cut the box of the lattice along the edges, longest first; return the cells."""
     positions = lattice.positions
     # A little beyond the outer nodes, so that these lie in cells and not on the rim.
     cells = Subdivision(positions[0] - 0.3 * lattice.step, positions[-1] + 0.3 * lattice.step, positions)
@@ -201,18 +201,18 @@ def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
 
 
 def _costs(cells: Subdivision, share: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Return the cost of each label in each cell (cells, labels), m²: the area that is something else."""
+    """Return the cost of each label in each cell (cells, labels): the area (m²) of the cell with another label."""
     flat = share.reshape(len(share), -1)
     mean = np.array([flat[:, nodes].mean(axis=1) for nodes in _nodes_of(cells, lattice)], float)
     return cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)
 
 
 def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: BlockDrawing) -> np.ndarray:
-    """Return the label of each cell, 0 the ground: those that cost least with the borders between them."""
+    """Return the label of each cell, 0 for ground, with the least total cost of cells and borders."""
     pairs, sides = cells.edges()
     vertices = np.array(cells.vertices)
     start, end = vertices[pairs[:, 0]], vertices[pairs[:, 1]]
-    # Where no edge was drawn a meter of border costs the area of one spacing.
+    # A meter of border without a drawn edge costs as much as an area of 1 m by one spacing.
     weight = np.where(_are_drawn(start, end, edges), 0.0, how.spacing * np.hypot(*(end - start).T))
     most = np.bincount(sides.ravel(), np.repeat(weight, 2), len(cells))
     return cheapest_labels(
@@ -240,7 +240,7 @@ def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndar
 
 
 def _without_scraps(cells: Subdivision, label: np.ndarray, how: BlockDrawing) -> np.ndarray:
-    """Return the labels with too small holes and polygons given to their surroundings."""
+    """Relabel holes and polygons below the minimum area with the label around them."""
     for is_ground, least in ((True, how.min_hole_area), (False, how.min_area)):
         piece = joined_cells(cells, label)
         size = np.bincount(piece, cells.areas())

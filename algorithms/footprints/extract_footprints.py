@@ -35,8 +35,8 @@ _AUTOMATIC_TOLERANCE = (
     f"{_TOLERANCE_SPACINGS * LEAST_SPACING:.2g} m."
 )
 
-# Steps of the spacing from one to its double, in which it is rounded: the same cloud with a tenth fewer points, or a
-# part of it, mostly has the same.
+# The spacing is rounded to this many steps per factor of two, so that the same cloud with a tenth fewer points, or a
+# part of it, mostly has the same spacing.
 _STEPS_PER_OCTAVE = 4
 
 # Name of the mean distance of building points of the whole.
@@ -343,7 +343,7 @@ def _houses(
 
 
 def _features(geometries: list, attributes: list[dict[str, Any]], min_area: float) -> LayerFeatures:
-    """Return the footprints that are large enough in the order of their clusters, from the south-west, numbered."""
+    """Drop footprints below ``min_area``; number the rest by cluster, then from the south-west."""
     keys = [(of_one["cluster_id"], *map(float, rings[0].min(axis=0))) for rings, of_one in zip(geometries, attributes)]
     kept = sorted((i for i, of_one in enumerate(attributes) if of_one["area"] >= min_area), key=keys.__getitem__)
     return LayerFeatures.numbered([(geometries[i], attributes[i]) for i in kept], FIELDS)

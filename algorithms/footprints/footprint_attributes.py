@@ -38,20 +38,20 @@ FIELDS = (
     Field("regularized", int, "1 straightened along main directions, 0 outline as traced or in chords of it"),
 )
 
-# Percentile of the roof's heights along the outline that is the eaves', of footprints and models: gables rise
-# from eaves.
+# The eave height is this percentile of the roof's heights along the outline, as gables rise above the eaves. Footprints
+# and models share it.
 EAVE = 25
 
-# Percentile of the heights of a roof's points that is the ridge's: chimneys rise above it.
+# The ridge height is this percentile of the heights of a roof's points, as chimneys rise above the ridge.
 RIDGE = 98
 
-# Points of the roof to which a plane is fitted next to each position on the outline.
+# Number of nearest roof points to which a plane is fitted at each position on the outline.
 _PLANE = 12
 
-# Least distance (spacings) from the outline of the points of such a plane: beyond points on the wall.
+# Points closer than this (spacings) to the outline may lie on the wall; roof planes are fitted without them.
 _INNER = 2.0
 
-# Largest root mean square distance (m) of points from such a plane: more is no roof plane.
+# A roof plane fits its points within this root mean square distance (m).
 _FLAT = 0.15
 
 # Largest slope (tangent) of such a plane: 68°.
@@ -83,7 +83,7 @@ class PointMeasures:
         return np.full(len(points), np.nan) if self.height is None else self.height[points].astype(np.float64)
 
     def over_lowest(self, points: np.ndarray, others: np.ndarray) -> np.ndarray:
-        """Return the heights (p,) of points above ground (m), or else above the lowest of them and of others."""
+        """Return the heights (p,) of points above ground (m); without these, above the lowest point of all."""
         if self.height is not None:
             return self.height[points].astype(np.float64)
         return self.xyz[points, 2] - min(self.xyz[others, 2].min(), self.xyz[points, 2].min())
@@ -173,7 +173,7 @@ def roof_heights(
 
 
 class _Owners:
-    """Which outline each position belongs to: the one of the nearest node of the lattice that belongs to any."""
+    """Assigns each position to an outline: that of the nearest lattice node with one."""
 
     def __init__(self, outlines: list[Outlined], spacing: float) -> None:
         self.spacing, self.step = spacing, spacing / NODES
@@ -210,7 +210,7 @@ class _Owners:
         return face
 
     def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Return positions (b, 2) along an outline, and which (b,) are not on a border with another; all if none is."""
+        """Return positions (b, 2) along an outline, and the mask (b,) of the outer ones; all if none is outer."""
         along, _, outward = along_sides(sides_of_rings(rings), self.spacing)
         beyond = self.at(along + self.spacing * outward, 1 / NODES)
         is_outer = (beyond < 0) | (beyond == face)
@@ -220,7 +220,7 @@ class _Owners:
 def _own_roof(roof: np.ndarray, plan: np.ndarray, shared: np.ndarray, spacing: float) -> np.ndarray:
     """Return the points (r,) of a roof without those at a border (b, 2) with another one, unless it has no others.
 
-    Borders are known to a spacing, and points of the other roof on this side would be the highest or the lowest.
+    Borders are accurate to one spacing: points of the other roof on this side would be extremes of height.
     """
     if not len(shared) or not len(roof):
         return roof
@@ -233,7 +233,7 @@ def _eave_heights(
 ) -> np.ndarray:
     """Return the height (b,) of the roof at the outer positions of its outline (a, 2), continued from the roof there.
 
-    Many points at an outline are of the wall below, down to where they are no longer taken for a roof's.
+    Many points at an outline belong to the wall below the roof.
     """
     border, defined = along[is_outer], np.isfinite(height)
     plan, height = plan[defined], height[defined]
@@ -252,7 +252,7 @@ def _eave_heights(
     distance, beside = distance.reshape(len(border), -1), beside.reshape(len(border), -1)
     weight = (distance <= APART * spacing).astype(float)
     factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)
-    # A small weight on level planes: it decides only across points that lie on one line.
+    # A small weight on level planes decides the slope only where the points lie on one line.
     matrix = np.einsum("ni,nij,nik->njk", weight, factors, factors) + np.diag([1e-6, *[spacing**2 / 10] * 2])
     right = np.einsum("ni,nij,ni->nj", weight, factors, height[beside])
     planes = np.linalg.solve(matrix, right[..., None])

@@ -69,25 +69,25 @@ def tell_without_area(n_sound: int, count: int, monitor: Monitor) -> None:
 
 
 def rows_near(xyz: np.ndarray, rings: list, margin: float = 0.0) -> np.ndarray:
-    """Return the rows of points, in the order of their eastings, in the box around a footprint, ``margin`` m."""
+    """Return the indices of points, sorted by easting, in the box around a footprint, widened by ``margin`` (m)."""
     (west, south), (east, north) = rings[0].min(axis=0) - margin, rings[0].max(axis=0) + margin
     rows = np.arange(np.searchsorted(xyz[:, 0], west), np.searchsorted(xyz[:, 0], east, side="right"))
     return rows[(xyz[rows, 1] >= south) & (xyz[rows, 1] <= north)]
 
 
 def rows_within(xyz: np.ndarray, rings: list) -> np.ndarray:
-    """Return the rows of points, in the order of their eastings, within a footprint."""
+    """Return the indices of points, sorted by easting, within a footprint."""
     rows = rows_near(xyz, rings)
     return rows[are_within(xyz[rows, :2], sides_of_rings(rings))]
 
 
 def by_easting(xyz: np.ndarray) -> np.ndarray:
-    """Return points (n, 3) in the order of their eastings."""
+    """Sort points (n, 3) by easting."""
     return xyz[np.argsort(xyz[:, 0], kind="stable")]
 
 
 def sound_rings(rings: list) -> list:
-    """Return the rings of a footprint in plan that have an area, none where its exterior has hardly any."""
+    """Return the rings of a footprint that have an area, in plan; none if its exterior has hardly any."""
     plan = [simplify_ring(np.asarray(ring, float)[:, :2], _CLOSE) for ring in rings]
     sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
     has_area = bool(sound) and sound[0] is plan[0] and abs(signed_area(plan[0])) >= NO_AREA

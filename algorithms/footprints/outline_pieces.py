@@ -125,7 +125,7 @@ def _directions_near(rings: list[list[np.ndarray]], boxes: np.ndarray) -> list[n
     around = []
     for number, rows in enumerate(split_groups(one, len(rings))):
         neighbors = [(each, row) for each in other[rows].tolist() if each != number for row in range(len(rings[each]))]
-        # Walls farther away do not count, also where they are of the same neighbor: a window may lack them.
+        # Ignore walls farther away, even of the same neighbor: a block's window may lack them.
         off = (_off_box(rings[each][row], boxes[number]) for each, row in neighbors)
         counts = [np.maximum(1 - distance / _NEIGHBORS, 0.0) for distance in off]
         around.append(sum(weights_of_pieces([pieces[each][row] for each, row in neighbors], counts), np.zeros(N_STEPS)))

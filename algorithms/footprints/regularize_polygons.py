@@ -34,24 +34,24 @@ _MEASURED = 20_000
 # Step (m) of the samples along which they are measured.
 _FINE = 0.1
 
-# Share of its scale at which a polygon is drawn next that can't be drawn at it, and the most of these trials.
+# If a polygon can't be drawn at its scale, try again at this share of it, at most this many times.
 _FINER, _TRIALS = 0.6, 8
 
-# How far (scales) all walls of a drawn polygon may be moved to give it its area: farther it is another polygon. It may
-# be farther where it is drawn finer: neighbors take or leave what is between.
+# Largest shift (scales) of all walls of a drawn polygon to restore its area; a larger one would make another polygon.
+# Where it is drawn finer more is allowed, as neighbors take or leave the strip between.
 _MOST_MOVED = 0.5
 
 # Vertices of the smallest closed ring.
 _LEAST_RING = 4
 
-# Edges up to this multiple of the length of one that has turned around are welded.
+# Weld edges up to this multiple of the length of an edge that has turned around.
 _LONGER = 1.01
 
 # Share of its area by which a polygon may differ in the end.
 _KEPT = 0.01
 
-# Share of the smaller polygon that overlaps with another one from which both are drawn apart: parts of buildings that
-# lie in them, or storeys, are no neighbors.
+# Two polygons are drawn separately if this share of the smaller one overlaps the other: it is a part or a storey, not a
+# neighbor.
 _OVERLAPPING = 0.2
 
 # Area (m²) that drawn polygons may share by rounding.
@@ -173,7 +173,7 @@ def _scale(rings: list) -> float:
 
 
 def _drawn(polygons: list, scale: float, monitor: Monitor) -> list:
-    """Return polygons drawn anew at a scale (m); those that can't be are the same objects as before."""
+    """Redraw polygons at a scale (m); return those that can't be redrawn unchanged, as the same objects."""
     made, done, step = list(polygons), 0, _SAMPLE_SCALES * scale
     samples = [[sampled(ring, step) for ring in rings] for rings in polygons]
     for layer in _layers(samples):
@@ -188,7 +188,7 @@ def _drawn(polygons: list, scale: float, monitor: Monitor) -> list:
 
 
 def _layers(samples: list) -> list[list[int]]:
-    """Return the rows of polygons, by samples along them, in layers of which none overlaps another one clearly."""
+    """Sort polygons, given by samples along them, into layers without clear overlaps; return their indices."""
     edges = as_polygons([[np.concatenate([ring, ring[:1]]) for ring in rings] for rings in samples])
     one, other, shared = overlaps(edges, edges, Monitor())
     is_over = (one != other) & (shared > _OVERLAPPING * np.minimum(edges.area[one], edges.area[other]))

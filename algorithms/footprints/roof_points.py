@@ -1,4 +1,4 @@
-"""Where roofs end: which points of buildings are roof rather than wall, and which next to them are no building."""
+"""Separate roof points of buildings from wall points, and find the non-building points next to roofs."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
 from .soft_shares import REACH
 
-# A point of a building is no part of the roof if another one lies steeply above it by more than this height (m): roofs
-# are less rough.
+# A building point is no roof point if another one lies steeply above it by more than this height (m); roofs are less
+# rough.
 _STEP = 0.4
 
 # Least height (m) of a roof above adjacent non-building points, and above points that were only attached to the
-# building, however steeply: bushes under eaves.
+# building, at any slope: these are bushes under eaves.
 _BELOW = 1.0
 
 # Slope (tangent) up to which a higher point is of the same steep roof: 72°. Such a roof rises by as many spacings from
@@ -82,7 +82,7 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
 
 
 def _numbers(grid: Grid, xyz: np.ndarray, cluster: np.ndarray) -> np.ndarray:
-    """Return one number (n,) for cell and cluster; numbers of two clusters are as far apart as the grid is large."""
+    """Return one key (n,) per cell and cluster; the keys of two clusters differ by at least the size of the grid."""
     return grid.number(xyz) + distinct(cluster)[1].astype(np.int64) * (grid.rows * grid.columns)
 
 
@@ -97,7 +97,7 @@ def edge_weights(roof: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndar
 def find_non_building_points(
     xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, spacing: float
 ) -> np.ndarray:
-    """Return the rows (m,) of non-building points next to roofs and clearly below them: there the roof has ended.
+    """Return the indices (m,) of non-building points next to roofs and clearly below them, where the roof has ended.
 
     Parameters
     ----------

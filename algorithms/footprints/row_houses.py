@@ -1,4 +1,4 @@
-"""Houses of a row: where the roofs above an outline show that one house ends and the next begins.
+"""Separate the houses of a row where steps, valleys or walls of the roof show a party wall.
 
 A party wall runs straight from one side of a building to the other. There two roofs rise away from it (the valley
 between gables side by side), parallel roofs step, or a wall rises above both. The walls of a row are chosen together:
@@ -63,14 +63,15 @@ class RowRules:
 ROWS = RowRules()
 
 
-#: Distance (m) between the positions one of which the grid of a building goes through: about the size of a house.
-#: With 22 m, outlines of Delft move by 0.19 instead of 0.08 m (median) when points move by 2 mm.
+#: The grid of a building passes through a multiple of this distance (m), about the size of a house. With 22 m, outlines
+#: of Delft move by 0.19 instead of 0.08 m (median) when points move by 2 mm.
 _FIXED = 16.0
 
-# Times that a wall moves to the middle of the evidence around it; it hardly moves after half of them.
+# Number of mean-shift steps that move a wall to the middle of the evidence around it; it hardly moves after half of
+# them.
 _SHIFTS = 10
 
-# Steps per wall in which costs are whole numbers, so that rounding decides nothing.
+# Costs are whole multiples of one wall divided by this number, so that rounding decides nothing.
 _STEPS = 10_000
 
 # Widths (m) of the houses of a row that are tried, a fifth apart.
@@ -90,8 +91,8 @@ def split_row(
 ) -> Houses:
     """Return the houses of a row, or the building as one.
 
-    The row that pays most is parted first, along one direction; then each house again, as a wall that ends at another
-    party wall is one from side to side only of what these leave.
+    The row with the greatest saving is divided first, along one direction. Then each house is divided again, as a wall
+    that ends at another party wall only crosses the part that is left.
 
     Parameters
     ----------
@@ -144,7 +145,7 @@ def _directions(
     weight = ndimage.binary_erosion(is_inside, iterations=2 * NODES) * np.hypot(east, north) / (1 + east**2 + north**2)
     turn = np.angle((weight * np.exp(4j * np.arctan2(north, east))).sum()) / 4
     found = angles.tolist()
-    # Lines that part by less than a node along a wall are the same.
+    # Two lines are the same if they diverge by less than a node along a wall.
     if (np.abs(np.angle(np.exp(4j * (angles - turn)))) > 4 * LEAST_SPACING / ROWS.deepest).all():
         found.append(float(turn))
     return found
@@ -162,12 +163,12 @@ def _views(
     grid = Lattice.around((inside - fixed) @ turn, NODES * step)
     turned = (plan - fixed) @ turn
     near = grid.holds(turned)
-    # A point counts at the four positions around it, the more the nearer, so that a wall does not depend on the grid.
+    # Points are shared bilinearly among the four nodes around them, so that a wall does not depend on the grid.
     seen, total = (grid.spread(turned[near], weight) for weight in (None, height[near]))
     roof = total / np.maximum(seen, 1e-9)
     of_grid = np.ravel_multi_index(lattice.nearest(grid.positions @ turn.T + fixed), lattice.shape).reshape(grid.shape)
     of_lattice = grid.nearest((lattice.positions - fixed) @ turn)
-    # Farther than the building on both sides, so that the line parts it where the outline has a notch, too.
+    # Extend the line beyond the building on both sides, so that it divides it at notches of the outline, too.
     along = ROWS.along * spacing
     beyond = (along + spacing) / step
 
@@ -242,14 +243,14 @@ class _View:
         """Compute the length (m) of roofs that are not low along each run, and the length of wall (m) seen there."""
         known = self.beside[inside & np.isfinite(self.beside)]
         is_high = self.beside >= (ROWS.least_share * np.median(known) if len(known) else 0.0)
-        # A wall that is not quite along the columns is seen in a neighboring one.
+        # A wall that is slightly oblique shows in a neighboring column.
         near = ndimage.maximum_filter1d(self.strength, 3, axis=1)
         return runs.sums(is_high) * self.step, runs.sums(is_high * near) * self.step
 
     def _pays(self, runs: _Runs, counted: np.ndarray, seen: np.ndarray) -> np.ndarray:
         """Compute the value of a wall along each run, in steps: the share of it that is seen, less its cost."""
         pays = seen / np.maximum(counted, ROWS.narrowest) - ROWS.wall * self.spacing
-        # The houses next to a wall that does not pay by itself would be alike, but nothing shows it.
+        # A wall must pay by itself: likeness of the houses next to it is no evidence.
         is_wall = (counted >= ROWS.narrowest) & (counted <= ROWS.deepest) & (pays > 0)
         return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), -np.inf)
 
@@ -322,8 +323,8 @@ class _Runs:
 def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[float, np.ndarray]:
     """Choose the walls of a chain of runs with the greatest saving: this (steps), and the runs behind them, ascending.
 
-    Houses are ``ROWS.narrowest`` m wide at least and have ``ROWS.least_area`` m². One e times as wide as the width that
-    suits the row best costs ``ROWS.unlike`` walls.
+    Houses are ``ROWS.narrowest`` m wide at least and have ``ROWS.least_area`` m². A house e times as wide as the best
+    width for the row costs ``ROWS.unlike`` walls.
 
     Parameters
     ----------
@@ -361,9 +362,9 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[fl
 
 
 def _without_small(piece: np.ndarray, pairs: np.ndarray, shared: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """Return the pieces of cells, from 0, with those smaller than a house in the one that they share most border with.
+    """Merge pieces smaller than a house into the neighbor with the longest shared border; renumber from 0.
 
-    The smallest comes first.
+    The smallest piece is merged first.
     """
     piece = piece.copy()
     while True:
@@ -382,7 +383,7 @@ def _without_small(piece: np.ndarray, pairs: np.ndarray, shared: np.ndarray, are
 def _evidence(roof: np.ndarray, seen: np.ndarray, step: float, along: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the evidence, 0 to 1, of walls along the first axis, and the height (m) of the higher roof next to each.
 
-    It is 0 up to the least that counts, a half from twice as much, and near 1 from many times as much.
+    It is 0 up to the least step that counts, 0.5 at twice that, and tends to 1.
     """
     sums = _Sums.along(roof, seen, step, along)
     left, right = _side(sums, step, -1), _side(sums, step, 1)
@@ -422,7 +423,7 @@ class _Sums:
         def total(values: np.ndarray, exponent: int) -> np.ndarray:
             return ndimage.correlate1d(values, y**exponent, axis=0, mode="constant")
 
-        # Points lie anywhere in their cells: a twelfth of the square of a side each.
+        # Points are uniform within their cells: their variance along an axis is a twelfth of the squared side.
         n, z = total(count, 0), count * roof
         yy = total(count, 2) + n * step**2 / 12
         return cls(n, total(count, 1), yy, total(z, 0), total(z, 1), total(z * roof, 0))
@@ -497,7 +498,8 @@ def _above(sums: _Sums, left: _Side, right: _Side, step: float) -> np.ndarray:
 def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: float) -> np.ndarray:
     """Return the mask of steps (m) to the right that continue farther away, or are not seen there.
 
-    It has to be there from every line that may be the same wall: the line itself may be that far from a dormer's side.
+    The step must continue as seen from every line that may be the same wall, as the line may lie that far from the
+    side of a dormer.
     """
     away, same = round(ROWS.wide / step), 2 * int(ROWS.same / step) + 1
     known = np.pad(np.where(is_known, roof, np.nan), ((0, 0), (away, away)), constant_values=np.nan)

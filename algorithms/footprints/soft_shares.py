@@ -1,4 +1,4 @@
-"""Share of each building at each position: a lattice, in which points count with their surroundings.
+"""Share of each building at each position, smoothed on a lattice.
 
 A share is soft: it changes by little when points move or when some of them are missing.
 """
@@ -59,7 +59,7 @@ class Lattice:
 
     @classmethod
     def around(cls, plan: np.ndarray, spacing: float) -> Lattice:
-        """Return the nodes around points (n, 2), m, with room for their surroundings."""
+        """Return the lattice around points (n, 2), m, with a margin for the smoothing."""
         step, room = spacing / NODES, int(np.ceil(REACH * NODES))
         low = np.floor(plan.min(axis=0) / step).astype(np.int64) - room
         high = np.ceil(plan.max(axis=0) / step).astype(np.int64) + room
@@ -83,7 +83,7 @@ class Lattice:
     def positions(self) -> np.ndarray:
         """Easting and northing (rows * columns, 2), m, of all nodes, row by row."""
         found = np.empty((*self.shape, 2))
-        # Axis by axis: lists of columns and rows would take several times the memory.
+        # Work axis by axis: lists of columns and rows would take several times the memory.
         for axis, count in enumerate(self.shape[::-1]):
             along = (np.arange(count) + self.first[axis]) * self.step
             found[..., axis] = along if axis == 0 else along[:, None]
@@ -218,12 +218,12 @@ def find_shares(
 
 
 def _density(lattice: Lattice, plan: np.ndarray, width: float, weight: Optional[np.ndarray] = None) -> np.ndarray:
-    """Return the points per square spacing, float32, with weights of a standard deviation ``width`` (spacings)."""
+    """Return points per square spacing, float32, smoothed by a Gaussian of standard deviation ``width`` (spacings)."""
     return smoothed(lattice.spread(plan, weight).astype(np.float32), width) * NODES**2
 
 
 def smoothed(field: np.ndarray, width: float) -> np.ndarray:
-    """Return a field on a lattice with weights of a standard deviation ``width`` (spacings)."""
+    """Smooth a field on a lattice by a Gaussian of standard deviation ``width`` (spacings)."""
     return ndimage.gaussian_filter(field, width * NODES, mode="constant", truncate=_TRUNCATE)
 
 

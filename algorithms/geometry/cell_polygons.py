@@ -66,7 +66,7 @@ def joined_cells(cells: Subdivision, label: np.ndarray) -> np.ndarray:
 
 
 def _borders(cells: Subdivision, piece: np.ndarray, label: np.ndarray) -> list[tuple[int, int, int]]:
-    """Return piece, start and end of each edge between pieces, the piece to its left and with a label above 0."""
+    """Return (piece, start, end) of each border edge whose left piece has a positive label."""
     return [
         (int(piece[cell]), start, end)
         for (start, end), cell in cells.cell_of.items()

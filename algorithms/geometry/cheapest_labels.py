@@ -82,7 +82,7 @@ def _takers(
     wanted: np.ndarray,
     border: Border,
 ) -> np.ndarray:
-    """Return those cells (n,), bool, of the ones ``wanted``, that take ``alpha`` where that is cheapest, together.
+    """Make one α-expansion: return the mask (n,) of the ``wanted`` cells that switch to ``alpha``.
 
     ``extra`` (n,) is what ``alpha`` costs beyond the present label in each cell; ``rows`` are the edges of those cells.
     """

@@ -30,7 +30,7 @@ class DisjointSets:
     """
 
     def __init__(self, count: int) -> None:
-        # An item of the same set with a lower number; the first item of a set has its own.
+        # Parent of each item, never larger than the item; a root is its own parent.
         self._lower = np.arange(count, dtype=np.int32)
         self._lock = Lock()
 

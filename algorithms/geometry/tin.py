@@ -103,7 +103,7 @@ class Tin:
         """Take the facets of a triangulation of the nodes, and derive the rest from them."""
         self._mesh = mesh
         self._weights, self._planes = self._barycentric(), self._gradients()
-        # A facet of each node, -1 of those at the position of another.
+        # One facet per node; -1 for duplicates.
         self._at_node = np.full(len(self.nodes), -1, np.int32)
         self._at_node[self.facets] = np.arange(len(self.facets))[:, None]
 

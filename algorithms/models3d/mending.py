@@ -357,7 +357,7 @@ class _Mending:
     def relabel(self, faces: list[tuple[_Piece, int]], may_lower: bool) -> bool:
         """Give the smallest part next to each face another plane; return whether any had one to take.
 
-        With ``may_lower`` that is its own at first, a little lower.
+        With ``may_lower``, first try the same plane slightly lower.
         """
         is_changed, touched = False, np.zeros(len(self.partition.label), bool)
         for piece, face in faces:

@@ -17,8 +17,8 @@ _EVEN = 1 / np.sqrt(3)
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
 _MAX_ROUNDS = 1000
 
-# Planes around a voxel go on into it where together they hold this share of its points. Of leaves, a plane of automatic
-# tolerance holds a fifth by chance.
+# A voxel joins its neighbors' planes if they explain this share of its points. In foliage, one plane of automatic
+# tolerance explains a fifth by chance.
 _HELD = 2 / 3
 
 # Least number of points of a voxel that a plane holds which goes on into it.

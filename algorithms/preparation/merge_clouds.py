@@ -207,7 +207,7 @@ def _from_angles(angles: np.ndarray) -> np.ndarray:
 
 
 def _nearest_rotation(name: str, matrix: np.ndarray) -> np.ndarray:
-    """Return the rotation (3, 3) that a matrix (4, 4) is but for rounding."""
+    """Return the rotation (3, 3) nearest to the upper left of ``matrix`` (4, 4); raise if it is not rigid."""
     if np.abs(matrix[3] - [0, 0, 0, 1]).max() > _RIGID:
         last = " ".join(f"{value:g}" for value in matrix[3])
         raise ValueError(f"{name} must have 0 0 0 1 in its last row, got {last}; is it transposed?")

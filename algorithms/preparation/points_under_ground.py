@@ -101,7 +101,7 @@ def _find_deep(is_deep: np.ndarray, xyz: np.ndarray, which: np.ndarray, is_near:
 
 
 def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
-    """Return the positions in ``cells`` of some cells and those around them, ascending."""
+    """Return the sorted indices into ``cells`` of the cells ``which`` and their neighbors."""
     at, is_cell = find_cells(cells, (cells[np.unique(which)][:, None] + [0, *grid.around]).ravel())
     return np.unique(at[is_cell])
 
@@ -109,7 +109,8 @@ def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
 def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: np.ndarray) -> np.ndarray:
     """Return the mask of elevations (m) below the surface close by that are below the ground, too."""
     lowest = around[:, 0]
-    # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
+    # Where ground is hidden, its lowest possible height is as far below the lowest neighbor as that lies below the
+    # middle one.
     lowest_ground = np.where(is_smooth, lowest, 2 * lowest - around[:, 2])
     is_on_ground = is_smooth & (close <= lowest + UNDER_GROUND.depth)
     return (z < lowest_ground - UNDER_GROUND.depth) | is_on_ground

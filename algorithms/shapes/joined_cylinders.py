@@ -28,7 +28,7 @@ _BESIDE = 0.5
 # Radius (share of the cylinder's) within which an end cap is looked for: clear of points of the wall.
 _CAP_RADIUS = 0.7
 
-# Least share of the points of an end cap, of those that its area would have, that part two cylinders.
+# Two cylinders stay apart if the cap between them holds this share of the points expected from its area.
 _CAP_SHARE = 0.3
 
 # A sector of the circumference is seen if it has this share of the points that it would have if they were even.

@@ -50,7 +50,7 @@ class Relief:
 
     @property
     def frame(self) -> Rect:
-        """The town as a rectangle, whose length is across it and whose width along it."""
+        """The town as a rectangle: length across the street, width along it."""
         return Rect(self.size / 2, self.size / 2, self.size, self.size, self.angle)
 
     def plane(self, x, y) -> np.ndarray:

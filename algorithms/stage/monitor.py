@@ -50,7 +50,7 @@ class Monitor:
         self.infos.append(sentence)
 
     def part(self, start: float, end: float, prefix: str = "") -> Monitor:
-        """Return a monitor whose 0 to 1 is ``start`` to ``end`` of this one, and whose values get a prefix here."""
+        """Return a monitor that reports ``start`` to ``end`` of this one's range; its values get the prefix."""
         return Part(self, start, end, prefix)
 
     def parts(self, count: int) -> list[Monitor]:

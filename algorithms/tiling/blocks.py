@@ -35,7 +35,7 @@ MOST_HALOS = 8
 # Length (halos) beyond which features that can be put together from pieces are left in pieces.
 _PIECE_HALOS = 2
 
-# A window of fewer points is enlarged, too: stages refuse two points, of a bird over water say, as no surface.
+# A window of fewer points is enlarged, too, as stages reject windows of a few points.
 _FEWEST_POINTS = 20
 
 # Seconds between two looks at whether to stop.

@@ -56,7 +56,7 @@ def _register(package: str, folder: str) -> None:
 
 
 def _receive(connection: Any, calls: SimpleQueue) -> None:
-    """Pass calls on; end this process, whatever it works on, when the other end is closed or its process is gone."""
+    """Forward calls; exit at once when the parent closes the pipe or dies."""
     try:
         while True:
             calls.put(connection.recv())

@@ -1,4 +1,4 @@
-"""Alleys between houses whose roofs nearly touch: where two seen walls face each other, the houses are two."""
+"""Find alleys between houses whose roofs nearly touch: two walls that face each other show two houses."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .wall_edges import SEEN, closed
 from .wall_lines import MOST, WallLine
 from .wall_outline import Limits, WallOutline
 
-# The narrowest alley (m): less is a wall that is seen from both sides, or twice.
+# Narrowest alley (m); closer pairs of lines are one wall, seen from both sides or twice.
 _NARROWEST = 0.3
 
 
@@ -39,7 +39,7 @@ def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
     if abs(one.direction @ other.direction) < np.cos(MOST):
         return None
     direction = one.direction + sign * other.direction
-    # Where lines are not quite parallel, halfway is measured opposite the middle of the second one's points.
+    # If the lines are not quite parallel, halfway is measured at the midpoint of the second one's points.
     foot = one.point + ((other.point - one.point) @ one.direction) * one.direction
     nothing = np.zeros(0)
     return WallLine((foot + other.point) / 2, direction / np.hypot(*direction), nothing.astype(int), nothing, np.nan)

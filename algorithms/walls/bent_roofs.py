@@ -1,4 +1,4 @@
-"""Parts of roofs in matched images that are no planes: matching bends them by decimeters over meters."""
+"""Find bent parts of roofs in matched images, which deviate from planes by decimeters over meters."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from ..threads import n_threads
 # Least height (m) of objects above the ground: lower points are of the ground, of plants, kerbs and steps.
 _RAISED = 0.5
 
-# Width (m) of the ground around an object that is looked at with it: whether a surface goes on into the ground, and
-# what surrounds it, shows there.
+# Width (m) of the ground around an object that is examined with it, to see whether a surface continues into the ground
+# and what surrounds it.
 _AROUND = 2.0
 
 
@@ -55,7 +55,7 @@ def bent_roofs(
     """
     surface = TopSurface(xyz, height, ~np.isin(classification, NOISE), sampling.effective_density)
     is_near = _beside_roofs(surface, cluster_id > 0)[surface.cell]
-    # With the westernmost and the southernmost point, cells begin where they do in the whole cloud.
+    # Keep the westernmost and the southernmost point, so that cells begin where they do in the whole cloud.
     is_near[np.argmin(xyz[:, :2], axis=0)] = True
     near = np.flatnonzero(is_near)
     found = segment_roofs(

@@ -21,7 +21,7 @@ WALL_UNUSED = "wall not used"
 ROOF_OUTLINE = "outline of the roof"
 TOO_SMALL = "too small"
 
-# Two positions nearer to each other than this (m) are one: more than rounding, less than any wall is thick.
+# Positions closer than this (m) are the same: above rounding, below the thickness of any wall.
 _SAME = 1e-6
 
 CORNER_FIELDS = (
@@ -73,7 +73,7 @@ def _outcomes(outline: WallOutline, rings: list[list[WallEdge]], position: np.nd
 
 
 def _gaps(lines: list[WallLine], number: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Return the distance along each position's line to the nearest of its points (m), NaN where it has none."""
+    """Return the distance (m) from each position to the nearest point on its line, NaN for a line without points."""
     gaps = np.full(len(position), np.nan)
     for i in np.unique(number):
         line, own = lines[i], number == i

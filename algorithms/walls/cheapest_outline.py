@@ -1,4 +1,4 @@
-"""The cheapest outline of a building's walls among the cells that all of its lines make, made simpler line by line.
+"""The cheapest outline of a building's walls in the cells cut by all of its lines, simplified line by line.
 
 The unit of all costs is a meter of wall without points.
 """
@@ -35,7 +35,7 @@ _DEEP = 2.0
 # distance of the position farthest from the edge.
 _DEEPER = 0.6
 
-# A cost above any wall's: of leaving out the position farthest from the edge, and of the surrounding rectangle.
+# More than any wall costs: for leaving out the deepest position, or including the rim.
 _CERTAIN = 1e5
 
 # Cost of a meter of wall without points where a side of the roof makes a wall likely.
@@ -120,7 +120,7 @@ class OutlineCells:
 
 
 def _edge_costs(cells: Arrangement, lines: list[WallLine], near: list[np.ndarray], scale: Scale) -> np.ndarray:
-    """Return the costs of edges (e,): the length of which nothing is seen."""
+    """Return the costs of edges (e,): their unseen length."""
     edges, seen = cells.edges, np.zeros(len(cells.edges.line))
     for number, own in members(edges.line + 1).items():
         along = near[number - 1][:, 0]
@@ -151,9 +151,9 @@ def _cell_costs(
 
 
 def simplified(cells: OutlineCells, monitor: Monitor) -> np.ndarray:
-    """Return the cheapest outline (cells,), bool, after lines that aren't worth their corners are left out one by one.
+    """Return the cheapest outline (cells,), bool, without the lines that aren't worth their corners.
 
-    That which saves most is the next one. Its saving is measured again first, as it changes with the lines left out.
+    The line that saves most is removed first. Savings are measured again before, as they change with the lines left.
     """
     inside = cells.cheapest(np.ones(len(cells.lines), bool))
     is_open, total = cells.is_used(inside), cells.total(inside)

@@ -1,4 +1,4 @@
-"""Which planes are roofs, and which roofs are of one building."""
+"""Find the planes that are roofs, and join the roofs of each building."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .bent_roofs import bent_roofs, with_bent_roofs
 from .party_walls import split_blocks
 from .stacked_roofs import join_stacked
 
-# Least distance (m) within which surfaces are of one roof: roofs of two buildings are seldom as close.
+# Surfaces closer than this (m) belong to one roof: roofs of two buildings are seldom as close.
 _LEAST_GAP = 0.6
 
-# Distance within which surfaces are of one roof (point spacings), if it is larger than the least.
+# Surfaces closer than this (point spacings) belong to one roof, if it is more than the least distance.
 _GAP_SPACINGS = 3.0
 
-# Largest distance (m) within which surfaces are of one roof, however few points there are: the width of a lane.
+# Surfaces farther apart than this (m), the width of a lane, are different roofs at any density.
 _MOST_GAP = 5.0
 
 

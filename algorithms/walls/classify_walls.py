@@ -1,4 +1,4 @@
-"""Which points are walls, and whose."""
+"""Find the points of walls and the roof above each."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from ..stage import Monitor, stage, tunable
 from ..threads import n_threads
 from .surroundings import CELL
 
-# The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
+# Radius of the neighborhood of a normal (times the roughness): large enough for an error of a few degrees.
 _REACH_DEVIATIONS = SURFACES.reach
 
 # Least number of points of a normal that is set automatically.
@@ -35,10 +35,10 @@ _LEAST_NEIGHBORS = 8
 # Largest number of points of a normal that is set automatically: more would reach around corners.
 _MOST_NEIGHBORS = 30
 
-# Largest distance (m) in plan of a wall from its roof where the roof was seen in part; other walls are under it.
+# Largest distance (m) in plan of a wall from its roof, if part of the roof was not seen; other walls lie under it.
 _NEAR = 2.0
 
-# The hull of a roof without area: one side that everything is outside of.
+# Hull of a roof without area: one side with every point outside.
 _NOWHERE = np.array([[0.0, 0.0, np.inf]])
 
 
@@ -157,10 +157,10 @@ def classify_walls(
 
 
 def _neighbors(xyz: np.ndarray, roughness: float) -> int:
-    """Return how many points make the normal of a wall: few where walls are precise or thinly covered."""
+    """Return the number of neighbors for the normal of a wall: few if walls are precise or thinly covered."""
     if not len(xyz):
         return _LEAST_NEIGHBORS
-    # Not the density of the cloud: from above, and under eaves, walls are seen far more sparsely than all else.
+    # Use the density of walls, not of the cloud: from above and under eaves, walls have far fewer points.
     facade_density = surface_density(xyz)
     reached = np.pi * (_REACH_DEVIATIONS * roughness) ** 2 * facade_density
     return int(np.clip(reached, _LEAST_NEIGHBORS, _MOST_NEIGHBORS))

@@ -259,14 +259,14 @@ def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:
 
 
 def _large_parts(parts: list[list[list[WallEdge]]], min_area: float) -> list[list[list[WallEdge]]]:
-    """Return the parts with an area (m²) at least."""
+    """Return the parts of at least ``min_area`` (m²)."""
     return [rings for rings in parts if sum(signed_area(closed(ring)) for ring in rings) >= min_area]
 
 
 def _disjoint_parts(outlined: list[_Outlined], min_area: float) -> list[list[list[list[WallEdge]]]]:
     """Return the parts of each house, outlined alone, without pieces in which others have more roof points.
 
-    What is left of a part has the area (m²) of the smallest building at least.
+    The remainder of a part must have ``min_area`` (m²).
     """
     number = [at for at, one in enumerate(outlined) for _ in one.parts]
     whole = [[closed(ring) + one.house.origin for ring in rings] for one in outlined for rings in one.parts]
@@ -327,7 +327,7 @@ class _Building:
     def roof_spacing(self) -> float:
         """Mean distance between points of the roof, m; 0 where they lie at one position.
 
-        Not the spacing of the cloud: a drone sees each roof from as near and as often as its flight lines pass.
+        It differs from the cloud's spacing, as flight lines pass each roof at another distance and number.
         """
         return point_spacing(self.roof) if np.ptp(self.roof, axis=0).any() else 0.0
 

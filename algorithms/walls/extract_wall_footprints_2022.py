@@ -22,13 +22,13 @@ from .wall_report import MEASURES, WALL, point_counts, wall_report
 # A geometry and its attributes.
 _Feature = tuple[Any, dict[str, Any]]
 
-# A line has as many points as lie on this length (m) of wall in the mean.
+# Least length of a line: it has as many points as lie on this length (m) of an average wall.
 _SHORTEST = 1.5
 
 # Least number of points of a line that is set automatically: fewer lie on one by chance.
 _LEAST_POINTS = 10
 
-# Share of the density along lines, in the median, at which an edge is real: eaves and plants hide parts of walls.
+# An edge is real from this share of the median density along lines, as eaves and plants hide parts of walls.
 _DENSE = 0.25
 
 _FOOTPRINT_FIELDS = (
@@ -50,10 +50,10 @@ _CORNER_FIELDS = (
     Field("edges", int, "edges that end in it"),
 )
 
-# Corners are looked for up to this far (m) outside of the box around the wall points, as in the authors' program.
+# Corners are searched up to this distance (m) outside the box around the wall points, as in the authors' program.
 _AROUND = 10.0
 
-# Positions along a line that are nearer to each other than this (m) are the same.
+# Positions along a line that are closer than this (m) are the same.
 _SAME = 1e-3
 
 
@@ -255,7 +255,8 @@ class CornerPairs:
     def outline(self) -> tuple[list[np.ndarray], np.ndarray]:
         """Return rings (m, 2), m, around areas that edges enclose, and which corners (c,) are vertices of them.
 
-        Inside are the cells from which a way outside passes an odd number of edges at least; further in are courtyards.
+        A cell is inside if the way out that crosses the fewest edges crosses an odd number; an even number means a
+        courtyard.
         """
         cells, is_wall = self.cells, self._is_wall()
         left, right = cells.edges.left, cells.edges.right
@@ -284,7 +285,7 @@ class CornerPairs:
 
 
 def sequential_lines(xy: np.ndarray, tolerance: float, min_points: int, seed: int) -> list[WallLine]:
-    """Return lines by RANSAC, each taken out in turn.
+    """Return lines by sequential RANSAC: the points of a line are removed before the next is sought.
 
     Parameters
     ----------
@@ -308,7 +309,7 @@ def sequential_lines(xy: np.ndarray, tolerance: float, min_points: int, seed: in
 
 
 def _on_best_line(xy: np.ndarray, tolerance: float, rng: np.random.Generator) -> np.ndarray:
-    """Return the mask of points (n,) on the line that holds most, of those through pairs of points."""
+    """Return the mask of points (n,) on the best line through two of them: the one with most points."""
     start, end = xy[rng.integers(0, len(xy), (2, TRIALS))]
     step = end - start
     length = np.hypot(*step.T)

@@ -1,4 +1,4 @@
-"""Outlines of single roofs, drawn as footprints are, and how deep positions lie within them."""
+"""Outlines of single roofs, drawn like footprints, and the depth of positions inside them."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from .surroundings import CELL, without_nested
 # Area of the smallest part and of the smallest courtyard (square spacings).
 _LEAST_AREA = 16.0
 
-# Scale (spacings) of the sides under which walls are searched for: of twelve bends next to holes two were cut off at
-# 0.8 and at 1, and one at 0.6. The price of corners leaves superfluous lines out.
+# Point spacings per side when walls are searched. Of twelve test corners next to holes, one was lost at 0.6, two at 0.8
+# or 1. Superfluous lines go later, by the cost of corners.
 _FINE = 0.6
 
 # Most cells in which one roof is compared with walls: extended ones have larger cells.
@@ -64,7 +64,7 @@ def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
 
 
 class RoofCover:
-    """Where a roof with some rings (k, 2) is, in small cells, and how deep (m) under it these lie, negative beyond."""
+    """A roof with rings (k, 2) as small cells, with the depth (m) of each inside the roof, negative outside."""
 
     def __init__(self, rings: list[np.ndarray]) -> None:
         low, high = plan_box(np.concatenate(rings))

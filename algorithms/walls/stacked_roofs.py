@@ -7,12 +7,11 @@ import numpy as np
 from ..geometry.grid import find_cells, raster_cells
 from ..geometry.groups import topmost
 
-# A roof of which more than this share of the border meets one larger roof is a part of that one. A house between two
-# others of its size has at most a third of it next to each, an annex in a nook half. A stair house at the edge of a
-# roof has three quarters.
+# A roof is part of a larger one if more than this share of its border meets that one. A house between two others shares
+# at most a third with each, an annex in a nook half. A stair house at the edge of a roof has three quarters.
 _ENCLOSED = 0.6
 
-# Roofs meet over this many cells in which nothing is a roof: parapets, and walls that matching has smeared.
+# Roofs meet across up to this many cells without a roof: parapets, and walls smeared by image matching.
 _OVER = 2
 
 
@@ -38,7 +37,7 @@ def _surrounding(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarra
     into = np.arange(count)
     if count < 2:
         return into
-    # Room at the border, so that the numbers of cells next to it are of no other cells.
+    # A margin, so that the numbers of cells next to the border are unique.
     row, column = raster_cells(xyz[own], size, _OVER + 1)
     columns = int(column.max()) + _OVER + 2
     number = row * columns + column

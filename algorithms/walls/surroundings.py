@@ -1,4 +1,4 @@
-"""Points next to a roof and in its holes: other roofs, and ground that is seen."""
+"""The surroundings of a roof and of its holes: other roofs, and visible ground."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ from ..sampling.cloud_sampling import CloudSampling
 # Least side (m) of the cells in which roofs and their surroundings are looked up.
 CELL = 0.25
 
-# Least side of these cells in point spacings: chance leaves less than one cell of a surface in two hundred empty.
+# Least side of these cells in point spacings: then less than one cell of a surface in two hundred is empty by chance.
 _CELL_SPACINGS = 2.5
 
-# Widest bite (m) at the edge of a roof that is filled where nothing is seen in it: where matching finds nothing on a
-# roof, it finds nothing below it either. Gaps inside a roof are filled whatever their width.
+# Widest notch (m) at the edge of a roof that is filled if it has no points: image matching fails on some roofs, and
+# then finds nothing below either. Gaps inside a roof are filled at any width.
 _BITE = 4.0
 
-# Least share of the cells next to a roof with points, from which empty cells show a bite: elsewhere the surroundings
-# are not seen either.
+# Empty cells count as a notch only if at least this share of the neighboring cells has points; otherwise nothing there
+# was scanned.
 _SEEN_BESIDE = 0.8
 
-# Least share of the cells of a gap with points below the eaves that makes it a courtyard.
+# A gap is a courtyard if at least this share of its cells has points below the eaves.
 _SEEN = 0.3
 
 # Least distance (m) below the eaves of points that show a courtyard.
 _BELOW = 1.0
 
-# The eaves of a roof: this percentile of its heights.
+# The eave height of a roof is this percentile of its heights.
 _EAVES = 5
 
 # Largest distance between points put into gaps (spacings of the roof's points).
 _FILLED = 2.0
 
-# Least share of a side of a roof, next to which another roof begins, that makes it a party wall.
+# A side of a roof is a party wall if another roof begins next to at least this share of it.
 _SHARED = 0.5
 
 # Distances (m) outward from a side at which the other roof is searched for: gaps between party walls are narrower.
@@ -116,7 +116,7 @@ class Surroundings:
 
 
 def _closed(mask: np.ndarray, radius: float) -> np.ndarray:
-    """Return cells with all gaps filled that a disk of a radius (cells) has no room in."""
+    """Close a mask of cells by a disk of a radius (cells)."""
     near = ndimage.distance_transform_edt(~mask) <= radius
     return ndimage.distance_transform_edt(np.pad(near, 1))[1:-1, 1:-1] > radius
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from .wall_lines import Scale, WallLine
 
-# Length (m) at both ends of an edge that is left out where its quality is measured: corners are rounded.
+# Length (m) at both ends of an edge that its quality leaves out, as corners are rounded.
 _CORNER = 0.4
 
 # Largest such length, as a share of the edge.
 _CORNER_SHARE = 0.25
 
-# A wall of which this share has points was seen.
+# A wall counts as seen if this share of it has points.
 SEEN = 0.5
 
 

@@ -1,4 +1,4 @@
-"""Straight walls in plan: lines by sequential RANSAC, with thresholds that follow density and noise."""
+"""Straight walls in plan: lines by sequential RANSAC, with thresholds from density and noise."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from ..geometry.principal_axes import principal_axes
 from ..neighborhoods.covariance import MIN_NEIGHBORS, Shapes, Within, reduce_neighborhoods
 from ..stage import Monitor
 
-# Hypotheses for each line: where a wall holds a tenth of the points, one pair in a hundred lies on it.
+# RANSAC samples for each line: of a wall with a tenth of the points, one pair in a hundred lies on it.
 TRIALS = 500
 
 # Most points that hypotheses are scored on: a sample of as many ranks them as all do.
 SCORED = 1500
 
-# Least distance (m) between the two points of a hypothesis: the direction of nearer ones is noise.
+# RANSAC samples two points at least this far apart (m); closer pairs give random directions.
 LEAST_PAIR = 0.5
 
-# A wall goes on over a gap of this length (m): bushes, cars and holes.
+# A wall continues across a gap up to this length (m): bushes, cars and holes.
 _GAP = 1.5
 
 # A line is a wall where at least this share of it has points.
@@ -32,13 +32,14 @@ _POINTS_PER_BIN = 3.0
 # Standard deviations up to which two angles are the same.
 _SAME = 3.0
 
-# Angles (radians) that are the same in any case: walls are built no straighter.
+# Lines closer in direction than this (radians) are parallel: walls are built no straighter.
 _BUILT = np.deg2rad(0.7)
 
-# Angles (radians) that are not the same, however uncertain they are: walls and sides of a roof within it run alike.
+# Lines farther apart in direction than this (radians) are never parallel, however uncertain; within it a wall and a
+# side of a roof are.
 MOST = np.deg2rad(8.0)
 
-# Points deviate from their line by more than noise does if their variance exceeds its by this many standard errors.
+# Points are rougher than noise if their variance about the line exceeds that of noise by this many standard errors.
 _CERTAIN = 2.0
 
 # Radius (m) of the neighborhoods that show the direction of a wall at a point.
@@ -50,7 +51,7 @@ _LONGER = 2.0
 # Cosine of the largest angle between the direction at a point and its wall: at bushes and corners any angle occurs.
 _ALONG = np.cos(np.deg2rad(30.0))
 
-# Lines are one wall if one line fits the points of both with this deviation (times the tolerance).
+# Two lines are one wall if one line fits the points of both within this deviation (times the tolerance).
 _ONE_WALL = 0.45
 
 
@@ -90,7 +91,7 @@ class WallLine:
     def angle_excess(self, noise: float) -> float:
         """Return the standard deviation of the direction (radians) due to the deviation beyond ``noise`` (m).
 
-        It does not average out: points of a bush at one end of a wall turn it, however many points the wall has.
+        It does not average out: a bush at one end of a wall turns it, however many points the wall has.
         """
         spread = float(np.sqrt(np.mean(self.along**2))) if self.is_seen else 0.0
         return self.excess(noise) / spread if spread > 0 else np.inf
@@ -112,13 +113,13 @@ class WallLine:
         )
 
     def centered(self, xy: np.ndarray) -> WallLine:
-        """Return the line moved across to the median of its points, which few of something else leave where it is."""
+        """Move the line across to the median of its points, which is robust to a few points of something else."""
         return replace(self, point=self.point + float(np.median(self.across(xy[self.points]))) * self.normal)
 
 
 @dataclass(frozen=True)
 class Scale:
-    """What the data say of a building's walls: how near to a line (m) its points lie, and a bin (m) that holds some."""
+    """Scale of a building's walls: tolerance of points about a line (m), and width of a bin (m) with several points."""
 
     tolerance: float
     bin: float
@@ -185,7 +186,7 @@ def find_lines(
 
 
 def _ways(xy: np.ndarray, monitor: Monitor) -> np.ndarray:
-    """Return the unit vector (n, 2) along which the points around each point lie; 0 where they lie along none."""
+    """Return the main direction (n, 2) of the points around each point as a unit vector; 0 without a clear one."""
     ways = np.empty((len(xy), 2))
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
@@ -226,7 +227,7 @@ def _longest_stretches(
     runs_along = np.abs(np.einsum("ij,ij->i", directions[line], ways[point])) >= _ALONG
     line, point = line[runs_along], point[runs_along]
     along, least = np.einsum("ij,ij->i", directions[line], xy[point]), (directions @ xy.T).min()
-    # Rounding can put the first point before the least position.
+    # Rounding may make this slightly negative.
     bins = np.maximum(np.floor((along - least) / scale.bin).astype(np.int64), 0)
     count = int(bins.max(initial=0)) + 1
     line, column = np.divmod(np.flatnonzero(np.bincount(line * count + bins)), count)
@@ -241,7 +242,7 @@ def _longest_stretches(
 def _fitted(
     xy: np.ndarray, ways: np.ndarray, left: np.ndarray, point: np.ndarray, direction: np.ndarray, scale: Scale
 ) -> Optional[WallLine]:
-    """Return the line of least squares through the longest stretch of points near a line."""
+    """Fit a line by total least squares to the longest stretch of points near a line."""
     line = None
     for _ in range(4):
         offsets = xy[left] - point
@@ -263,7 +264,7 @@ def _longest_run(along: np.ndarray) -> np.ndarray:
 
 
 def fit_line(xy: np.ndarray, points: np.ndarray) -> WallLine:
-    """Return the line of least squares across through points."""
+    """Fit a line to points by total least squares."""
     middle, variances, axes = principal_axes(xy[points])
     direction = axes[:, 1]
     return WallLine(middle, direction, points, (xy[points] - middle) @ direction, float(np.sqrt(variances[0])))

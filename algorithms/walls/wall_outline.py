@@ -1,4 +1,4 @@
-"""The outline of one building's walls: which lines between its corners are real."""
+"""The outline of one building's walls."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from .roof_outline import RoofCover, RoofOutline
 from .wall_edges import WallEdge
 from .wall_lines import MOST, Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
-# Fewest points that show where a wall is, where a side of the roof makes it likely.
+# Fewest points that locate a wall below a side of the roof.
 _FEW = 5
 
-# Least share of the length of a wall that the few points which show it must cover.
+# These few points must cover at least this share of the length of the wall.
 _LEAST_COVERED = 0.2
 
 # Largest angle (radians) between a wall and its eave.
 _EAVE_ANGLE = np.deg2rad(3.0)
 
-# Largest distance (m) of the eave of a wall from where the overhang makes it likely.
+# Largest deviation (m) of an eave from the position expected from wall and overhang.
 _EAVE = 0.3
 
 
@@ -133,7 +133,7 @@ def _from_roof(
     """Return lines for sides of the roof without a known wall: through the few points there, or as expected."""
     lines: list[WallLine] = []
     length = np.hypot(*(sides[:, 1] - sides[:, 0]).T)
-    # A long side meets more points than its remainder beyond a notch, which would be taken for the whole side.
+    # Try long sides first: the remainder of a side beyond a notch has fewer points and would pass for the whole side.
     for number in np.argsort(-length, kind="stable"):
         line = _expected(sides[number], float(overhangs[number]), seen)
         if not any(_is_eave_of(wall, line) for wall in [*seen, *lines]):
@@ -144,7 +144,7 @@ def _from_roof(
 def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -> WallLine:
     """Return the line moved to the most points next to it, ``half`` (m) to both sides of its middle, if there are any.
 
-    The direction is known, so that far fewer points determine a wall than without.
+    With a known direction, far fewer points determine a wall.
     """
     across, along = line.across(walls), (walls - line.point) @ line.direction
     beside = np.flatnonzero((np.abs(across) <= _EAVE) & (np.abs(along) <= half))

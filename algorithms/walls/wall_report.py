@@ -1,4 +1,4 @@
-"""How many points are left at each step from a cloud to its walls, and how many footprints and corners they gave."""
+"""Numbers of points at each step from a cloud to its walls, and of the footprints and corners drawn."""
 
 from __future__ import annotations
 
