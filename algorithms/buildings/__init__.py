@@ -1,1 +1,1 @@
-"""Which clusters are buildings, and which points belong to them."""
+"""Decide which clusters are buildings and which points belong to them."""

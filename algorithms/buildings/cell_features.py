@@ -1,4 +1,4 @@
-"""What points in space cells are like: shape, height, returns, intensity and the column that each cell is part of."""
+"""Features of space cells: shape, height, returns and intensity of their points, and the column of each cell."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class CellFeatures:
 
     def __init__(self, points: CellPoints, cells: SpaceCells, chosen: np.ndarray, around: Any) -> None:
         self._chosen, self._around = chosen, around
-        # Before the other features, as it takes the most memory for the points.
+        # Computed first, as it takes the most memory.
         self._columns = _columns(points, cells, chosen)
         self._moments, self._height = cells.moments, cells.sums(points.height)
         self._returns: list[np.ndarray] = []
@@ -102,7 +102,8 @@ def _columns(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.nd
     Share of ground, height of the topmost point, distances of the middle of the cell's points from the topmost and the
     lowest point, and spread of elevations, m.
     """
-    # As wide in plan as a cell with those around it, and all of each cell, also where rounding decides on its edge.
+    # A column is as wide as a cell with its neighbors, and holds each cell whole, also where rounding decides on its
+    # edge.
     east, north = (cells.voxels[:, :2] // 3).T
     east, north = east - east.min(), north - north.min()
     values, of_cell = distinct(north * (int(east.max()) + 1) + east)
@@ -110,7 +111,7 @@ def _columns(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.nd
     z, count = points.xyz[:, 2], np.bincount(column, minlength=len(values))
     top, bottom = -least_of(-z, column, len(values)), least_of(z, column, len(values))
     height = np.full(len(values), -np.inf)
-    # Of topmost points of the same elevation the one highest above ground, whatever their order in the cloud.
+    # Among equal topmost elevations take the point highest above ground, so that the order of the cloud doesn't matter.
     topmost = np.flatnonzero(z == top[column])
     np.maximum.at(height, column[topmost], points.height[topmost])
     above = z - bottom[column]

@@ -1,4 +1,4 @@
-"""Crowns that look like buildings by chance: of thousands in a forest some are smooth and closed."""
+"""Remove crowns that look like buildings by chance: of thousands in a forest, some are smooth and closed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..stage import Monitor
 from .cluster_decisions import HALF_SUPPORT, support
 from .reviewed_buildings import NEVER, without_gaps
 
-# Name under which blocks of a survey find whether its doubtful buildings are chance.
+# Key of the survey-wide value that says whether doubtful buildings are chance.
 CHANCE = "chance_buildings"
 
 Found = tuple[np.ndarray, np.ndarray, np.ndarray, Optional[np.ndarray], Optional[np.ndarray]]
@@ -26,8 +26,7 @@ def without_chance(
 ) -> Found:
     """Remove the doubtful buildings of a scene that has no sure one, where they are few among all that is raised.
 
-    A building is sure from 0.75 on, the confidence of one that nothing speaks against and that is twice as large as the
-    smallest.
+    A building is sure from 0.75 on: the confidence of one of twice the minimum area without any contrary evidence.
 
     Parameters
     ----------
@@ -53,7 +52,7 @@ def without_chance(
     raised = np.count_nonzero((height > LASER.raised) & (cluster_id == 0) & ~np.isin(classification, NEVER))
     points[0], mean[0] = raised, 0.0
     (is_chance,) = sampling.learned(CHANCE, lambda: np.column_stack([points, mean]), partial(_is_chance, least_share))
-    # The rest of the scene, with a mean of 0, is no building.
+    # The rest of the scene is no building, with a mean confidence of 0.
     doubtful = is_chance * (mean > 0) * (mean < _sure())
     if not doubtful.any():
         return found

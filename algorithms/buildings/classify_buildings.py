@@ -1,4 +1,4 @@
-"""Which clusters are buildings: mean entropy, penetration by the beam, adjacent clusters, surroundings."""
+"""Decide which clusters are buildings by mean entropy, penetration by the beam, adjacent clusters and surroundings."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class ENTROPY:
     points_on_lines: float = rule(1.75, "ratio", "the same on scan lines, along which neighbors say little")
 
 
-# Points of each cluster whose entropy is measured, about. In a cluster they scatter by 0.15: a mean of 256 is good to
-# 0.01, half of what K-means moves the threshold by.
+# Size of the sample of each cluster whose entropy is measured. Entropies of a cluster scatter by 0.15, so that the mean
+# of 256 is accurate to 0.01: half of what K-means moves the threshold by.
 _MEASURED = 256
 
 
@@ -58,7 +58,7 @@ _MIN_SHARE_AROUND = tunable(
     tags="building,entropy,k-means,unsupervised,classification,lasclassify",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason", "weakest_evidence"),
     measures=MEASURES,
-    # Of neighborhoods, and of the surroundings of a cluster.
+    # Reach of neighborhoods, and of the surroundings of a cluster.
     reach=5.0,
     of_whole=(*MEAN_ENTROPIES, GROUND_NOISE),
     cost=3.0,
@@ -208,7 +208,7 @@ def classify_buildings(
     decide = kind.choose(laser=_decided_in_scan, images=_decided_in_images)
     decided = decide(given, surface, (red, green, blue), monitor)
 
-    # 3. All points of a cluster are the same.
+    # 3. All points of a cluster get its class.
     report = build_report(Clusters(entropies.means, decided.reasons, split, through, max_penetration))
     smallest = min_area * density
     by_beam = {} if kind.is_surface else {"split": split, "penetration": through, "max_penetration": max_penetration}

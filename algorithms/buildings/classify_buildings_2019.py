@@ -1,4 +1,4 @@
-"""Which clusters are buildings, as published in 2019: mean entropy and two means."""
+"""Decide which clusters are buildings as published in 2019, by mean entropy and two means."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, Split, split_of_whole
 from .weakest_evidence import weakest_evidence
 
-# A covariance of full rank takes more than three points; three are the fewest that have eigenvalues to compare.
+# Three points are the fewest with eigenvalues to compare; a covariance of full rank takes more.
 _MIN_NEIGHBORS = 3
 
-# How far neighborhoods reach (m): of 4 m² 1.1 m, in sparse clouds more.
+# Reach of neighborhoods (m): 1.1 m for 4 m², more in sparse clouds.
 _REACH = 5.0
 
-# Means closer together are equal: clusters differ by 0.01 and more.
+# Means closer than this are equal; real clusters differ by 0.01 and more.
 _SAME = 1e-3
 
 # Runs of K-means, of which the best counts: the default of scikit-learn for years.

@@ -15,8 +15,8 @@ from .cluster_entropies import ClusterEntropies
 from .cluster_report import Clusters, build_report
 from .entropy_split import Split
 
-# Points of a cluster, in points of the smallest building, at which its confidence above 0.5 is halved.
-# A car is as large as the smallest building and can look like a roof; confidence only, no decision depends on it.
+# The confidence above 0.5 is halved for a cluster with this many times the points of the smallest building, as a car of
+# that size can look like a roof. It affects the confidence only, no decision.
 HALF_SUPPORT = 2.0
 
 

@@ -84,7 +84,8 @@ def _sample(xyz: np.ndarray, share: np.ndarray) -> np.ndarray:
     """
     # Tenths of a millimeter: coordinates that were stored in steps may differ by rounding.
     chosen = scattered(np.rint(xyz * 1e4).astype(np.int64)) < share
-    # Points that coincide are all chosen or none of them: without any, no cluster would have a mean.
+    # Coincident points are chosen all together or not at all; if none is chosen, take all, as every cluster needs a
+    # mean.
     return chosen if chosen.any() else np.ones(len(xyz), bool)
 
 

@@ -20,7 +20,8 @@ from ..segmentation.cluster_measures import (
 )
 from .cluster_decisions import Decisions
 
-# Share of points that are not last returns up to which planar clusters may be edges of roofs, where some pulses split.
+# Planar clusters with up to this share of points that are not last returns may be edges of roofs, where some pulses
+# split.
 _SPLIT_AT_EDGES = 0.3
 
 
@@ -127,9 +128,8 @@ def with_surroundings(decided: Decisions, min_share: float, evidence: ClusterEvi
     """Decide again, given the share of building points around each cluster and around each whole building.
 
     In a forest, spots of crowns that are smooth by chance lie next to each other and pass for surroundings of
-    buildings, but none of them is sure. So the share around a whole building counts times its mean confidence, unless
-    it is so large that ground would be seen in it among trees.
-    """
+    buildings, but none of them is sure. So the share around a whole building is multiplied by its mean confidence,
+    unless the building is so large that ground would show between trees."""
     around = evidence.share_around(decided.is_building)
     is_building = decided.is_building & (around >= min_share)
     building = evidence.adjacent(is_building)
@@ -144,6 +144,6 @@ def with_surroundings(decided: Decisions, min_share: float, evidence: ClusterEvi
 def _with_solidity(confidence: np.ndarray, through: np.ndarray, max_penetration: float) -> np.ndarray:
     """Return the geometric mean of the entropy's confidence and of solidity, 0 at twice the penetration allowed."""
     solid = np.clip(1 - through / (2 * max_penetration), 0, 1)
-    # Geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
+    # The mean is geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
     both = np.sqrt(confidence * solid)
     return np.where(through <= max_penetration, both, np.minimum(both, 0.5))

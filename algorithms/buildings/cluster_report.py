@@ -1,4 +1,4 @@
-"""The page that shows how clusters were decided on: reasons, entropies and, where it counts, penetration."""
+"""The page with the decisions on clusters: reasons, entropies and, where it counts, penetration."""
 
 from __future__ import annotations
 

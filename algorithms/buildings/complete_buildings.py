@@ -24,7 +24,7 @@ from .building_columns import ColumnPoints, Columns, column_size
 from .roof_coverage import Cell, Coverage, cells_with, covered_cells, mostly_roof, numbered, renumbered, roof_top
 from .roof_extent import RoofExtent, amid_rough, without_vehicles
 
-# Width of the widest court (m), and how far from it streets count: beyond a building of 15 m, as far again.
+# Width of the widest court (m), and the distance within which streets count: beyond a building of 15 m, as far again.
 AROUND = 30.0
 
 
@@ -41,8 +41,8 @@ class COMPLETION:
     tags="building,roof,facade,chimney,dormer,attach",
     writes=("classification", "cluster_id", "confidence", "reason"),
     written_if={"confidence": "where the cloud has them", "reason": "where the cloud has them"},
-    # Gaps are closed from both sides. A court at the edge of a tile is seen whole by this, its streets by the reach of
-    # later steps.
+    # Gaps are closed from both sides. This reach shows a court at the edge of a tile whole, the reach of later steps
+    # its streets.
     reach=lambda tunables: max(tunables["gap"] or 0.0, AROUND),
     cost=0.7,
 )
@@ -154,7 +154,7 @@ def complete_buildings(
     density = sampling.effective_density if density is None else density
     kind = sampling.kind(source)
     if gap is None:
-        # In the middle of wider gaps ground is seen.
+        # Wider gaps show ground in their middle.
         gap = float(np.clip(COMPLETION.gap / np.sqrt(density), COMPLETION.least_gap, 2 * SCENE.ground_within))
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
@@ -224,7 +224,7 @@ def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
     margin = int(np.ceil(limits.gap / cell_size)) + 2
     cell = raster_cells(roofs.xyz[:, :2], cell_size, margin)
     raised = (roofs.height >= LASER.foot) & roofs.may_belong
-    # Multipath through a skylight is no ground that shows in it.
+    # Multipath points below a skylight are no visible ground.
     covered = covered_cells(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
     building, refused = numbered(covered, limits.min_area, cell_size)
     top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered.shape)
@@ -288,8 +288,8 @@ def deck_cells(
 ) -> np.ndarray:
     """Return the building (rows, columns) that surrounds the deck in each cell; 0 in cells without a deck.
 
-    A deck lies as high over the streets around as the lowest roof over ground, and over what a hill that rises toward
-    the court would reach there: the court of a castle is ground.
+    A deck lies higher than the streets around by at least the height of the lowest roof, also if their slope is
+    continued to the court: the court of a castle on a hill is ground.
 
     Parameters
     ----------
@@ -338,6 +338,6 @@ def _rise(street: np.ndarray, ground: np.ndarray, is_court: np.ndarray, cell_siz
     near, level = away[outside], street[outside]
     fall = max(0.0, -float(np.cov(near, level)[0, 1] / near.var())) if np.ptp(near) else 0.0
     continued = level + fall * near
-    # Few cells of streets are higher: stairs and walls.
+    # This percentile leaves out stairs and walls, which few cells of streets have.
     rise = ground - (continued.mean() + ON_PLANE * continued.std()) - fall * depth
     return np.where(np.isfinite(ground), rise, -np.inf)

@@ -1,4 +1,4 @@
-"""Points at the edges of buildings decided together: a minimum cut in the graph of their nearest neighbors."""
+"""Decide on points at the edges of buildings together, by a minimum cut in the graph of their nearest neighbors."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ from ..sampling.surface_noise import SURFACES
 def decided_together(xyz: np.ndarray, gain: np.ndarray, spacing: float, side: float, margin: float) -> np.ndarray:
     """Return the mask of points (n,) of buildings that together contradict evidence and neighbors least.
 
-    The cut is exact in each square of a fixed lattice with a margin around it, of which the square itself is kept. So a
-    part of a survey that holds these margins decides as the whole, and the cut of all at once differs in few points.
+    The cut is exact in each square of a fixed lattice with a margin around it; only the square itself is kept. So a
+    part of a survey with these margins gives the same result as the whole. A cut of all points at once differs in few
+    of them.
 
     Parameters
     ----------
@@ -41,7 +42,7 @@ def decided_together(xyz: np.ndarray, gain: np.ndarray, spacing: float, side: fl
         return alone
     together = alone.copy()
     for rows, is_own in _squares(xyz[:, :2], side, margin):
-        # Points that all lean to one class leave nothing to decide.
+        # If all points lean to one class, there is nothing to decide.
         if alone[rows].any() and not alone[rows].all():
             together[rows[is_own]] = _cheapest(xyz[rows], gain[rows], spacing)[is_own]
     return together
@@ -66,7 +67,7 @@ def _cheapest(xyz: np.ndarray, gain: np.ndarray, spacing: float) -> np.ndarray:
     """Return the mask of points (n,) that the minimum cut puts on the side of buildings; n >= 2."""
     distance, near = spatial.cKDTree(xyz).query(xyz, min(SURFACES.neighbors + 1, len(xyz)))
     row = np.repeat(np.arange(len(xyz)), near.shape[1])
-    # A neighbor at no distance counts as much as odds of e to 1, one at the distance of neighbors half of it.
+    # A neighbor at distance 0 weighs as much as odds of e to 1, one at the usual distance half as much.
     cost = 1 / (1 + (distance.ravel() / spacing) ** 2)
     is_other = near.ravel() != row
     ends = row[is_other], near.ravel()[is_other]

@@ -20,7 +20,7 @@ class SPLIT:
     weight: float = rule(10.0, "times the clusters", "chosen: clusters move a reference by a tenth of their distance")
 
 
-# Names of the two means among what parts of a cloud take of the whole.
+# Keys of the two means among the values that blocks take from the whole survey.
 MEAN_ENTROPIES = ("building_entropy", "other_entropy")
 
 
@@ -28,7 +28,7 @@ MEAN_ENTROPIES = ("building_entropy", "other_entropy")
 class Split:
     """Two mean entropies, of buildings and of everything else; unless the first is less, clusters are undecided.
 
-    With ``is_one_group`` all clusters are on one side, and the other mean is the reference that no cluster has moved.
+    With ``is_one_group`` all clusters are on one side, and the other mean is its reference value.
     """
 
     building: float
@@ -65,8 +65,8 @@ def split_of_whole(sampling: CloudSampling, measure: Callable[[], Split]) -> Spl
 def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor) -> Split:
     """Separate the clusters' mean entropies (m,) as K-means does, from reference entropies and held by them.
 
-    The references of planes and volumes count ``SPLIT.weight`` times the clusters each: two means always find two
-    groups, also among thousands of clusters of a forest.
+    The references of planes and volumes each weigh ``SPLIT.weight`` times as much as all clusters. Two means alone
+    would always find two groups, also among the thousands of clusters of a forest.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor)
     """
     known = np.sort(means[np.isfinite(means)])
     low, high, weight = plane, volume, SPLIT.weight * max(len(known), 1)
-    # Each round but the last moves clusters to the other mean, and none moves back.
+    # Each round but the last moves clusters in one direction, so that the rounds end.
     for _ in range(len(known) + 1):
         is_low = known <= (low + high) / 2
         before = low, high

@@ -61,8 +61,8 @@ def _terms(features: np.ndarray, mean: np.ndarray, scale: np.ndarray) -> np.ndar
 
 def _probability(terms: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Return the probabilities (k,) of terms (k, t)."""
-    # Sums in a fixed order, which the threads of a matrix product do not keep to. Beyond 30, probabilities are 0 or 1,
-    # but for 1e-13.
+    # Sum in a fixed order, which a threaded matrix product would not keep. Beyond 30, probabilities are 0 or 1 within
+    # 1e-13.
     return 1 / (1 + np.exp(-np.clip(np.einsum("ij,j->i", terms, weights), -30, 30)))
 
 

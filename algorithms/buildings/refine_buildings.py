@@ -1,4 +1,4 @@
-"""Buildings refined by what the scene itself shows: a classifier learns from the result that it then corrects."""
+"""Refine buildings by self-training: a classifier learns from the result that it then corrects."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from .scene_learning import RULES as HALVES
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
 from .space_cells import SpaceCells
 
-# Name under which blocks of a survey find what was learned on the whole.
+# Key of the survey-wide values that were learned.
 _LEARNED = "building_likeness"
 
 
 @rules
 class _RULES:
-    """Points that are examined, and what changes; fitted on seven real airborne clouds, where F rises by 0.86 %."""
+    """Points examined and limits of changes; fitted on seven real airborne clouds, where F rises by 0.86 %."""
 
     cell_spacings: float = rule(
         4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
@@ -54,8 +54,8 @@ class _RULES:
         "reason": "where the cloud has them",
         "building_probability": "where the buildings of the scene could be learned",
     },
-    # Squares with the margin that points are decided together in, and two rings of cells around each point, of 4 m at
-    # 1 point/m²: one for the features of a cell, and one for smoothing.
+    # The margin of the squares in which points are decided together, and two rings of cells around each point, 4 m wide
+    # at 1 point/m²: one for the features of a cell, and one for smoothing.
     reach=HALVES.half + COLUMNS.edge + 8.0,
     of_whole=(_LEARNED, CHANCE),
     cost=2.5,
@@ -242,7 +242,7 @@ def _as_learned(
     likely = labeled.smooth(predict(learned, labeled.features, labeled.half))
     probability = np.full(len(xyz), np.nan)
     probability[used] = shared_by_surfaces(scene.of_points(labeled, likely), segment_id)
-    # The distances to edges need the memory that these take.
+    # Free them first, as the distances to edges need the memory.
     del labeled, likely
     monitor.progress(0.9)
 
@@ -325,7 +325,7 @@ class _Scene:
         refuse_sparse(self.xyz, size)
         cell = raster_cells(self.xyz, size, 1)
         building = np.zeros((cell[0].max() + 2, cell[1].max() + 2), np.int32)
-        # Of several buildings in a cell the one of the greatest number counts, whatever the order of their points.
+        # If a cell has several buildings, take the greatest number, so that the order of points doesn't matter.
         np.maximum.at(building, tuple(index[self.is_building] for index in cell), self.cluster_id[self.is_building])
         outside, nearest = ndimage.distance_transform_edt(building == 0, return_indices=True)
         inside = ndimage.distance_transform_edt(building > 0)

@@ -1,4 +1,4 @@
-"""Buildings that a person has decided on: which points are theirs, and which outlines stay."""
+"""Apply the decisions of a review: the points of each building, and the outlines that stay."""
 
 from __future__ import annotations
 
@@ -86,10 +86,10 @@ class ReviewedBuildings:
         is_building = classification == PointClass.BUILDING
         may = (owner >= 0) & (height > LASER.foot) & ~np.isin(classification, NEVER)
         raised, found = (np.bincount(owner[of], minlength=len(self.rows)) for of in (may, may & is_building))
-        # Of a building that was found, trees over it leave a quarter of the points at least, on fifteen clouds.
+        # On fifteen clouds, trees over a building left it at least a quarter of the points.
         becomes = np.flatnonzero(may & (owner < self.stay) & ~is_building & (4 * found < raised)[owner])
         ceases = np.flatnonzero(is_building & (owner >= self.stay))
-        # Deleted ones keep their number, so that outlines are drawn as if nothing was deleted, and then left out.
+        # Deleted buildings keep their number until outlines are drawn, so that their neighbors are drawn as before.
         number = cluster_id.copy()
         number[becomes] = cluster_id.max(initial=0) + 1 + owner[becomes]
         return (

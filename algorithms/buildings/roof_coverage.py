@@ -1,4 +1,4 @@
-"""Where the roofs of buildings are in plan, in cells: gaps closed, regions numbered, and how high the roofs are."""
+"""The cells that roofs of buildings cover: gaps closed, regions numbered, with the height of roofs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where roofs end in clouds of matched images, whose edges are rounded, and objects of the size of vehicles."""
+"""Extent of roofs in clouds of matched images, whose edges are rounded, and objects of the size of vehicles."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class VEHICLES:
     height: float = rule(3.0, "m", "physics: height of the highest van")
 
 
-# Directions (radians) that the smallest rectangle around an object is looked for in.
+# Directions (radians) tried for the smallest rectangle around an object.
 _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 
 
@@ -80,7 +80,7 @@ class RoofExtent:
             closed = closed | (ndimage.binary_closing(self.is_roof, self._disk(gap / 2)) & raised)
             closed |= self._small_holes(closed, gap) & raised
         wide = ndimage.binary_opening(closed, self._disk(IMAGE_ROOFS.least_width / 2))
-        # Opening rounds the corners off, too: within two cells they come back.
+        # Opening also rounds corners; restore them within two cells.
         wide = ndimage.binary_dilation(wide, EIGHT, 2, mask=closed) if wide.any() else wide
         return self._to_edges(wide)
 
@@ -91,7 +91,7 @@ class RoofExtent:
         """
         if not core.any():
             return core
-        # A step is smeared evenly to both sides.
+        # Image matching smears a step evenly to both sides.
         is_edge = self.surface.height >= 0.5 * nearest_known(self.surface.height, ~core)
         steps = max(1, round(MATCHING.rounded / self.surface.size))
         cross = ndimage.generate_binary_structure(2, 1)
@@ -126,7 +126,7 @@ class RoofExtent:
 
     def _is_vehicle(self, inside: np.ndarray, height: np.ndarray) -> bool:
         """Return whether cells (rows, columns) with heights (k,), m, have the size of a vehicle."""
-        # Sides are known to a cell.
+        # The sides are accurate to one cell.
         cell = self.surface.size
         width, length = smallest_rectangle(inside, cell)
         has_length = VEHICLES.least_length - cell <= length <= VEHICLES.most_length + cell

@@ -1,4 +1,4 @@
-"""What buildings of a scene look like, learned from its own classes: each half of the scene judges the other one."""
+"""Learn the appearance of buildings from the scene's own classes: each half of the scene judges the other one."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class LabeledCells:
         east = np.bincount(cluster_id[is_building], self.cells.xyz[is_building, 0], int(cluster_id.max()) + 1)
         mark = np.zeros(len(self.cells.count))
         mark[self.cells.cell[is_building]] = 1.0 + np.abs(east[cluster_id[is_building]])
-        # A cell more or less, as at the edge of a cloud, changes no other row of the sample.
+        # An additional cell, as at the edge of a cloud, changes no other row of the sample.
         number = scattered(self.cells.voxels[self.chosen])
         rows = _least(number)
         columns = number[rows], self.half[rows], mark[self.chosen[rows]], self.label[rows], self.features.of(rows)
@@ -71,7 +71,7 @@ def learn_halves(sample: np.ndarray) -> tuple[float, ...]:
     Empty where it has fewer than two buildings, or a half has only points of one kind.
     """
     marks = np.unique(sample[:, 2])
-    # Of several parts of a survey, those cells that one sample of them all would have.
+    # Merge the samples of parts of a survey into the one that the whole survey would give.
     sample = sample[_least(sample[:, 0])]
     half, label = sample[:, 1], sample[:, 3]
     halves = [half == number for number in (0, 1)]

@@ -72,7 +72,7 @@ class SpaceCells:
 
     @cached_property
     def _origin(self) -> np.ndarray:
-        # Sums about a point nearby keep the digits that squares of large coordinates lose.
+        # Sum about a nearby point, as squares of large coordinates lose digits.
         return np.rint(self.xyz.mean(axis=0))
 
 

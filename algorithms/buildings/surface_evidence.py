@@ -1,4 +1,4 @@
-"""Evidence on clusters without returns: surfaces that are planar over meters amid such surfaces, and color."""
+"""Evidence on clusters without returns: planar surfaces next to others of their kind, and color."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..features.greenness import MOST_GREEN, greenness, greenness_between
 from .cluster_decisions import Decisions
 from .cluster_evidence import ClusterEvidence
 
-# Surfaces larger than this, in minimum building areas, show the colors of roofs: smooth parts of crowns are smaller.
+# Surfaces larger than this (minimum building areas) give the colors of roofs, as smooth parts of crowns are smaller.
 _LARGE = 10.0
 
 

@@ -1,4 +1,4 @@
-"""The evidence on a cluster that is nearest to its limit, or furthest beyond it: what makes a building doubtful."""
+"""The weakest evidence on a cluster, nearest to its limit or furthest beyond it: why a building is doubtful."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def weakest_evidence(
     if decided is not None and decided.around is not None:
         share, least = decided.around, decided.least_around
         found.append(_Measured(Evidence.SURROUNDINGS, share, least, (share - least) / max(1 - least, 1e-9)))
-    # A margin that is not known is not the least one.
+    # Ignore unknown margins.
     margins = np.array([np.where(np.isfinite(one.margin), one.margin, np.inf) for one in found])
     weakest, clusters = margins.argmin(axis=0), np.arange(margins.shape[1])
     kind, limit = (np.array([one[part] for one in found])[weakest] for part in (0, 2))

@@ -1,4 +1,4 @@
-"""Cells of a raster and those next to them."""
+"""Pairs of adjacent raster cells."""
 
 from __future__ import annotations
 

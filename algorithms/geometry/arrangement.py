@@ -8,10 +8,10 @@ import numpy as np
 
 from .cheapest_labels import cheapest_cut
 
-# Lines are moved by up to this distance (m) where three of them meet in one point to within rounding.
+# If three lines meet in one point within rounding, move them by up to this distance (m).
 NUDGE = 1e-6
 
-# Distance from a side of the rectangle, as a share of its coordinate (m) plus 1, at which ends of lines are on it.
+# Ends of lines lie on a side of the rectangle within this share of its coordinate (m) plus 1.
 _ON_SIDE = 1e-6
 
 
@@ -70,7 +70,7 @@ class Arrangement:
             self._build(low, high)
 
     def _build(self, low: np.ndarray, high: np.ndarray) -> None:
-        """Find crossings, edges and cells of the lines as they are now."""
+        """Find crossings, edges and cells of the current lines."""
         numbers = _numbers(len(self.points))
         self.crossing, positions, ways = _crossings(self.points, self.directions, low, high)
         entry, leave = _clipped(self.points, self.directions, low, high)
@@ -155,7 +155,7 @@ class Arrangement:
         """Return the cell (n,) of points that lie on these ``sides`` (n, m) of the lines, -1 if unassigned."""
         wanted = keys_of(sides)
         cell = np.minimum(np.searchsorted(self._keys, wanted), self.count - 1)
-        # Rounding may put a point into a cell that is too small to exist.
+        # By rounding, a point may lie in a cell too small to be kept.
         return np.where(self._keys[cell] == wanted, cell, -1)
 
     def outline(self, inside: np.ndarray) -> list[list[tuple[int, int]]]:
@@ -231,7 +231,7 @@ def _walk(following: dict, start: int) -> list[tuple[int, int]]:
     here, came, ring = start, -1, []
     while True:
         ways = following[here]
-        # Where two rings touch, leaving the line parts them.
+        # Where two rings touch, turn off the line to keep them apart.
         way = next((i for i, (line, _) in enumerate(ways) if line != came), 0) if len(ways) > 1 else 0
         line, end = ways.pop(way)
         if not ways:

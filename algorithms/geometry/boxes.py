@@ -14,7 +14,7 @@ from .groups import components, placed, run_starts
 # Point pairs compared at once: 130 bytes each, so 130 MB.
 _PAIRS_AT_ONCE = 1_000_000
 
-# Boxes this many steps away can still hold a point that is near.
+# A near point lies at most this many boxes away.
 _REACH = 2
 
 # Numbers of boxes are of 64 bits.
@@ -22,7 +22,7 @@ _MOST_BOXES = 2**63 - 1
 
 Offset = tuple[int, int, int]
 
-# Points of which all pairs are compared at once, in less time than it takes to look for the boxes around each box.
+# Up to this number of points, comparing all pairs is faster than searching the boxes around each box.
 _FEW = 300
 
 
@@ -61,7 +61,7 @@ class Boxes:
         start = np.floor(low / sides) * sides if from_zero else low
         box = [np.floor((xyz[:, axis] - start[axis]) / sides[axis]).astype(np.int64) for axis in range(3)]
         box = [column - column.min() for column in box]
-        # Room on all sides keeps neighbors from wrapping around.
+        # A margin on all sides keeps neighbors from wrapping around.
         self.shape = np.array([column.max() for column in box]) + 2 * _REACH + 1
         if math.prod(self.shape.tolist()) > _MOST_BOXES:
             spread = " by ".join(f"{extent:,.0f}" for extent in np.ptp(xyz, axis=0))
@@ -118,7 +118,7 @@ class Boxes:
             for _ in range(lowest, _REACH + 1):
                 here = np.flatnonzero(self.keys[np.minimum(there, len(self) - 1)] == wanted)
                 found.append((here, there[here]))
-                # Numbers count on upward: the next box is the next number, or the position stays.
+                # Box numbers grow upward: the next box has the next number.
                 there[here] += 1
                 wanted += 1
             yield np.concatenate([one for one, _ in found]), np.concatenate([other for _, other in found])
@@ -172,7 +172,7 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
         return _joined(component, box[here[near]], box[there[near]])
     n_columns = (2 * _REACH + 1) ** 2 // 2 + 1
     first = boxes.xyz[boxes.start]
-    # Steps of one column together: what joins boxes costs as much for few pairs as for many.
+    # Join the pairs of a whole column of boxes at once, as joining has a fixed cost.
     left: list[tuple[np.ndarray, np.ndarray]] = []
     for done, column in enumerate(boxes.beside_all(), start=1):
         here, there = _apart(column, component)

@@ -11,7 +11,7 @@ from .rings import signed_area
 # Directions of a cell's sides, counterclockwise around it: the south side runs east, the east side north, …
 _EAST, _NORTH, _WEST, _SOUTH = range(4)
 
-# Part of a side that is cut off next to the neck that joins cells which touch by a corner only.
+# Share of a side that is cut off where cells touch in a corner only, so that rings don't touch.
 _NECK = 0.1
 
 
@@ -68,7 +68,8 @@ def _following(grid: Grid, start: np.ndarray, direction: np.ndarray) -> np.ndarr
     following = np.full(len(start), -1)
     for turn in (1, 0, -1):
         position, found = find_cells(keys, 4 * end + (direction + turn) % 4)
-        # Turns to the right are set last: where four sides meet, the ring goes on to the cell across the corner.
+        # Turns to the right are set last and so win: where four sides meet, the ring continues to the cell across the
+        # corner.
         following[found] = order[position[found]]
     return following
 

@@ -11,7 +11,7 @@ from .groups import components
 from .rings import signed_area
 from .subdivision import Subdivision
 
-# A vertex this close (m) to the line from the one before to the next is no corner.
+# A vertex closer than this (m) to the line between its neighbors is no corner.
 _STRAIGHT = 0.002
 
 

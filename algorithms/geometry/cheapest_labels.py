@@ -1,4 +1,4 @@
-"""Which label each cell of a partition takes so that all together cost least: alpha expansion with minimum cuts."""
+"""Label the cells of a partition at least total cost, by α-expansion with minimum cuts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LARGEST = 3e8
 # Sweeps over all labels; costs hardly change after the second one.
 _SWEEPS = 4
 
-# Returns what two labels (k,) on the two sides of some edges (k,) cost (k,).
+# Returns the cost (k,) of edges (k,) with these labels (k,) on their two sides.
 Border = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -58,8 +58,8 @@ def cheapest_labels(
             break
         tried += 1
         extra = cost[:, alpha] - cost[cells, label]
-        # A cell never takes a label that costs more than all its borders could save. Cells that border on each other
-        # take it only if one of them costs less without its present borders.
+        # A cell never takes a label that costs more than all its borders could save. Adjacent cells take it only if one
+        # of them would cost less without its present borders.
         wanted = extra <= most
         own = np.bincount(edges.ravel(), np.repeat(border_cost, 2), len(cost))
         if not (wanted & (extra < own)).any():
@@ -138,7 +138,7 @@ def cheapest_cut(
     columns = np.concatenate([right, left, cells, to_source, to_sink, cells])
     costs = np.concatenate([cost, cost if back is None else back, if_outside, np.zeros(n), if_inside, np.zeros(n)])
     capacity = np.rint(np.minimum(costs * steps, _LARGEST)).astype(np.int32)
-    # The rows of the matrix by hand: most cuts have few cells, and for these scipy's checks take longer than the flow.
+    # Build the matrix by hand: most cuts have few cells, for which scipy's checks take longer than the flow.
     key = rows * (n + 2) + columns
     order = np.argsort(key, kind="stable")
     first = run_starts(key[order])

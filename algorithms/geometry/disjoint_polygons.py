@@ -1,4 +1,4 @@
-"""Two polygons that overlap: what they share is divided between them."""
+"""Divide the overlap of two polygons between them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def divide_overlap(one: Rings, other: Rings, of_one: np.ndarray, of_other: np.nd
     near = [ring - origin for ring in one], [ring - origin for ring in other]
     start, end = np.moveaxis(sides_of_rings([*near[0], *near[1]]), 1, 0)
     way = (end - start) / np.hypot(*(end - start).T)[:, None]
-    # The sides of the rectangle bound no cell of the polygons.
+    # The rectangle is larger, so that its sides bound no cell of the polygons.
     low, high = start.min(axis=0), start.max(axis=0)
     cells = Arrangement(start, way, low - (high - low), high + (high - low))
     middles = _middles(cells)

@@ -12,16 +12,16 @@ from .groups import components, mask_of
 # A cell of a raster and the eight around it.
 EIGHT = np.ones((3, 3), bool)
 
-# Cells of a raster that are no burden however few points they hold: tens of megabytes for an array of them.
+# A raster of up to this many cells is accepted however few points it holds: an array of it has tens of megabytes.
 _MOST_CELLS = 10_000_000
 
-# Cells that take no time worth saving, however empty they are.
+# A raster of up to this many cells costs hardly any time, however empty it is.
 _FEW_CELLS = 200_000
 
 # Cells for each point beyond which a larger raster is refused: nearly empty, it is due to wrong coordinates.
 _MOST_CELLS_PER_POINT = 20
 
-# Longest table, in multiples of the count of numbers in it, that takes less memory and time than sorting them.
+# A table of up to this many entries per number takes less memory and time than sorting the numbers.
 _TABLE = 4
 
 

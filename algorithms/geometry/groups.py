@@ -1,4 +1,4 @@
-"""Items and their groups: where runs begin, which items a group has, and what pairs hold together."""
+"""Items and groups: starts of runs, members of groups, and components of pairs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Polygons whose walls are moved along their normals, so that each has the area that it is to have."""
+"""Move the walls of polygons along their normals, so that each polygon gets a given area."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def level_lines(field: np.ndarray) -> list[np.ndarray]:
     Lorensen, W. E., Cline, H. E., 1987. Marching cubes: a high resolution 3D surface construction algorithm. Computer
     Graphics 21 (4), 163-169. [lorensen1987]
     """
-    # Nothing is exactly zero, so that no line passes through a node.
+    # Replace exact zeros, so that no line passes through a node.
     padded = np.pad(np.where(field == 0, -1e-12, field).astype(np.float64), 1, constant_values=-1.0)
     starts, ends = _segments(padded)
     if not len(starts):

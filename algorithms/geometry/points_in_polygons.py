@@ -1,4 +1,4 @@
-"""Which of many points lie in which of many polygons."""
+"""Find the polygon that each of many points lies in."""
 
 from __future__ import annotations
 

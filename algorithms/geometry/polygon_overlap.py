@@ -1,4 +1,4 @@
-"""How much the polygons of two layers share, exactly."""
+"""Areas of overlap between the polygons of two layers, exactly."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
     order = np.argsort(second[:, 0, 0], kind="stable")
     west = second[order, 0, 0]
-    # A box that begins farther west than the greatest width of all ends before this one begins.
+    # A box that begins farther west than the greatest width of any box can't reach this one.
     widest = float((second[:, 1, 0] - second[:, 0, 0]).max())
     low = np.searchsorted(west, first[:, 0, 0] - widest)
     count = np.searchsorted(west, first[:, 1, 0], side="right") - low
@@ -169,7 +169,7 @@ def _below_both(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     width = np.maximum(east - west, 0.0)
     at_west, at_east = (_height(first, x) - _height(second, x) for x in (west, east))
     total = sum(_height(edges, x) for edges in (first, second) for x in (west, east))
-    # The smaller of two is half their sum less half their difference, whose lines may cross in between.
+    # min(a, b) = (a + b)/2 - |a - b|/2, and the lines may cross in between.
     one, other = np.abs(at_west), np.abs(at_east)
     crossing = at_west * at_east < 0
     both = np.where(crossing, one + other, 1.0)

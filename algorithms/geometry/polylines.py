@@ -1,4 +1,4 @@
-"""Vertices of lines that keep them within a tolerance."""
+"""Simplify lines within a tolerance."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _farthest_from_chords(line: np.ndarray, low: np.ndarray, high: np.ndarray) -
     filled = np.flatnonzero(size)
     if len(filled):
         distance[filled] = np.maximum.reduceat(away, first[filled])
-        # Of several that are as far, the first one: it is written last.
+        # Of equally far vertices the first one counts, as it is written last.
         farthest = np.flatnonzero(away == distance[span])[::-1]
         middle[span[farthest]] = vertex[farthest]
     return middle, distance

@@ -45,7 +45,7 @@ def filled_by_means(surface: np.ndarray, unknown: np.ndarray, is_nearly_empty: b
     row, column = np.nonzero(unknown)
     while len(row) and scale < widest:
         share, mean = (_smoothed(raster, scale, widest_exact, row, column) for raster in (weight, weighted))
-        # Far from known cells the share is all rounding.
+        # Far from known cells the share is rounding error only.
         is_reached = share > 1e-3
         filled[row[is_reached], column[is_reached]] = mean[is_reached] / share[is_reached]
         row, column = row[~is_reached], column[~is_reached]
@@ -56,7 +56,7 @@ def filled_by_means(surface: np.ndarray, unknown: np.ndarray, is_nearly_empty: b
 def _smoothed(raster: np.ndarray, scale: float, widest_exact: int, row: np.ndarray, column: np.ndarray) -> np.ndarray:
     """Return the Gaussian means (m,) of a raster at some cells; of a wider standard deviation, by means of blocks.
 
-    A filter takes time in proportion to its width: over gaps of hundreds of meters, more than everything else.
+    The time of a filter grows with its width: over gaps of hundreds of meters it would dominate.
     """
     if scale <= widest_exact:
         return ndimage.gaussian_filter(raster, scale, mode="nearest")[row, column]

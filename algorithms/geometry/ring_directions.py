@@ -1,4 +1,4 @@
-"""The directions that the walls of buildings run in, from rings along their outlines."""
+"""Main directions of the walls of buildings, from rings along their outlines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A ring drawn as straight edges: the runs of samples, and their directions, that cost least together.
+"""Draw a ring with straight edges: the cheapest division into runs of samples with a direction each.
 
 Every run has one of a few oriented directions. A run costs the squared distances of its samples from its line, a corner
 by its angle. One dynamic program decides on all corners and directions at once, so that there is no order of choices in
@@ -22,16 +22,16 @@ _AT_ONCE = 8 * _SHORTEST
 # Angle (°) between directions besides the main ones: any wall is within half of it, and the line is fitted.
 _FAN = 15.0
 
-# A run advances by this share of its length at least: it is an edge, and no bulge.
+# A run must advance by at least this share of its length; less is a bulge, no edge.
 _ADVANCE = 0.5
 
 # Turn (°) below which a corner is flat.
 _FLAT = 20.0
 
-# Turn (°) above which a corner is sharp. It is obtuse if it turns by as much less than a right angle.
+# Turn (°) above which a corner is sharp. A corner is obtuse if its turn is as far below 90° as this is above.
 _SHARP = 110.0
 
-# Difference (°) up to which two directions are the same or opposite: rounding leaves it.
+# Two directions are the same or opposite within this rounding error (°).
 _SAME = 0.5
 
 # Length (samples) of the stretch in which the first corner is searched; doubled until it holds one.
@@ -40,7 +40,7 @@ _TRIAL = 64
 # Cosine of the angle between edges of one line, at least: 10°.
 _NEARLY = 0.985
 
-# Lines with a smaller sine between them are taken for parallel; the position of their intersection is undetermined.
+# Lines with a smaller sine between them count as parallel, as their intersection is ill-defined.
 _PARALLEL = 0.05
 
 # Greatest distance (steps) of a corner from where the runs part: the corner of a sharp angle lies that far off.
@@ -49,7 +49,7 @@ _FARTHEST = 6.0
 
 @dataclass(frozen=True)
 class Prices:
-    """What corners and directions cost: all but ``corner`` are multiples of it."""
+    """Costs of corners and directions; all but ``corner`` are multiples of it."""
 
     corner: float  #: Price of a right-angled corner, m³: as of leaving out a bay of two spacings by four
     flat: float = 1.5  #: Corner that turns by less than 20°, which noise makes more easily than a sharper one
@@ -185,7 +185,7 @@ class _Chain:
         self.sums = np.concatenate([none, np.cumsum(across, axis=0)])
         self.squares = np.concatenate([none, np.cumsum(across**2, axis=0)])
         x, y = (self.middles - origin).T
-        # Sums of one kind lie side by side: numpy is slow on rows of a few numbers.
+        # Store sums of one kind contiguously: numpy is slow on rows of a few numbers.
         self.moments = np.zeros((5, len(x) + 1))
         np.cumsum([x, y, x * x, y * y, x * y], axis=1, out=self.moments[:, 1:])
         self.columns = np.ascontiguousarray(self.vertices.T)
@@ -250,9 +250,8 @@ class _Chain:
     def _stays(self, end: int, begun: np.ndarray, least: list[np.ndarray]) -> np.ndarray:
         """Return the mask of starts of runs (a,) that reach an end at less cost than a run that begins there.
 
-        Others need not be tried for later ends. ``end`` is its row among the starts, ``begun`` (k, a) what it costs to
-        begin at these, ``least`` what runs to the end cost by each main way (m, a) and by the others (a,).
-        """
+        Others need not be tried for later ends. ``end`` is its row among the starts, ``begun`` (k, a) the cost to begin
+        there, ``least`` the cost of runs to the end by each main way (m, a) and by the others (a,)."""
         (fixed, free), n_fixed, begins = least, self.ways.n_fixed, begun[:, end, None]
         stays = (begun[:n_fixed] + fixed < begins[:n_fixed]).any(axis=0)
         stays |= (begun[n_fixed:] + free < begins[n_fixed:]).any(axis=0)
@@ -262,9 +261,8 @@ class _Chain:
     def _run_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
         """Return the costs of runs from samples (a,) to samples (b,) by each way (b, k, a), infinite where forbidden.
 
-        Of all other ways, only the one nearest to the line that fits best can be. What the runs cost, whether they can
-        be or not, follows for each main way (b, m, a) and for the others (b, a).
-        """
+        Of all other ways only the one nearest to the best line is allowed. Also returned are the costs without this
+        check, for each main way (b, m, a) and for the others (b, a)."""
         fixed, is_run = self._fixed_costs(firsts, ends)
         free, way, is_free_run = self._free_costs(firsts, ends)
         allowed = np.full((len(ends), len(self.ways.price), len(firsts)), np.inf)
@@ -370,7 +368,7 @@ def aligned(rings: list[list[Edge]], within: float) -> list[list[Edge]]:
         off = np.maximum(np.abs((start - start[number]) @ normal), np.abs((end - start[number]) @ normal))
         along = np.sort([(start - start[number]) @ unit[number], (end - start[number]) @ unit[number]], axis=0)
         is_beside = (along[0] <= length[number] + within) & (along[1] >= -within)
-        # An edge as short as the distance may cross the line.
+        # An edge no longer than the distance may cross the line.
         is_parallel = np.abs(unit @ unit[number]) >= _NEARLY
         own = is_free & is_beside & is_parallel & (off <= within) & (ring_of != ring_of[number])
         line[own], is_free[own] = number, False

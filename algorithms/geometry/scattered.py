@@ -1,4 +1,4 @@
-"""Numbers as if drawn at random that depend on a cell alone, to take samples by.
+"""Pseudorandom numbers that depend on a cell alone, for sampling.
 
 Every tenth item, say, is another one as soon as one item is missing; of a sample by these numbers only that one is.
 """

@@ -15,7 +15,8 @@ from ..packages import spatial
 from ..threads import n_threads
 from .groups import components, placed, run_starts
 
-# A coordinate this little (m) under the side of a voxel is on it: above rounding, below the resolution of files.
+# A coordinate within this distance (m) below the side of a voxel lies on it: above rounding, below the resolution of
+# files.
 TOUCH = 1e-7
 
 # With more voxels along an axis, float64 could not separate cells.

@@ -1,4 +1,4 @@
-"""A rectangle cut into convex cells by pieces of lines, each of which ends where it meets other ones."""
+"""A rectangle cut into convex cells by segments that end where they meet others."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Optional
 
 import numpy as np
 
-# A cut that passes a vertex this closely (m) goes through it.
+# A cut passes through a vertex within this distance (m).
 SNAP = 0.05
 
-# Least reach of a piece of a line into a cell that it cuts, in snapping distances, or half of the way across the cell
-# if that is less.
+# A segment must reach into a cell by this many snapping distances to cut it, or by half the width of the cell if that
+# is less.
 _LEAST_REACH = 2.5
 
 # The cell beyond the rim of the rectangle.
@@ -257,7 +257,7 @@ def _crossings(side: list[int]) -> list[tuple[int, int]]:
             found.append((i, j))
         elif side[i] == 0:
             before = next((side[i - k] for k in range(1, n) if side[i - k]), 0)
-            # Of a run of corners on the line its last one counts.
+            # Of successive corners on the line, the last one counts.
             if side[j] and before * side[j] < 0:
                 found.append((i, i))
     return found

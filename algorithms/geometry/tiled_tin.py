@@ -213,7 +213,7 @@ def _close(nodes: np.ndarray, rows: np.ndarray, positions: np.ndarray) -> np.nda
         return rows
     grid = grid_over(positions, size)
     cells = np.unique(grid.number(positions))
-    # Nodes outside the grid may take the number of a cell far off, which does no harm.
+    # Nodes outside the grid may get the number of a distant cell, which does no harm.
     return rows[np.isin(grid.number(nodes[rows]), cells[:, None] + [0, *grid.around])]
 
 

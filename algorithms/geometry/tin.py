@@ -1,4 +1,4 @@
-"""A triangulated surface over plan coordinates, and where points lie on it."""
+"""A triangulated surface in plan, with the location of points on it."""
 
 from __future__ import annotations
 
@@ -155,7 +155,8 @@ class Tin:
             if not len(walking):
                 return facet
             facet[walking] = self._mesh.neighbors[facet[walking], across]
-        # Facets of nearly collinear nodes can send a point round in circles; it lies where it is outside least.
+        # Facets of nearly collinear nodes can make a walk go in circles; then take the facet that the point is outside
+        # of least.
         for row in walking:
             weights = self._weights_of(plan[row], np.arange(len(self.facets)))
             facet[row] = np.nanargmax(weights.min(axis=0))
@@ -271,7 +272,7 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
     """
     count = min(n_neighbors, len(nodes) - 1)
     tree = spatial.cKDTree(nodes[:, :2])
-    # By square decimeters: the same nodes, whatever their order and whichever others there are.
+    # Sample by square decimeters, so that the choice depends neither on the order of nodes nor on the others.
     number = scattered(np.floor(10.0 * nodes[:, :2]).astype(np.int64))
     taken = np.flatnonzero(number <= max(1.0 / max(1, len(nodes) // (most or len(nodes))), number.min()))
     residuals = np.empty(len(taken))

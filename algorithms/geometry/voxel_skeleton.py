@@ -120,7 +120,7 @@ class _Thinning:
         """Remove what can be removed from one side, and return how many voxels that are."""
         is_open = self.kept & (self.around & _BIT[side] == 0) & (self.changed >= step - len(_SIDES))
         rows = np.flatnonzero(is_open)
-        # Only what can be removed as the side is now: what the removals of this side lay bare waits for the next round.
+        # Decide on all voxels of the side before any is removed; newly exposed ones wait for the next round.
         rows = rows[_removable(self.around[rows])]
         removed = 0
         for parity in range(8):

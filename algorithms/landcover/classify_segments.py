@@ -1,4 +1,4 @@
-"""Segments that a person picks, by their numbers, in the map or by their measures, as a class."""
+"""Give a class to segments that a person picks by number, in the map or by their measures."""
 
 from __future__ import annotations
 

@@ -35,8 +35,8 @@ HEIGHTS = {
     "0.3 m and 2 m (ICSM)": Heights(0.3, 2.0),
 }
 
-# How far (m) from a point the points of its object are seen in a cloud that is worked on in parts: half the
-# length of a car. Of longer objects the part within it decides.
+# Reach (m) of objects in a cloud that is processed in parts: half the length of a car. Of longer objects the part
+# within it decides.
 _REACH = 2.5
 
 
