@@ -129,7 +129,8 @@ def with_surroundings(decided: Decisions, min_share: float, evidence: ClusterEvi
 
     In a forest, spots of crowns that are smooth by chance lie next to each other and pass for surroundings of
     buildings, but none of them is sure. So the share around a whole building is multiplied by its mean confidence,
-    unless the building is so large that ground would show between trees."""
+    unless the building is so large that ground would show between trees.
+    """
     around = evidence.share_around(decided.is_building)
     is_building = decided.is_building & (around >= min_share)
     building = evidence.adjacent(is_building)

@@ -251,7 +251,8 @@ class _Chain:
         """Return the mask of starts of runs (a,) that reach an end at less cost than a run that begins there.
 
         Others need not be tried for later ends. ``end`` is its row among the starts, ``begun`` (k, a) the cost to begin
-        there, ``least`` the cost of runs to the end by each main way (m, a) and by the others (a,)."""
+        there, ``least`` the cost of runs to the end by each main way (m, a) and by the others (a,).
+        """
         (fixed, free), n_fixed, begins = least, self.ways.n_fixed, begun[:, end, None]
         stays = (begun[:n_fixed] + fixed < begins[:n_fixed]).any(axis=0)
         stays |= (begun[n_fixed:] + free < begins[n_fixed:]).any(axis=0)
@@ -262,7 +263,8 @@ class _Chain:
         """Return the costs of runs from samples (a,) to samples (b,) by each way (b, k, a), infinite where forbidden.
 
         Of all other ways only the one nearest to the best line is allowed. Also returned are the costs without this
-        check, for each main way (b, m, a) and for the others (b, a)."""
+        check, for each main way (b, m, a) and for the others (b, a).
+        """
         fixed, is_run = self._fixed_costs(firsts, ends)
         free, way, is_free_run = self._free_costs(firsts, ends)
         allowed = np.full((len(ends), len(self.ways.price), len(firsts)), np.inf)
