@@ -1,4 +1,4 @@
-"""What leads up to an opening: ground, a landing or steps before it, which make it a door."""
+"""Tell doors from windows by the approach: ground, a landing or steps before the opening."""
 
 from __future__ import annotations
 
@@ -22,17 +22,18 @@ class _RULES:
     least_height: float = 1.8
     # Least height (m) of a door whose top a shadow hides: windows with a landing or ground before them are lower.
     cut_height: float = 1.5
-    # A door is this far (m) above what leads up to it at most: two steps of 0.18 m and the noise of the edge.
+    # Largest height (m) of the sill of a door above its approach: two steps of 0.18 m and the noise of the edge.
     step: float = 0.4
     # The wall below a sill is looked for down to this depth (m) below the step: one row of stones.
     below: float = 0.4
-    # Share of the columns of an opening that decides: most of them.
+    # The majority of the columns of an opening decides.
     most: float = 0.5
-    # Least share of the columns in which something is seen before the wall: stairs and cars cast shadows on the rest.
+    # The approach counts as seen if this share of the columns has points before the wall; stairs and cars cast shadows
+    # on the rest.
     least_seen: float = 0.25
     # Width of a column (m): a step that is 0.3 m deep has two points in it from 50 points per m² on.
     column: float = 0.15
-    # Where nothing is seen before a wall, its foot is this quantile of the heights of its points.
+    # Without points before a wall, its foot is this quantile of the heights of its points.
     foot: float = 0.01
 
 
@@ -61,7 +62,7 @@ class Approach:
         top = _highest(_between(self.before, box), box, low + _RULES.step)
         is_seen = np.isfinite(top)
         if is_seen.mean() < _RULES.least_seen:
-            # Nothing is seen before the opening: the foot of the wall is taken for the ground.
+            # Without points before the opening, take the foot of the wall for the ground.
             return bool(is_high and low - np.quantile(self.wall[:, 1], _RULES.foot) <= _RULES.step)
         seen_wall = _highest(_between(self.wall, box), box, low - _RULES.step) > low - _RULES.step - _RULES.below
         is_reached = top[is_seen] >= low - _RULES.step

@@ -10,13 +10,13 @@ from ..geometry.grid import distinct, grid_over, shared_cells
 from ..geometry.groups import components
 from ..planes.least_squares_planes import planes_of
 
-# Least angle (sine: 3°) between strips of one curved front: planes at smaller ones are one wall.
+# Least angle (sine: 3°) between strips of one curved front; planes at smaller angles are one wall.
 _LEAST_SINE = np.sin(np.radians(3.0))
 
-# Largest angle (sine: 40°) between strips of one curved front: planes at larger ones meet at a corner.
+# Largest angle (sine: 40°) between strips of one curved front; planes at larger angles meet at a corner.
 _MOST_SINE = np.sin(np.radians(40.0))
 
-# Side (m) of the cells in which two planes must both have points to be of one front: some spacings of a sparse scan.
+# Two planes belong to one front if they share cells of this side (m): some spacings of a sparse scan.
 _TOUCH_CELL = 0.5
 
 # Least number of these cells: one may be of a pole or a sign at a corner.
@@ -28,7 +28,7 @@ _COLUMN_TOLERANCES = 2.0
 # Least side of a column (m): finer ones hold too few points for a root mean square.
 _LEAST_COLUMN = 0.1
 
-# Strips are fitted and columns assigned again this often: both hardly change after the third time.
+# Number of rounds of fitting strips and assigning columns; both hardly change after the third.
 _ROUNDS = 5
 
 

@@ -20,13 +20,13 @@ from .facade_outline import Drawing
 from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
 from .segment_facade_lines import are_of_facade_lines
 
-# Plaster, joints and cladding lie this far (standard deviation, m) off the plane of a wall, in addition to the noise.
+# Standard deviation (m) of plaster, joints and cladding about the plane of a wall, in addition to the noise.
 _RELIEF = 0.01
 
 # Side (m) of the cells in plan in which a facade has points above one another.
 _PLAN_CELL = 0.5
 
-# Distance within which a point lies on a facade (standard deviations): one point of 400 is farther off.
+# A point lies on a facade within this many standard deviations; one of 400 is farther off.
 _ON_PLANE = 3.0
 
 # The choice that searches walls among all points.
@@ -277,7 +277,7 @@ def split_at_gaps(xyz: np.ndarray, segment_id: np.ndarray, gap: float) -> np.nda
 
 
 def _leave_low(xyz: np.ndarray, pieces: np.ndarray, min_height: float) -> None:
-    """Take pieces that are too low for a facade out, in place: nearly half of a street's need no boundary."""
+    """Remove pieces too low for a facade, in place, so that nearly half of a street's pieces need no boundary."""
     for points in members(pieces).values():
         if np.ptp(xyz[points, 2]) < _SEEN_HEIGHT * min_height:
             pieces[points] = 0

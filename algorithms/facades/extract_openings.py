@@ -17,7 +17,7 @@ from .facade_outline import Drawing, ring_area
 from .facade_surfaces import Facade, facade_features, surfaces_of
 from .opening_search import OFF_WALL, Opening, find_openings
 
-# A segment with this share of its points in the openings of others is what fills them: panes, curtains, shop fronts.
+# A segment with this share of its points in the openings of others fills these: panes, curtains, shop fronts.
 _FILLING = 0.5
 
 # Openings whose middles differ in height by less than this share of their height are in one row.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.polygons import line_of_planes
 
-# Planes that meet at a smaller angle (sine: 5°) have no intersection line that noise leaves in place.
+# Below this angle (sine: 5°), noise makes the intersection line of two planes useless.
 _LEAST_SINE = np.sin(np.radians(5.0))
 
 

@@ -26,13 +26,13 @@ _ROUNDS = 30
 # Longest edge of a triangle for key points (spacings), from the paper (section 3.3, step 2).
 _PUBLISHED_EDGE = 1.5
 
-# Longest edge of a triangle for straight edges (spacings): chance takes no bites out of evenly scattered points.
+# Longest edge of a triangle for straight edges (spacings): evenly scattered points then leave no gaps by chance.
 _LONGEST_EDGE = 4.0
 
 # Share of the points that the largest piece of a facade must hold before shadows are bridged.
 _WHOLE = 0.95
 
-# By this factor the longest edge grows while shadows cut a facade into pieces.
+# Factor by which the longest edge grows while shadows divide a facade.
 _GROWTH = 1.5
 
 # The spacing of points where they are farthest apart: this percentile of the points' smallest triangles.
@@ -57,10 +57,10 @@ _FOOT_ANGLE = np.radians(12.0)
 # Angle (rad) to the vertical within which an edge of the hull is a side: walls end upright, but for noise.
 _SIDE_ANGLE = np.radians(4.0)
 
-# Part of a corner of the foot that a parked car or a bush hides, along and up the facade (m).
+# Largest hidden corner of the foot, along and up the facade (m): a parked car or a bush.
 _HIDDEN = (5.0, 2.5)
 
-# Times the boundary is pushed out: a corner that moves may leave a point of the edge next to it outside.
+# Number of rounds of pushing the boundary out: a moved corner may leave a point of the next edge outside.
 _PUSHES = 4
 
 # A corner may move this many times as far as the edges next to it: a corner of less than 39° would become spikes.
@@ -164,7 +164,7 @@ def _hidden_corners(
     for step in (1, -1):
         run: list[int] = []
         last, k = foot, (foot + step) % len(corners)
-        # Foot edges next to the longest one go on along it; then diagonal ones lead up to the side.
+        # Edges of the foot next to the longest one continue along it; then diagonal ones lead up to the side.
         while is_foot[k] and k != foot:
             last, k = k, (k + step) % len(corners)
         while not is_side[k] and len(run) < len(corners) and lids[k, 0] > 0:
@@ -198,7 +198,7 @@ def sparse_spacing(positions: np.ndarray, triangles: np.ndarray) -> float:
 def _traced(positions: np.ndarray, triangulation: Any, spacing: float, drawing: Drawing) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
     longest_edge = _PUBLISHED_EDGE if drawing.boundary == "key points" else _LONGEST_EDGE
-    # Cells of half a gap hang together across their corners: so do triangles whose edges are √2 gaps long.
+    # Cells of half a gap connect across their corners, which corresponds to triangle edges of √2 gaps.
     max_edge, max_gap = longest_edge * spacing, float(np.sqrt(2)) * drawing.max_gap
     while True:
         tracing, is_last = trace_outlines(positions, max_edge, triangulation), max_edge >= max_gap
@@ -253,7 +253,7 @@ def pushed_out(ring: np.ndarray, positions: np.ndarray, limit: float) -> np.ndar
         distance, outward = edge_distances(outside, starts, ends), _outward(starts, ends)
         # How far positions lie outside the lines of the edges.
         out = outside @ outward.T - np.einsum("ij,ij->i", starts, outward)
-        # At a corner two edges are equally near: the one that is farther behind has to move.
+        # At a corner two edges are equally near; move the one that is farther behind.
         nearest = np.argmax(np.where(distance <= distance.min(axis=1, keepdims=True) + _ROUNDING, out, -np.inf), axis=1)
         rows = np.flatnonzero(distance.min(axis=1) <= limit)
         shift = np.zeros(len(starts))

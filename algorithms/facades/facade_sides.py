@@ -12,8 +12,8 @@ from ..packages import spatial
 from ..stage import Monitor
 from .facade_frame import Frame, frame_of, intersection_line
 
-# Side (m) of the cells in which a facade is held against the points on both of its sides, and in which two must both
-# have points to meet.
+# Side (m) of the cells in which a facade is compared with the points on both sides, and which two facades must share to
+# meet.
 _CELL = 0.5
 
 # Side (m) of the voxels whose points count as one around a facade: a cell holds a few of them.
@@ -25,7 +25,7 @@ _FARTHEST = 10.0
 # Panes, frames, curtains and reveals lie within this distance (m) behind a wall; cars and trees are farther before it.
 _DEPTH = 0.5
 
-# A facade wider than this (cells) is judged without its two ends.
+# The ends of a facade wider than this (cells) are left out of the comparison.
 _LEAST_COLUMNS = 3
 
 # Which side of a corner a facade lies on follows from its points within this distance (m) of the corner.
@@ -134,7 +134,7 @@ def _agreement(one: Frame, of_one: np.ndarray, other: Frame, of_other: np.ndarra
 def _decided(evidence: np.ndarray, one: np.ndarray, other: np.ndarray, agree: np.ndarray) -> np.ndarray:
     """Return 1 for each normal (m,) that points outside, and -1 for the others.
 
-    A corner counts as much as the smaller of its two facades.
+    A corner weighs as much as the smaller of its two facades.
     """
     area = evidence[:, 1]
     support = area * evidence[:, 0]

@@ -14,13 +14,13 @@ from .approaches import BEFORE, FROM_WALL, Approach
 from .facade_outline import grown
 from .facade_surfaces import Facade
 
-# Points farther than this from the plane, in standard deviations of the wall, are not of the wall.
+# Points farther than this (standard deviations of the wall) from the plane are not on the wall.
 OFF_WALL = 3.0
 
 # Least distance (m) from the plane of points that are not of the wall.
 _LEAST_OFF = 0.03
 
-# Side of a cell, in point spacings of the wall: a wall leaves a cell empty by chance only.
+# Side of a cell, in point spacings of the wall: few cells of a wall are empty.
 _CELL_SPACINGS = 1.2
 
 # Least side of a cell (m).
@@ -38,8 +38,8 @@ _REACH = 0.3
 # Share of the outline of an opening, its sill left out where it is a door, that must have wall next to it.
 _ENCLOSED = 0.5
 
-# Share of the four sides of an opening along which the wall has an edge, in the mean. More of it makes up for less of
-# ``_ENCLOSED`` and the other way around: leaves and people that are seen past the end of a wall have little of both.
+# Mean share of the four sides of an opening along which the wall has an edge. A surplus makes up for a lack of
+# ``_ENCLOSED`` and the reverse: leaves and people past the end of a wall have little of both.
 _EDGED = 0.33
 
 # Share of the cells of an opening in which points behind the wall must be seen.
@@ -54,7 +54,7 @@ _MULLION = 0.15
 # Panes of one window end at one height within this distance (m).
 _LEVEL = 0.2
 
-# Pieces are one opening if their boxes overlap by this share of the smaller one: a shop front has many pieces.
+# Pieces whose boxes overlap by this share of the smaller one are one opening, as a shop front has many pieces.
 _SHARED = 0.3
 
 # Deviation from a straight line up to which an edge of the wall is the side of an opening, in point spacings.
@@ -103,7 +103,7 @@ class WallRaster:
         self.behind = self.mask(behind)
         self.wall = self.mask(wall)
         self.behind &= ~self.wall
-        # Chance leaves cells of the wall empty; a cell with something behind is not one of these.
+        # Fill cells of the wall that are empty by chance, but none with points behind the wall.
         closed = ndimage.binary_closing(self.wall, np.ones((3, 3), bool))
         self.wall |= closed & ~self.behind
 
@@ -191,7 +191,7 @@ def _opening(
     min_size: float,
 ) -> Optional[Opening]:
     """Return the opening that points behind a wall show, None where they show none."""
-    # Too few or too close together, even if its sides move outward to the edges of the wall.
+    # There are too few points, or they are too close together, even with the sides moved out to the edges of the wall.
     if len(behind) < 4 or (np.ptp(behind[:, :2], axis=0) < min_size / 2).any():
         return None
     spacing = facade.spacing

@@ -242,7 +242,7 @@ def _shift_in_height(street: np.ndarray, ground: np.ndarray, shift: np.ndarray) 
     difference = ground[nearest[beside], 2].mean(axis=1) - lowest[beside, 2]
     if len(difference) < _RULES.least_cells:
         return 0.0, 0
-    # The fullest window: under cars and walls the lowest point is no ground.
+    # Take the range with most cells, as under cars and walls the lowest point is no ground.
     ascending = np.sort(difference)
     until = np.searchsorted(ascending, ascending + 2 * _RULES.ground, side="right")
     first = int(np.argmax(until - np.arange(len(ascending))))

@@ -13,10 +13,11 @@ from ..neighborhoods.covariance import full_matrices
 from ..planes.least_squares_planes import planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 
-# Two neighbors of a line this far apart are of two segments (median steps of the line): steps grow with the range.
+# Neighbors on a line farther apart than this (median steps of the line) belong to two segments; steps grow with the
+# range.
 _GAP_STEPS = 8.0
 
-# Neighbors nearer than this (m) are of one segment: joints and sills leave such gaps.
+# Neighbors closer than this (m) belong to one segment: joints and sills leave such gaps.
 _LEAST_GAP = 0.3
 
 # Pauses this many times as long as the median one between two points may be the sky at the end of a turn.
@@ -25,7 +26,7 @@ _PAUSE = 20.0
 # A pause of this share of a turn is the sky: 45°.
 _SKY = 1 / 8
 
-# A line goes on beyond a turn by this share at most, where no sky is seen.
+# If no sky is seen, a line is at most this much longer than a turn.
 _BEYOND = 0.1
 
 # Slope (°) up to which a segment is level enough for ground: ramps and gutters are less steep.

@@ -15,7 +15,7 @@ from .plan_segments import PlanSegments, exterior
 
 @rules
 class _RULES:
-    """Which walls are of a footprint, and how both go together."""
+    """Rules for assigning walls to footprints and joining both."""
 
     # A wall is of the footprint within this distance (m): eaves jut out up to 1 m, recesses are 1 to 2 m deep.
     reach: float = 1.6
@@ -27,9 +27,9 @@ class _RULES:
     eaves: float = 0.5
     # Walls of one footprint with less than this along it between them (m) are joined: a tree or a car hides as much.
     gap: float = 3.0
-    # Two walls in a row that are off each other by less than this (m) need no step between them.
+    # Successive walls offset by less than this (m) need no step between them.
     step: float = 0.1
-    # A row of walls that shares more than this part of its way with a longer one is something before or behind it.
+    # A row of walls that overlaps a longer one by more than this share lies before or behind it, as balconies do.
     shared: float = 0.3
     # Distance (m) of the positions at which walls are compared with footprints: less than an outline is off.
     sample: float = 0.25

@@ -1,4 +1,4 @@
-"""What models say of buildings and of their faces: the attributes of layers and of CityJSON."""
+"""Attributes of buildings and faces from their models, for layers and CityJSON."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _FLAT = 5.0
 # Faces whose azimuths differ by less than this (°) face the same way.
 _SAME_WAY = 20.0
 
-# Directions of less than this share of the sloping area say nothing of the type.
+# Directions with less than this share of the sloping area are ignored for the type.
 _MINOR = 0.03
 
 # Faces with less than this share of the area are dormers, annexes and lean-tos.
@@ -39,14 +39,14 @@ _MANSARD = 12.0
 
 @rules
 class CHECKS:
-    """Which models are to be looked at."""
+    """Limits beyond which a model needs a look."""
 
     #: doubtful, poor: Shares of roof points off the model: twice and five times the median building's on maps
     doubtful: float = 0.1
     poor: float = 0.25
     #: Share of the area with points: walls hide a strip of narrow courts, water and glass all of a roof
     covered: float = 0.75
-    #: Share of the points of a large face that lie on it: on the other side of a half it is not the face that was seen
+    #: Share of the points of a large face that lie on it: below a half, the face is not the one that was seen
     weakest: float = 0.5
 
 
@@ -114,7 +114,7 @@ WALL_FIELDS = (
 SOFFIT_WALL_FIELDS = (*WALL_FIELDS, Field("kind", str, "wall, or soffit: underside of an eave, without azimuth"))
 
 
-# Facts by plane, whose numbers JSON would make text.
+# Facts by plane number, which JSON would turn into text.
 _OF_PLANES = ("face_rms", "face_on", "face_parapet")
 
 

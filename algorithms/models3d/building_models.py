@@ -28,12 +28,12 @@ LEVELS = ("1.2", "1.3", COARSE, FINE, OVERHANGS)
 # roofs of small buildings keep all their sides.
 _COARSE_AREA, _COARSE_SHARE = 10.0, 0.5
 
-# Points within this distance (m) of the outline, in plan, are on a parapet if they are so high above a level face (m):
-# above chimney caps and gutters, below a storey. This share of them is that high where there is a parapet: one of 0.3 m
-# has 55 to 72 %, in clouds of 4 to 20 points per m².
+# Points of a parapet lie within this distance (m) of the outline, in plan, and between these heights (m) above a level
+# face: above chimney caps and gutters, below a storey. There is a parapet if this share of the points along the outline
+# is that high: one of 0.3 m has 55 to 72 %, in clouds of 4 to 20 points per m².
 _RIM, _RAISED, _RIM_SHARE = 0.5, (0.15, 1.5), 0.4
 
-# A point of the roof is explained by the model within this many tolerances.
+# The model explains a roof point within this many tolerances.
 _EXPLAINED = 1.5
 
 
@@ -156,7 +156,7 @@ def _solids(
 
 
 def _overhang(model: BuildingModel, top: _Top, partition: Partition, around: np.ndarray) -> str:
-    """Set the walls of a model back from its eaves; return why none is, "" where some are."""
+    """Set the walls of a model back from its eaves; return the reason if none is, else ""."""
     walls = wall_rings(around, top.rings, model.best, top.base, top.settings.spacing)
     if not walls:
         return f"{OVERHANGS}: no wall was seen under an overhanging eave"
@@ -169,7 +169,7 @@ def _overhang(model: BuildingModel, top: _Top, partition: Partition, around: np.
 
 @dataclass(frozen=True)
 class _Top:
-    """What the partitions of one building are made of."""
+    """The input of the partitions of one building."""
 
     xyz: np.ndarray
     is_low: np.ndarray
@@ -266,7 +266,7 @@ def _off(top: _Top, above: np.ndarray, is_wanted: np.ndarray) -> np.ndarray:
 
 
 def _worse(model: BuildingModel, level: str, top: _Top, above: np.ndarray) -> str:
-    """Return why a level is worse than the simpler ones, "" where it is not; keep its deviation in the model."""
+    """Return why a level is worse than the simpler ones, "" if it is not; keep its deviation in the model."""
     off = np.minimum(np.abs(above[np.isfinite(above) & top.is_roof & ~top.is_low]), FARTHEST)
     if not len(off):
         return "no points lie over it"
@@ -303,5 +303,5 @@ def _parapet(above: np.ndarray) -> float:
 
 
 def _explained(off: np.ndarray, top: _Top) -> float:
-    """Return the share of heights (n,), m, above the model that are as good as none, NaN without any."""
+    """Return the share of points with heights (n,), m, above the model that it explains; NaN without points."""
     return float(np.mean(np.abs(off) <= _EXPLAINED * top.settings.tolerance)) if len(off) else np.nan

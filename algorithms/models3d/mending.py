@@ -16,26 +16,26 @@ from .solid_faults import faults_of
 from .solid_levels import Levels, turns_around
 from .solids import DECIMALS, ROOF, Solid
 
-# Most rounds that clear positions where too many walls meet.
+# Most rounds of clearing positions where too many walls meet.
 _CLEARINGS = 60
 
-# Most rounds that give small parts and high cells another plane.
+# Most rounds of giving small parts and high cells another plane.
 _ROUNDS = 10
 
-# Most rounds that give parts with faults another plane.
+# Most rounds of giving parts with faults another plane.
 _MENDINGS = 40
 
-# Most single cells of large parts with faults that take another plane before whole parts do.
+# In large parts with faults, at most this many single cells take another plane before whole parts do.
 _SPARED = 30
 
-# Parts of a roof with more area than this (m²) are more than dormers: one fault does not cost all of it.
+# Parts of a roof larger than this (m²) are no dormers: one fault must not cost the whole part.
 LARGE = 5.0
 
-# The first rounds lower parts with faults; as many rounds follow in which high cells still change.
+# The first rounds lower parts with faults; in as many further rounds high cells may still change.
 _LOWERINGS = _ROUNDS // 2
 
-# How far (m) a part with a fault is lowered first: more than corners may be apart, and less than heights of points are
-# off. Where roofs cross, corners move along, and no longer meet an edge by chance.
+# A part with a fault is first lowered by this distance (m): more than the snapping distance of corners, less than the
+# error of points. Where roofs cross, the corners move, and no longer meet an edge by chance.
 _LOWERED = 0.02
 
 # Parts of a footprint with less than this share of its area are not modelled.
@@ -52,7 +52,7 @@ _CHANGE = 0.01
 # dormers, and no wider than the distance of points.
 _LEAST_AREA, _LEAST_WIDTH = 1.0, 0.4
 
-# Edges of a cell at a corner whose unit vectors have a mean shorter than this run on nearly straight.
+# Two edges at a corner are nearly in line if the mean of their unit vectors is shorter than this.
 _STRAIGHT = 0.3
 
 
@@ -113,7 +113,7 @@ def _mended(mending: _Mending, base: float) -> tuple[list[Solid], str]:
     """Return valid solids, or none and why."""
     count = 0
     while count < _MENDINGS:
-        # Lowering a corner may cause the fault again that was mended by raising it: later rounds lower none.
+        # Lowering a corner may undo a mend that raised it, so later rounds lower none.
         if count < _ROUNDS:
             mending.lower_high_cells()
         mending.join_small_parts()
@@ -126,7 +126,7 @@ def _mended(mending: _Mending, base: float) -> tuple[list[Solid], str]:
         left = mending.spared
         if not mending.relabel([(piece, face) for piece, face, _ in found], count < _LOWERINGS):
             return [], found[0][2]
-        # Rounds in which single cells change are counted by these.
+        # Single changed cells count these rounds.
         count += mending.spared == left
     return [], "no solid could be made"
 
@@ -140,7 +140,7 @@ def _pieces(partition: Partition, base: float, highest: np.ndarray) -> list[_Pie
         part = waiting.pop()
         before = part.label >= 0
         partition.label[before] = -1
-        # Slivers that touch the rest only in a point are no building.
+        # Drop slivers that touch the rest in a point only.
         if areas[before].sum() <= _SLIVER * total:
             continue
         levels = _cleared(part, base, highest)
@@ -187,7 +187,7 @@ def _cleared(partition: Partition, base: float, highest: np.ndarray) -> Optional
 def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarray) -> bool:
     """Give one of the cells around a vertex the plane of another one, the cheapest that clears it, if any does.
 
-    One with a corner above its limit (vertices,), m, is the last resort.
+    A plane with a corner above its limit (vertices,), m, is the last resort.
     """
     around = levels.cells_around(vertex)
     present = sorted({int(partition.label[cell]) for cell in around})
@@ -286,7 +286,7 @@ class _Mending:
     def lower_high_cells(self) -> None:
         """Give cells with a corner above its points another plane, or a level one.
 
-        A whole cell changes where that is an improvement; of others what lies around the corner is cut off first.
+        A whole cell changes if that is an improvement; else the part around the corner is cut off first.
         """
         if self.limits is None:
             return
@@ -326,12 +326,12 @@ class _Mending:
         return cell[is_high], corner[is_high]
 
     def _cut_off(self, cell: int, corner: int) -> np.ndarray:
-        """Cut a cell as far from one of its corners as points count for the heights there.
+        """Cut a cell at the distance from one of its corners within which points limit the height there.
 
-        Return the plane (3,) of what keeps the corner, turned down about the cut.
+        Return the plane (3,) of the part with the corner, turned down about the cut.
         """
         at, inward, partition = self.positions[corner], self._way_in(cell, corner), self.partition
-        # What keeps the corner lies to the left of the cut and keeps the number of the cell.
+        # The part with the corner lies to the left of the cut and keeps the number of the cell.
         if partition.cells.cut_cell(cell, at + RADIUS * inward, np.array([-inward[1], inward[0]])):
             partition.label = np.append(partition.label, partition.label[cell])
             partition.cost = np.vstack([partition.cost, partition.cost[cell]])

@@ -17,16 +17,16 @@ from .solids import Solid
 # Least and greatest overhang (m): level 2.3 is defined from 0.2 m on; wider ones are porches and lower roofs.
 _LEAST, _MOST = 0.2, 1.2
 
-# Distances (m) between the tried positions of a wall, and how far off it its points may be: noise and niches.
+# Step (m) between tried positions of a wall, and tolerance (m) of its points: noise and niches.
 _STEP, _OFF = 0.05, 0.1
 
 # Points at least this far (m) below the lowest edge of the roof over a side, and above the ground, may be on its wall:
 # gutters are higher, plants at its foot lower.
 _CLEAR = 0.5
 
-# A side is looked at in pieces of this length (m, and point spacings; the larger one counts). Its wall is seen if half
-# of them have points of it, as in 'Map footprints'. Half of all points under the eave are on it, too: floors and lower
-# roofs lie at all distances.
+# A side is examined in pieces of this length (m, and point spacings; the larger one counts). Its wall is seen if half
+# of the pieces have points of it, as in 'Map footprints', and if half of all points under the eave lie on it: points of
+# floors and lower roofs lie at all distances.
 _PIECE, _PIECE_SPACINGS, _SEEN = 0.5, 2.0, 0.5
 
 # A side has a common wall with the next house if this share of its pieces has points of buildings outside, farther from
@@ -39,7 +39,7 @@ _ON_SIDE = 0.02
 # Walls that turn by less than this sine (10°) have a step between them, and no corner where their lines intersect.
 _PARALLEL = 0.17
 
-# Distances (m) from which cuts go through vertices: as for footprints, and where that has a fault as for roofs.
+# Cuts snap to vertices within these distances (m): first that of footprints; after a fault, that of roofs.
 _SNAPS = ON_OUTLINE, SNAP
 
 

@@ -93,8 +93,8 @@ def reconstruct_block(
 ):
     """Model the buildings of a block with the walls, windows and doors that were seen from the street.
 
-    The outline of each building follows the facades where they were seen: fronts, recesses, bays. Elsewhere it is the
-    footprint. Roofs are reconstructed on it, and windows and doors set into the walls.
+    The outline of each building follows the facades where they were seen: fronts, recesses, bays. Elsewhere it follows
+    the footprint. Roofs are reconstructed on it, and windows and doors set into the walls.
 
     Parameters
     ----------

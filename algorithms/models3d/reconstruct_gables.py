@@ -27,12 +27,12 @@ _LEVEL = 6.0
 # Both planes of a gable rise toward each other within this angle (°).
 _OPPOSITE = 15.0
 
-# Edges of a roof are taken at the quantile of its points that leaves this share out, so that stray points do not move
-# them. Evenly spread points leave the same share of the width beyond.
+# Edges of a roof lie at the quantile of its points that leaves out this share, so that stray points do not move them.
+# For evenly spread points the same share of the width lies beyond, and is added.
 _EDGE = 0.02
 
-# Where no ground is near the corners of a house, it is looked for this much (m) farther from their middle than the
-# house extends along an axis.
+# If no ground is near the corners of a house, search it around its middle: within the extent of the house plus this
+# distance (m).
 _AROUND = 10.0
 
 # The faces of a house by their vertices, from 1 as in the paper, counterclockwise seen from outside.
@@ -191,7 +191,8 @@ def _gables(
         for b in good[done + 1 :]:
             if not _are_opposite(planes, a, b):
                 continue
-            # Half the diagonal of a rectangle is at most 2.5 deviations: centers of two that touch are nearer.
+            # Half the diagonal of a rectangle is at most 2.5 standard deviations: the centers of two that touch are
+            # closer.
             reach = np.sqrt(planes.eigenvalues[[a, b], 0].sum()) * 4 + max_gap
             if np.linalg.norm(planes.center[a] - planes.center[b]) > reach:
                 continue
@@ -260,7 +261,7 @@ def _house(
 
 
 def _ends(positions: np.ndarray) -> tuple[float, float]:
-    """Return least and greatest position (m) of the even spread that positions (n,) were drawn from."""
+    """Return the ends (m) of the uniform distribution that positions (n,) were drawn from."""
     low, high = np.quantile(positions, [_EDGE, 1 - _EDGE])
     beyond = (high - low) * _EDGE / (1 - 2 * _EDGE)
     return float(low - beyond), float(high + beyond)

@@ -1,4 +1,4 @@
-"""How far models are from the points of a roof, and how high these allow roofs to be."""
+"""Distances of models from the points of a roof, and the heights that these allow."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from ..packages import spatial
 
-# Distance (m) in plan within which points limit the height of a corner: ridges and eaves are sampled that closely.
+# Points within this distance (m) in plan limit the height of a corner: ridges and eaves are sampled that closely.
 RADIUS = 1.5
 
 # A corner lies at most this much (m) above the highest of these points: noise is less.

@@ -10,21 +10,22 @@ from ..geometry.delaunay import triangulate
 from ..geometry.groups import members, split_groups
 from .roof_planes import RoofPlanes
 
-# Points of two planes are next to each other where a triangle joins them whose side is at most this long (spacings, or
-# m if that is more).
+# Points of two planes are adjacent if a side of a triangle of at most this length joins them (spacings, or m if that is
+# more).
 _BESIDE_SPACINGS, _BESIDE = 6.0, 2.0
 
-# Planes whose slopes differ by less than this (rise per meter) have no intersection that the points could place. Planes
-# less steep than this have no direction of slope along or across which steps run.
+# Below this difference of slopes (rise per meter), the points don't locate the intersection of two planes. Planes less
+# steep than this give no direction for steps.
 _LEAST_TURN = 0.05
 
-# Distance (spacings, or m if that is more) up to which a contact of two planes is at their intersection.
+# A contact of two planes lies at their intersection within this distance (spacings, or m if that is more).
 _AT_LINE_SPACINGS, _AT_LINE = 2.0, 0.5
 
-# Contacts that make a line.
+# Least number of contacts of a line.
 _LEAST_CONTACTS = 3
 
-# How far lines reach beyond their contacts (spacings, or m if that is more): a cell is cut from side to side anyway.
+# Lines extend beyond their contacts by this much (spacings, or m if that is more); a cell is cut from side to side
+# anyway.
 _BEYOND_SPACINGS, _BEYOND = 2.0, 0.5
 
 # Lines that turn by less than this (rad) and lie no farther apart (m) are the same.
@@ -33,7 +34,7 @@ _SAME_TURN, _SAME_OFFSET = 0.04, 0.10
 # Points no farther than this from a step (spacings, or m if that is more) locate it.
 _NEAR, _NEAR_SPACINGS = 0.6, 2.0
 
-# Walls at least this share of the longest one long give main directions.
+# Walls of at least this share of the length of the longest one give main directions.
 _LONG = 0.5
 
 # Factor by which contacts count more along the main directions, and along and across the slopes of the two planes.
@@ -145,7 +146,7 @@ class _Border:
         while len(remaining) >= _LEAST_CONTACTS:
             offset = normals @ remaining.T
             order = np.sort(offset, axis=1)
-            # Rows far apart make one ascending array of all directions.
+            # Shift the rows apart, so that all directions make one ascending array.
             apart = (np.ptp(order) + width + 1.0) * np.arange(len(order))[:, None]
             ends = np.searchsorted((order + apart).ravel(), (order + apart + width).ravel(), side="right")
             count = (ends - np.arange(order.size)).reshape(order.shape)
@@ -161,7 +162,7 @@ class _Border:
         return found
 
     def _between(self, normal: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> float:
-        """Return the offset (m) of the line that parts the points of both planes along contacts best."""
+        """Return the offset (m) of the line that separates the points of both planes along contacts best."""
         middle = float(np.median(contacts @ normal))
         low, high = (contacts @ direction).min(), (contacts @ direction).max()
         near = max(_NEAR, _NEAR_SPACINGS * self.spacing)

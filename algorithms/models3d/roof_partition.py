@@ -23,13 +23,13 @@ _TIP = 2 * RULES.apart
 # Cells with a mean width below this (m) are wedges between lines that are nearly the same.
 _WEDGE = 0.02
 
-# A point off a plane by this many tolerances explains nothing more; farther ones count the same.
+# Distances from a plane are cut off at this many tolerances.
 _FAR_OFF = 2.0
 
-# All points on top of the roof draw their cells to planes nearby: those at least this far (m) off count in full.
+# All points on top of the roof draw their cells to nearby planes; from this distance (m) on they count in full.
 FARTHEST = 1.0
 
-# Share of its area that a point on top counts for in full.
+# Weight of a point on top that counts in full, as a share of its area.
 _FAR_WEIGHT = 0.5
 
 # Area (m²) of roof without a plane that costs as much as a meter of border between two planes. A dormer of 1.5 m by
@@ -48,7 +48,7 @@ _LEAST_HEIGHT = 0.5
 # Largest depth (m) of a roof below the lowest of its points.
 _BELOW_POINTS = 1.5
 
-# Cost (m²) of a plane that is too low within a cell: more than the points of any cell could cost.
+# Cost (m²) of a plane that is too low within a cell: more than the points of any cell can cost.
 _FORBIDDEN = 1000.0
 
 

@@ -12,7 +12,7 @@ from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric
 from ..packages import spatial
 from ..planes.least_squares_planes import planes_of
 
-# Points of the neighborhood whose plane shows which way a roof faces: two rings around a point.
+# Number of neighbors for the normal at a point of a roof: two rings around it.
 _NEIGHBORS = 12
 
 # Slope (°) of the steepest plane of a roof; steeper ones are walls.
@@ -22,7 +22,7 @@ STEEPEST = 75.0
 # vary by less than half.
 _FACING = 25.0
 
-# Share of a plane's points that a round of growth must add before the plane is fitted anew.
+# Refit a plane after a round of growth has added this share of its points.
 _REFIT = 0.3
 
 # Points on top that lie on no plane form a patch where they are no farther from each other than this (spacings).
@@ -151,7 +151,7 @@ class _Growth:
                 label[grown] = count
                 count += 1
             else:
-                # The same few points would be found again from each of them.
+                # Each of them would find the same few points again.
                 tried[grown] = True
         return label
 

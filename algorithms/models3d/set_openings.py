@@ -19,7 +19,7 @@ _SAME_WAY = 0.966
 # Distance (m) of the middle of an opening from the plane of its wall, at most.
 _OFF = 0.5
 
-# Distance (m) that stays between an opening and the edge of its wall: thinner strips make no sound triangles.
+# Least distance (m) between an opening and the edge of its wall: thinner strips make no sound triangles.
 _MARGIN = 0.03
 
 # An opening is cut to its wall if at least this share of its area remains: most of it lies in that wall.

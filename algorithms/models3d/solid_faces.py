@@ -14,8 +14,8 @@ from ..geometry.rings import rings_of_edges
 from .solid_levels import BASE, Levels, Position
 from .solids import GROUND, ROOF, SOFFIT, WALL, Ring, Solid, edges_around, groups_of
 
-# A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous, and walls whose
-# corners are off their common plane by less are one face.
+# A vertex with two edges is superfluous within this distance (m) of the line between their other ends. Walls are one
+# face if their corners lie within this distance of a common plane.
 _STRAIGHT = 0.0005
 
 
@@ -117,7 +117,7 @@ class _Builder:
         return self._joined(walls)
 
     def _sides(self, u: int, v: int, plane: int, beyond: int, cells: list[int]) -> list[tuple[int, int]]:
-        """Return the planes between which a cell is seen from the right of an edge: over the cell there, and under it.
+        """Return the pairs of planes between which a wall shows right of an edge: above the cell there, and below it.
 
         The lower one of a pair is not below the upper one where the cell beyond hides it.
         """

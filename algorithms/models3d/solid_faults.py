@@ -21,7 +21,7 @@ from .solids import Ring, Solid, edges_around, groups_of
 class RULES:
     """How exact a solid has to be."""
 
-    #: Corners lie no farther off the plane of their face than this (m): the default of val3dity
+    #: Tolerance (m) of corners from the plane of their face: the default of val3dity
     off_plane: float = 0.01
     #: Triangles of a face turn by no more than this (°): ten times less than val3dity's default of 20°. A corner off
     #: the plane turns a triangle by its distance over the height of the triangle.

@@ -11,20 +11,22 @@ from ..geometry.subdivision import OUTSIDE, SNAP, Subdivision, loop_area
 from .solid_faults import RULES
 from .solids import DECIMALS, edges_around
 
-# Planes that intersect within this distance (m) of a vertex, in plan, meet in it: cuts pass that closely to vertices.
+# Planes that intersect within this distance (m) of a vertex, in plan, meet in it: the snapping distance of cuts.
 _MEET = 2 * SNAP
 
-# Heights at one position that differ by at most this (m) become their mean: two planes move by half of that, less than
-# the 0.01 m by which corners may be off a face. Where up to three planes meet, the vertex moves and the planes stay.
+# Heights at one position that differ by at most this (m) become their mean. Two planes then move by half of it, less
+# than the 0.01 m that corners may be off a face. If up to three planes meet, the vertex moves and the planes stay.
 _SAME_HEIGHT = 0.016
 
 # Vertices that are nearer to an intersection of planes than this (m) are not moved.
 _EXACT = 0.0001
 
-# The outline of a footprint is kept to this (m): a vertex as close to the line of its neighbors on it is no corner.
+# The outline of a footprint is kept within this distance (m): a vertex that close to the line between its neighbors is
+# no corner.
 ON_OUTLINE = 0.005
 
-# Directions of lines whose spread is less than this share of the greatest one have no intersection to go to.
+# If the directions of lines spread by less than this share of the greatest spread, they have no well-defined
+# intersection.
 _LEAST_TURN = 0.05
 
 # Number beyond the outline, in place of a plane: the ground.

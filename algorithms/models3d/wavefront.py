@@ -16,7 +16,7 @@ from .solids import DECIMALS, Solid
 OBJ = "Wavefront OBJ"
 FORMATS = {OBJ: (".obj",)}
 
-# Step (map units) of the offset: numbers of 24 bits, which many readers of OBJ have, hold a millimeter up to 16 km.
+# Step (map units) of the offset: many readers of OBJ have numbers of 24 bits, which resolve a millimeter up to 16 km.
 _ROUND = 1000.0
 
 

@@ -1,4 +1,4 @@
-"""What shows that points lie on a cylinder: their distances, how they cover it, and the free space around it."""
+"""Evidence of a cylinder: distances of its points, their coverage, and the free space around it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_LOOKED_AT = 1500
 
 @rules
 class _RULES:
-    """What points on a cylinder have in common."""
+    """Criteria for points on a cylinder."""
 
     #: Least share of the points within the tolerance, of those that face the axis within twice the tolerance. It is
     #: 0.97 of plates that protrude by one to two standard deviations, 0.82 of elbows, 0.5 without a surface.
@@ -30,7 +30,7 @@ class _RULES:
     #: Median angle (°, times point spacing over radius) by which normals are off because points are uneven. The center
     #: of random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that there.
     uneven_angle: float = 10.9
-    #: Where normals are farther off than at most edges, the points must be as close as the noise lets them. The root
+    #: If normals are worse than at most edges, the points must be as close to the cylinder as noise allows. The root
     #: mean square of k points exceeds the deviation by 2 / √(2 k) of it in one case of forty.
     confidence: float = 2.0
     #: Largest part of the distances (standard deviations of the noise) that a bend, a cone or faces explain

@@ -9,10 +9,10 @@ import numpy as np
 # Rounds of Gauss and Newton: from a start within a few percent they converge in three to five.
 _ROUNDS = 8
 
-# Least eigenvalue of products of patterns (times the largest): below it, patterns are the same but for rounding.
+# Patterns are linearly dependent if an eigenvalue of their products is below this share of the largest.
 _LEAST_PRODUCT = 1e-12
 
-# Sectors of the circumference in which a cylinder is seen or not: 10° each.
+# Number of sectors of the circumference that are seen or not: 10° each.
 SECTORS = 36
 
 

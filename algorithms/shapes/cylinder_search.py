@@ -32,15 +32,15 @@ _LEAST_BINS = 5
 # Largest share of the normals that one bin counts, so that a plane does not decide the direction of the circle.
 _MOST_IN_BIN = 1 / 16
 
-# Least second eigenvalue of the mean product of the normals of a window: (4°)². Normals of planes, which are good to
-# 3°, have less; a cylinder of which 72° are seen has 0.12, and 0.006 if it is a twentieth of the points of a window.
+# Least second eigenvalue of the mean product of the normals of a window: (4°)². Normals of planes, with an error of 3°,
+# have less; a cylinder with 72° seen has 0.12, and 0.006 if it holds a twentieth of the points of a window.
 _LEAST_SPREAD = 0.005
 
 # Cylinders of one level may be thinner than its least radius and wider than its largest by this factor, so that those
 # between two levels are found in one of them.
 _WIDER = 1.1
 
-# Radii that are tried in one level, an octave at most: steps of up to 10 %, which the first fit bridges.
+# Number of radii tried in one level, an octave at most: steps of up to 10 %, which the first fit bridges.
 _RADII = 8
 
 # Side of the bins for centers of circles (least radius of the level), as fine as the steps of the radius.
@@ -49,7 +49,7 @@ _CENTER_BIN = 0.15
 # Distances from the circle (least radius of the level) of the points of the first fits, before the tolerance counts.
 _FIRST_FITS = (0.15, 0.06)
 
-# Rounds of the first fits: the points change after each, so that they need not converge.
+# Rounds of each first fit; it need not converge, as its points change afterwards.
 _FIRST_ROUNDS = 2
 
 # Fewest points of a seed, and of a window in which one is searched for: three times the five unknowns and one more.
@@ -58,13 +58,13 @@ LEAST_POINTS = 16
 # Most seeds of one window, which is as wide as two of the thinnest cylinders of its level or one of the widest.
 _MOST_IN_WINDOW = 4
 
-# Length (radii) by which a seed is first extended at both ends: the direction of its axis is good for that long.
+# Length (radii) by which a seed is first extended at both ends: its axis is accurate enough for that.
 _FIRST_STEP = 6.0
 
 # Widest gap along a cylinder (radii): the shadow of another pipe.
 _GAP_RADII = 2.0
 
-# Widest gap along a cylinder (spacings of the thinned points): chance leaves no wider one.
+# Widest gap along a cylinder (spacings of the thinned points): more than chance leaves.
 _GAP_SPACINGS = 6.0
 
 # Least height of the arc that is seen above its chord (standard deviations of the noise): a flatter one is a plane.
@@ -134,7 +134,7 @@ class CylinderSearch:
         self.is_free = normals.any(axis=1)
         self.directions = PlaneDirections(_DIRECTION_BIN)
         self.bins = self.directions.bin_of(np.where(self.is_free[:, None], normals, [0.0, 0.0, 1.0]))
-        # Which bins lie on the great circle across the middle of each.
+        # For each bin, the mask of bins on the great circle across its middle.
         cosine = np.abs(self.directions.normal @ self.directions.normal.T)
         self.on_circle = (cosine <= np.sin(np.radians(_ON_CIRCLE))).astype(np.float32)
 
@@ -176,7 +176,7 @@ class CylinderSearch:
             if one is not None and low / _WIDER <= one.cylinder.radius <= high * _WIDER:
                 self.is_free[one.points] = False
                 found.append(one)
-            # A seed without a cylinder is not looked at twice.
+            # Don't try a seed without a cylinder twice.
             left = left[~np.isin(left, points)]
         return found
 
@@ -199,7 +199,7 @@ class CylinderSearch:
             if not LEAST_OF_LEVEL * low <= cylinder.radius <= MOST_OF_LEVEL * high:
                 return None
         if not low / _WIDER <= cylinder.radius <= high * _WIDER:
-            # It belongs to another level, in whose windows it is searched for; each window here would grow it again.
+            # It belongs to another level and is found in that one's windows; each window here would grow it again.
             return None
         return (cylinder, points) if self._is_round(rows, points, cylinder) else None
 
@@ -285,7 +285,7 @@ class CylinderSearch:
             cylinder, ends = fitted, grown
             if longer < thinned_spacing:
                 break
-            # The longer it is, the better its direction is known.
+            # A longer cylinder has a better known direction, so the step may grow.
             step = 2 * step if longer >= step else step
         return self._checked(cylinder, ends, gap)
 

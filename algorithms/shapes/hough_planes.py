@@ -21,7 +21,7 @@ _VOTES_AT_ONCE = 2_000_000
 # Least-squares fits to the points of a maximum, each to those near the fit before.
 _REFINEMENTS = 3
 
-# Planes that are looked for in one window: more than its surfaces.
+# Most planes of one window: more than it has surfaces.
 _MOST_PLANES = 20
 
 # Windows that one thread works on between two reports.
@@ -203,7 +203,7 @@ class HoughPlanes:
                 plane[alike[on_plane]] = number
                 gone = plane[free] > 0
             else:
-                # Many directions without a plane, as in a crown: they are left out.
+                # There are many directions without a plane, as in a crown; leave the points out.
                 gone = is_alike
             free, bins = free[~gone], bins[~gone]
         return plane

@@ -1,4 +1,4 @@
-"""Pieces of one cylinder, parted by a flange or by the shadow of another object, put together again."""
+"""Join pieces of one cylinder that a flange or the shadow of another object separates."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from ..packages import spatial
 from .cylinder_fits import SECTORS, Cylinder, fit_cylinder
 from .cylinder_search import Found
 
-# Largest increase (standard deviations of the noise) of the deviation of a piece's points when its own cylinder is
-# replaced by the axis of both pieces. Pipes 2 m long with noise of 2 mm whose axes are 6 mm apart exceed it.
+# Two pieces are joined if the deviation of the points of each grows by at most this (standard deviations of the noise)
+# with the common cylinder. Pipes 2 m long with noise of 2 mm and axes 6 mm apart exceed it.
 _MOST_APART = 0.2
 
-# Largest ratio of the radii of two pieces: a wide bound that saves fits.
+# Largest ratio of the radii of two pieces: a loose bound that saves fits.
 _RADII = 1.15
 
-# Largest angle (°) between the axes of two pieces: a wide bound, too.
+# Largest angle (°) between the axes of two pieces: a loose bound, too.
 _ANGLE = 8.0
 
-# Largest distance (radii) of the facing end of a piece from the axis of the other: another wide bound.
+# Largest distance (radii) of the facing end of a piece from the axis of the other: another loose bound.
 _BESIDE = 0.5
 
 # Radius (share of the cylinder's) within which an end cap is looked for: clear of points of the wall.

@@ -1,4 +1,4 @@
-"""Pieces of one shape, found in overlapping parts of a cloud, put together to one feature."""
+"""Join pieces of one shape, found in overlapping parts of a cloud, to one feature."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..geometry.rings import signed_area
 from ..stage import LayerFeatures, Monitor
 from .plane_polygons import outline_of_cells
 
-# A piece of which this share lies in the largest one adds nothing to it.
+# A piece is dropped if this share of it lies in the largest one.
 _WITHIN = 0.95
 
 # Size (m) of the cells around which the outline of several pieces of a plane is drawn.

@@ -21,7 +21,7 @@ PLANE_FIELDS = (
     Field("rms", float, "root mean square distance of the points from the plane", "m"),
 )
 
-# Side of a cell (spacings): chance leaves one cell of 50 empty on a surface.
+# Side of a cell (spacings): one cell of a surface in 50 is empty by chance.
 _CELL_SPACINGS = 2.0
 
 # How far cells with points reach beyond the edge of a surface (cells). With four points to a cell on average, a cell of

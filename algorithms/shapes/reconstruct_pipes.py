@@ -15,7 +15,7 @@ _FIELDS = (
     Field("radius", float, "its radius", "m"),
 )
 
-# Sides of a circle: a polygon of 16 has an area 2.5 % below the circle's, which the eye takes for round.
+# Number of sides of a drawn circle: a polygon of 16 looks round; its area is 2.5 % below the circle's.
 _SIDES = 16
 
 

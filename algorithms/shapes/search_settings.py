@@ -13,7 +13,7 @@ from ..stage import tunable
 # Least radius (point spacings): half a circumference has four points across it.
 _RADIUS_SPACINGS = 1.2
 
-# Least radius (standard deviations of the noise across surfaces): the arc that is seen rises above the noise.
+# Least radius (standard deviations of the noise across surfaces), so that the visible arc rises above the noise.
 _RADIUS_DEVIATIONS = 6.0
 
 # Largest radius (m) that is searched for with nothing set: tanks have up to 20 m, and larger ones take more time.

@@ -23,22 +23,22 @@ from .surface_normals import NORMAL_POINTS, normal_points, normals_of, refuse_li
 
 METHODS = ("points", "normals")
 
-# Points that a surface has in a window: enough for a maximum that chance does not make.
+# Number of points of a surface in a window: enough for a maximum that is no chance.
 _POINTS_IN_WINDOW = 40.0
 
 # Least side of a window (tolerances): noise around a surface must not fill it.
 _TOLERANCES_IN_WINDOW = 20.0
 
-# Coarser slopes than this (ratio) join planes of different directions.
+# Coarsest bin of slopes (ratio): coarser ones would merge planes of different directions.
 _MOST_SLOPE_BIN = 0.2
 
-# A gap of three spacings is no accident of random sampling on a surface.
+# Gap in spacings: random sampling of a surface leaves no gap of three spacings.
 _GAP_SPACINGS = 3.0
 
-# Window (m) that an automatic one is taken for in the reach, in clouds with 40 points per m² and noise of 2 cm.
+# Window (m) assumed for the reach if it is automatic: that of clouds with 40 points per m² and noise of 2 cm.
 _WIDE_WINDOW = 1.0
 
-# Gap (m) that an automatic one is taken for in the reach, in clouds with 40 points per m².
+# Gap (m) assumed for the reach if it is automatic: that of clouds with 40 points per m².
 _WIDE_GAP = 0.5
 
 # Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.

@@ -24,19 +24,20 @@ from .tree_structure import (
     voxels_of,
 )
 
-# Side of a voxel (spacings): chance leaves few voxels of bark empty.
+# Side of a voxel (spacings): few voxels of bark are empty.
 _VOXEL_SPACINGS = 2.0
 
 # Least side of a voxel (m): bark is not resolved any finer.
 _LEAST_VOXEL = 0.02
 
-# Gaps that paths cross with nothing set (voxels).
+# Default of the gap that paths cross (voxels).
 _GAP_VOXELS = 8.0
 
-# Largest measured radius (of that estimated): wider ones are leaves.
+# Largest measured radius, as a multiple of the estimated one: larger ones are of leaves.
 _WIDEST = 3.0
 
-# Largest measured radius (of the smallest measured nearer to the root): wood grows no thicker outward, but for noise.
+# Largest measured radius, as a multiple of the smallest one nearer to the root: but for noise, wood grows no thicker
+# outward.
 _SWELLING = 1.1
 
 # Number of pieces farther out whose median radius a measured radius has to reach: wood grows thicker toward the root,
@@ -290,7 +291,7 @@ def _fitted(xyz: np.ndarray, chord: np.ndarray, reach: float) -> Optional[float]
         cylinder = fit_cylinder(bark, cylinder)
         off = np.abs(cylinder.local(xyz)[1] - cylinder.radius)
         bark = xyz[off <= FAR * np.median(off)]
-    # The line lies in the branch or next to it: a cylinder that is thinner runs through some leaves only.
+    # The line lies in or next to the branch; a thinner cylinder would run through leaves.
     is_round = np.median(off) <= ROUND * cylinder.radius and reach / _SWELLING <= cylinder.radius <= _WIDEST * reach
     return cylinder.radius if is_round else None
 

@@ -1,4 +1,4 @@
-"""Windows of growing size over growing spacing: where shapes of one range of radii are looked for."""
+"""Windows for each range of radii, with size and point spacing in proportion."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ WINDOW = 4.0
 # Spacing of the points of a level, in its least radii.
 THINNING = 0.15
 
-# Factors by which the radius of a fit may leave the range of its level: the levels next to it find it, too.
+# Factors by which the radius of a fit may lie outside the range of its level; the adjacent levels find it, too.
 LEAST_OF_LEVEL, MOST_OF_LEVEL = 0.8, 1.25
 
 

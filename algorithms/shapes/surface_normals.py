@@ -1,4 +1,4 @@
-"""Normals of the surface at each point, from neighborhoods as large as the noise asks for."""
+"""Normals of the surface at each point, from neighborhoods that grow with the noise."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LEAST_POINTS = 12
 # Points of the largest neighborhood of a normal: more cost time.
 _MOST_POINTS = 80
 
-# Ratio of the two larger variances below which points lie on one line, and the plane through them is undefined.
+# Points are collinear, without a plane, if the ratio of their two larger variances is below this.
 _LINE = 1e-8
 
 # Of each sampling: the points that its normals were measured on, and the normals. They go with the sampling.
