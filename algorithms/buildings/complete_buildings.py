@@ -288,8 +288,8 @@ def deck_cells(
 ) -> np.ndarray:
     """Return the building (rows, columns) that surrounds the deck in each cell; 0 in cells without a deck.
 
-    A deck lies higher than the streets around by at least the height of the lowest roof, also if their slope is
-    continued to the court: the court of a castle on a hill is ground.
+    A deck lies higher than the streets around by at least the height of the lowest roof. Their slope is continued to
+    the court, as the court of a castle on a hill is ground.
 
     Parameters
     ----------

@@ -173,7 +173,7 @@ def roof_heights(
 
 
 class _Owners:
-    """Assigns each position to an outline: that of the nearest lattice node with one."""
+    """Assigns each position to the outline of the nearest lattice node with one."""
 
     def __init__(self, outlines: list[Outlined], spacing: float) -> None:
         self.spacing, self.step = spacing, spacing / NODES

@@ -25,8 +25,8 @@ _STEP, _OFF = 0.05, 0.1
 _CLEAR = 0.5
 
 # A side is examined in pieces of this length (m, and point spacings; the larger one counts). Its wall is seen if half
-# of the pieces have points of it, as in 'Map footprints', and if half of all points under the eave lie on it: points of
-# floors and lower roofs lie at all distances.
+# of the pieces have points of it, as in 'Map footprints'. Half of all points under the eave must lie on it, too, as
+# points of floors and lower roofs lie at all distances.
 _PIECE, _PIECE_SPACINGS, _SEEN = 0.5, 2.0, 0.5
 
 # A side has a common wall with the next house if this share of its pieces has points of buildings outside, farther from
@@ -39,7 +39,7 @@ _ON_SIDE = 0.02
 # Walls that turn by less than this sine (10°) have a step between them, and no corner where their lines intersect.
 _PARALLEL = 0.17
 
-# Cuts snap to vertices within these distances (m): first that of footprints; after a fault, that of roofs.
+# Cuts snap to vertices within these distances (m): first as for footprints; after a fault, as for roofs.
 _SNAPS = ON_OUTLINE, SNAP
 
 

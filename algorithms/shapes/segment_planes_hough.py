@@ -35,10 +35,10 @@ _MOST_SLOPE_BIN = 0.2
 # Gap in spacings: random sampling of a surface leaves no gap of three spacings.
 _GAP_SPACINGS = 3.0
 
-# Window (m) assumed for the reach if it is automatic: that of clouds with 40 points per m² and noise of 2 cm.
+# Window (m) assumed for the reach if it is automatic: as in clouds with 40 points per m² and noise of 2 cm.
 _WIDE_WINDOW = 1.0
 
-# Gap (m) assumed for the reach if it is automatic: that of clouds with 40 points per m².
+# Gap (m) assumed for the reach if it is automatic: as in clouds with 40 points per m².
 _WIDE_GAP = 0.5
 
 # Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.

@@ -39,7 +39,7 @@ _BUILT = np.deg2rad(0.7)
 # side of a roof are.
 MOST = np.deg2rad(8.0)
 
-# Points are rougher than noise if their variance about the line exceeds that of noise by this many standard errors.
+# Points are rougher than noise if their variance about the line exceeds the noise's by this many standard errors.
 _CERTAIN = 2.0
 
 # Radius (m) of the neighborhoods that show the direction of a wall at a point.
