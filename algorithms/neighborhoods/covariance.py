@@ -23,13 +23,13 @@ _CHUNK_NEIGHBORS = 200_000
 # Points that a thread works on between two reports where radii hold an unknown number of neighbors.
 _CHUNK_POINTS = 20_000
 
-# Fewer points than this lie on a line or at one position: their covariance describes no surface.
+# Least number of points of a covariance: fewer lie on a line or at one position.
 MIN_NEIGHBORS = 3
 
 # A neighborhood larger than this on average is a radius chosen by mistake: it would run for days.
 _MAX_MEAN_NEIGHBORS = 20_000
 
-# Closed forms within this of a degenerate case have lost half of their digits: LAPACK is asked.
+# Within this distance of a degenerate case closed forms lose half of their digits; LAPACK is used instead.
 _DOUBTFUL = 1e-6
 
 

@@ -1,4 +1,4 @@
-"""Adjacent planes merged in rounds: each pair that is the best of both."""
+"""Merge adjacent planes in rounds: each pair that is the best one of both planes."""
 
 from __future__ import annotations
 

@@ -13,10 +13,10 @@ from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 
-# A plane and how far points lie off it take this many points.
+# Fewest points of a plane with a deviation.
 LEAST_POINTS = 5
 
-# Robust planes hold at least this share of their neighborhood: with less the other side of an edge is as good a plane.
+# Robust planes hold at least this share of their neighborhood; with less, the other side of an edge could be the plane.
 _LEAST_SHARE = 0.5
 
 # Fits of a robust plane, each to the points near the one before.
@@ -38,7 +38,7 @@ _LEAF = 24
 
 @dataclass(frozen=True)
 class Criteria:
-    """When a point belongs to the surface next to it."""
+    """Criteria by which a point belongs to the surface next to it."""
 
     tolerance: Optional[float]  #: Largest distance to the plane of the surface, m; None leaves the criterion out
     cosine: Optional[float]  #: Least cosine of the angle between the normals; None leaves the criterion out
@@ -82,7 +82,7 @@ class LocalPlanes:
     def agree(self, criteria: Criteria, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """Return whether the planes of points (m,) and of others (m,) hold one another's points and centers.
 
-        At an edge the planes of both sides hold points of the other side, but not where the middle of its points is.
+        At an edge, the planes of both sides hold points of the other side, but not their center.
         """
         apart = (self.xyz[other] - self.xyz[one]).astype(np.float32)
         agreed = np.ones(len(one), bool)
@@ -120,7 +120,7 @@ def local_planes(
     """
     # Balanced: of points at the same distance it hardly depends on their order which are found.
     n, tree = len(xyz), spatial.cKDTree(xyz, _LEAF)
-    # Points at the radius itself are near, however coordinates are rounded.
+    # Points at exactly the radius are near, however coordinates are rounded.
     count, reach = min(count, n), radius * (1 + 1e-7)
     planes = LocalPlanes(
         xyz,
@@ -188,7 +188,7 @@ def _every(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarra
 def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
     """Return the mask of points on a least-squares plane, fitted repeatedly without the outliers of the last fit."""
     chosen = near
-    # Few are left out at first, when the plane still follows the outliers.
+    # Leave out few at first, while the plane still follows the outliers.
     for share in (0.8, 0.65, _LEAST_SHARE, _LEAST_SHARE):
         distance = _distances(offsets, *fit_planes(offsets, chosen)[:2])
         distance[~near] = np.inf

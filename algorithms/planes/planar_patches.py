@@ -134,7 +134,7 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
         own, candidates = points[rows], planes.neighbors[rows]
         deviation = planes.deviation[candidates]
         left = np.arange(len(rows))
-        # The smoothest plane holds most points; only for the rest all planes are tested.
+        # The smoothest plane holds most points; test the other planes for the rest only.
         for is_last in (False, True):
             if is_last:
                 off = np.einsum("ikj,ij->ik", planes.planes[candidates], own)
@@ -156,7 +156,7 @@ def _keep_linked(neighbors: np.ndarray) -> None:
 
     Memory of the others is freed, without a copy.
     """
-    # Spread over the ranks, so that links cross from one scan line to the next.
+    # Take ranks evenly, so that links cross from one scan line to the next.
     ranks = np.unique(np.linspace(1, neighbors.shape[1] - 1, LEAST_NEIGHBORS - 1).astype(int))
     flat = neighbors.reshape(-1)
     for first in range(0, len(neighbors), ROWS_AT_ONCE):

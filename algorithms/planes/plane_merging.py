@@ -1,4 +1,4 @@
-"""Pieces of planes in neighboring voxels, joined where they are one plane."""
+"""Join pieces of one plane in neighboring voxels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..threads import in_chunks
 from .best_pairs import merge_best_pairs
 from .least_squares_planes import Planes, planes_of
 
-# Points spread evenly within a tolerance lie this share of it off the middle (root mean square).
+# Root mean square of a uniform distribution within a tolerance, as a share of it.
 _EVEN = 1 / np.sqrt(3)
 
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
@@ -24,7 +24,7 @@ _HELD = 2 / 3
 # Least number of points of a voxel that a plane holds which goes on into it.
 _LEAST_POINTS = 4
 
-# Least share of its points that a plane keeps when each goes to the plane nearest to it: one across others keeps less.
+# A plane must keep this share of its points when each goes to the nearest plane; one across others keeps less.
 _LEAST_KEPT = 0.5
 
 # Points that a thread works on between two reports.

@@ -18,7 +18,7 @@ from .local_planes import CHUNK_NEIGHBORS, LEAST_POINTS, Criteria, LocalPlanes, 
 # Points that are worked on at once, between two reports of progress.
 _CHUNK = 20_000
 
-# Neighbors by which seeds are connected first: most of the others then are of the same surface already.
+# Connect seeds by this many neighbors first: most of the others then belong to the same surface already.
 _FIRST_NEIGHBORS = 3
 
 # Most rounds of growth, each by one neighborhood: more than the widest gap between seeds takes.
@@ -38,7 +38,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     is_seed : ndarray of shape (n,), bool
         Points whose neighborhood is a seed surface.
     criteria : Criteria
-        When a point belongs to the surface next to it.
+        Criteria by which a point belongs to the surface next to it.
     monitor : Monitor
         Receives progress.
 
@@ -131,7 +131,7 @@ def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria
             neighbors = planes.neighbors[rows, columns]
             a, column = np.nonzero(is_seed[neighbors])
             one, other = rows[a], neighbors[a, column]
-            # Whether two seeds agree matters only while nothing else has made them one surface.
+            # Test only pairs of seeds that are not yet in one surface.
             apart = sets.apart(one, other)
             one, other = one[apart], other[apart]
             held = planes.agree(criteria, one, other)
@@ -226,7 +226,7 @@ def grow_planes(
     members = np.flatnonzero(surface >= 0).astype(np.int32)
     fitted, joined = merge_best_pairs(fitted, *_adjacent(planes, surface, members), cost, monitor.part(0.4, 0.8))
     surface = np.where(surface >= 0, joined[surface], -1).astype(np.int32)
-    # Planes are better known now, and hold more of the points at their edges.
+    # The refined planes hold more of the points at their edges.
     _take_points(planes, surface, fitted, criteria, monitor.part(0.8, 1))
     return surface
 

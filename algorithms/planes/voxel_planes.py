@@ -16,7 +16,7 @@ _DISTANCES_AT_ONCE = 1_000_000
 # Fits to the points of a trial plane, each to those that lie on the fit before.
 _REFINEMENTS = 2
 
-# Number of voxels of scattered points of which one may have a plane by chance.
+# Of this many voxels with scattered points, one may have a plane by chance.
 _VOXELS_PER_CHANCE = 1000
 
 
@@ -83,7 +83,7 @@ class VoxelPlanes:
         is_point = position < size
         index = boxes.start[voxels, None] + np.minimum(position, size - 1)
         xyz = boxes.xyz[index]
-        # Their own order in place of the cloud's, which must not matter.
+        # Sort them by themselves, as the order of the cloud must not matter.
         order = np.lexsort([np.where(is_point, xyz[..., axis], np.inf) for axis in (2, 1, 0)], axis=-1)
         index, xyz = np.take_along_axis(index, order, axis=1), np.take_along_axis(xyz, order[..., None], axis=1)
         middle = (xyz.min(axis=1) + xyz.max(axis=1)) / 2

@@ -1,1 +1,1 @@
-"""Before anything else: clouds merged, filtered and evened out, and noise found."""
+"""Preparation of clouds: merging, filtering, thinning, and noise."""

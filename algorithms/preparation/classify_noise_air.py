@@ -10,7 +10,8 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage
 from .points_in_the_air import in_the_air
 
-# Width (m) of the surroundings that decide on a point: chains of points that tie it to the scene are searched in them.
+# Width (m) of the surroundings that decide on a point: chains of points that connect it to the scene are searched
+# there.
 _REACH = 10.0
 
 

@@ -21,7 +21,7 @@ from .points_under_ground import UNDER_GROUND, under_ground
 
 @rules
 class HISTOGRAM:
-    """What a gap in a histogram parts from the scene."""
+    """Limits of gaps in a histogram that separate noise from the scene."""
 
     points_per_cell: int = rule(450, "points", "statistics: with the cells around, some 4000 points make a histogram")
     gap: int = rule(2, "bins", "physics: empty ones; chimneys, treetops and rock faces leave no such gap")
@@ -73,8 +73,8 @@ def classify_noise_histogram(
     """Find points far above or below the scene, such as birds, clouds and multipath returns.
 
     The heights of each cell and its neighbors make a histogram. From both ends inward, bins that hold few points and
-    are parted from the scene by a gap are noise: low noise (class 7) below it and high noise (class 18) above it. Then
-    come isolated points under the ground. 'Classify noise in the air' finds birds and dust between these heights.
+    are separated from the scene by a gap are noise: low noise (class 7) below it and high noise (class 18) above it.
+    Then come isolated points under the ground. 'Classify noise in the air' finds birds and dust between these heights.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def _scene_range(
     run_low = histogram.level[first][is_full]
     run_high = histogram.level[np.append(first[1:], len(run)) - 1][is_full]
 
-    # The run with most points is what all others must be near to.
+    # All other runs must be near the one with most points.
     order = np.lexsort((np.bincount(run, histogram.count)[is_full], run_cell))
     main = np.zeros(len(cells), np.int64)
     main[run_cell[order]] = order

@@ -20,7 +20,7 @@ from .height_histograms import (
     with_borrowed_ranges,
 )
 
-# Points of a cell on average: enough that the highest and lowest meter of a scene hold some, whatever the density.
+# Average number of points of a cell: enough that the highest and lowest meter of a scene hold some at any density.
 _POINTS_PER_CELL = 4000
 
 # Width (m) of the surroundings that decide on a point: its cell, at 1 point/m². It is narrower in denser clouds. A

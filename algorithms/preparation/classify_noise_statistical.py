@@ -16,12 +16,12 @@ from .points_under_ground import under_ground
 # Points of a chunk: progress is shown after each, and only its neighbors are held in memory.
 _CHUNK = 100_000
 
-# Of points with many others around them, about as many as this are enough for the mean and the standard deviation of
-# the distances: both are then off by some thousandths.
+# A sample of about this many points in dense neighborhoods gives mean and standard deviation of the distances to some
+# thousandths.
 _SAMPLE = 200_000
 
-# The sample is taken from thin sheets across this wave vector (waves per meter). Its components have no common measure
-# with each other or with the steps of coordinates in files.
+# The sample is taken from thin sheets across this wave vector (waves per meter). Its components are incommensurable
+# with each other and with the steps of coordinates in files.
 _SAMPLE_WAVE = 1e3 * np.sqrt([2.0, 3.0, 5.0])
 
 
@@ -154,7 +154,7 @@ def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.nd
     phase = offsets @ _SAMPLE_WAVE
     is_sampled = is_dense & (phase - np.floor(phase) < share)
     if is_dense.any() and not is_sampled.any():
-        # All lie at few positions, none of them in a sheet.
+        # If all points lie at a few positions, none may lie in a sheet.
         is_sampled = is_dense
     rows = np.flatnonzero(is_sampled | ~is_dense)
     weight = np.where(is_dense[rows], np.count_nonzero(is_dense) / max(np.count_nonzero(is_sampled), 1), 1.0)

@@ -1,4 +1,4 @@
-"""Points evened out: one for every voxel that has any."""
+"""Thinning of points: one for every occupied voxel."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def downsample_voxels(
     ([1, 3], [0.04, 0.1], [3, 1])
     """
     voxels = _by_voxel(xyz, voxel_size, monitor.part(0.0, 0.3))
-    # A point that is alone in its voxel is all there is to it.
+    # Points alone in their voxel stay as they are.
     selected = voxels.order[voxels.starts]
     center = xyz.take(selected, axis=0)
     majority = None if classification is None else classification.take(selected).astype(np.uint8)
@@ -217,7 +217,7 @@ def _nearest(
     None, that order points at one position.
     """
     count = np.bincount(which)[which]
-    # Whole numbers: the two points of a pair are equally near to the last bit.
+    # Use whole numbers, so that two equally near points are equal to the last bit.
     away = (position * count[:, None] - total[which]).astype(float)
     distance = np.sqrt(np.einsum("ij,ij->i", away, away)) / count
     least = np.minimum.reduceat(distance, run_starts(which))

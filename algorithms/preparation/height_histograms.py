@@ -16,7 +16,7 @@ AUTOMATIC_BIN = "twice the point spacing, at least 1 m."
 def automatic_bin_height(spacing: float) -> float:
     """Return the height of bins (m) on a cloud of a point ``spacing`` (m).
 
-    In a third of a storey a roof has many points. On a thin cloud it has few, which higher bins keep together.
+    A third of a storey holds many points of a roof. In a sparse cloud higher bins keep its few points together.
     """
     return max(1.0, 2 * spacing)
 

@@ -1,4 +1,4 @@
-"""Several clouds brought into one frame and made one."""
+"""Merge several clouds in one frame."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RIGID = 2e-4
 # The user is warned of points that the nearest rotation puts farther (m) from where the matrix itself would.
 _LEAST_WARNED = 0.001
 
-# Clouds whose boxes are farther apart (m) are likely not of one site, or one of them is not where it should be.
+# Clouds whose boxes are farther apart than this (m) are likely not of one site, or one is misplaced.
 _APART = 1.0
 
 # A file of numbers is never longer (characters).

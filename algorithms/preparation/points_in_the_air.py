@@ -1,4 +1,4 @@
-"""Loose points in the air over the scene: birds, flocks, plumes of dust.
+"""Find loose points in the air over the scene: birds, flocks, plumes of dust.
 
 Solid objects are supported from below. The points of a plume or a flock are few among all points of a column of air,
 since most pulses pass it. Points of a roof or a crown are most of their column, also where neither walls nor trunk were
@@ -22,7 +22,7 @@ _LINK = 2.4
 # Least such distance in point spacings: hardly any point of a random sample has no other within it.
 _LINK_SPACINGS = 3.5
 
-# Share of the pulses that an object stops, below which it is not solid.
+# A solid object stops at least this share of the pulses.
 _SOLID_SHARE = 0.3
 
 # Side (point spacings) of the columns in which the share of stopped pulses is measured: 16 points of the scene in each.
@@ -34,7 +34,7 @@ _LEAST_IN_COLUMN = 8
 # Fewest points of a component whose form is examined: one or two have none.
 _FORM_POINTS = 3
 
-# Size (m) up to which the points of a component are the head of a lamp: birds are farther apart.
+# A component up to this size (m) is the head of a lamp; the points of birds are farther apart.
 _COMPACT = 1.0
 
 # Least such size in point spacings, which counts in sparse clouds.
@@ -46,7 +46,8 @@ _THIN = 0.3
 # Largest standard deviation across a plane or a line, as a share of that along it.
 _THIN_RATIO = 0.1
 
-# Wires in bundles are lines in small neighborhoods only: share of the points whose neighbors must lie along a line.
+# Least share of points whose neighbors lie along a line, for bundles of wires, which are lines in small neighborhoods
+# only.
 _BUNDLE_SHARE = 0.5
 
 # Points of the neighborhoods that show the wires of a bundle.

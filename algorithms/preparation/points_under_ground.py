@@ -1,4 +1,4 @@
-"""Isolated points under the ground: echoes of pulses that took a detour.
+"""Find isolated points under the ground: multipath echoes.
 
 A laser pulse does not pass the ground, so that points under it on all sides are no part of the scene, unless they are a
 floor. Points of multipath come at all depths, points of a floor at one.
@@ -56,7 +56,7 @@ def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor
     near = np.arange(len(cells))
     # Points that are found hide others beneath the surface that they pull down.
     for turn in count(1):
-        # Without the points found before, which are the lowest of their cells, their companions become the lowest.
+        # Without the points found before, which were the lowest of their cells, their companions are now the lowest.
         lowest, middle = (
             xyz[order[start + np.minimum(rank, n_points - 1)]] for rank in (n_found, (n_found + n_points) // 2)
         )
@@ -85,7 +85,7 @@ def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor
 def _by_cell_and_height(which: np.ndarray, xyz: np.ndarray) -> np.ndarray:
     """Return the rows (n,) by cells, from the lowest point of a cell up, of equally high ones from the west."""
     x, y, z = xyz.T
-    # One number for both sorts three times as fast; heights count to a part in two thousand million of their range.
+    # One key for both sorts three times as fast; it resolves heights to a part in two thousand million of their range.
     key = which.astype(np.int64) << 32
     key |= ((z - z.min()) * ((2**31 - 1) / max(float(np.ptp(z)), 1e-9))).astype(np.int64)
     return ordered(key, x, y)
@@ -169,8 +169,9 @@ def _surroundings(levels: np.ndarray, points: np.ndarray, size: float) -> np.nda
     order = _by_cell_and_height(which, levels)
     n_levels = np.bincount(which)
     start = np.cumsum(n_levels) - n_levels
-    # A field of low points pulls many levels down, and a forest shows few at the ground. As many as the square root of
-    # twice their number are passed over: more in large cells, but a smaller share. Fitted on simulated towns.
+    # A field of low points lowers many levels, and a forest shows few at the ground. So the lowest ones are skipped, as
+    # many as the square root of twice their number: more in large cells, but a smaller share. Fitted on simulated
+    # towns.
     chosen = levels[order[start + np.sqrt(2 * n_levels - 2).astype(np.int64)]]
     number = grid.number(points)
     beside = _beside([find_cells(cells, number + step) for step in grid.around], chosen, points)
@@ -217,7 +218,7 @@ def _middle(values: np.ndarray) -> np.ndarray:
 def _on_floor(low: np.ndarray, noise: float) -> np.ndarray:
     """Return the mask of low points (n, 3), m, on a floor seen here and there; ``noise``, m, is of surfaces.
 
-    Points of a floor differ by noise alone, and most low points around are on it. Multipath comes at all depths.
+    Points of a floor differ by noise alone, and most low points around are on it, while multipath lies at all depths.
     """
     reach = SCENE.ground_within / 2
     at_level = _at_level(low, low, reach, 2 * SURFACES.on_plane * noise)

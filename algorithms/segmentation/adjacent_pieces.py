@@ -1,4 +1,4 @@
-"""Which straight pieces of scan lines lie side by side on adjacent lines."""
+"""Find straight pieces of scan lines side by side on adjacent lines."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def adjacent_pieces(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, distance
 def _beside(
     xyz: np.ndarray, piece: np.ndarray, direction: np.ndarray, rows: np.ndarray, found: np.ndarray
 ) -> np.ndarray:
-    """Return of the points ``found`` (r, k), nearest first, the first ones on both sides (r, 2) of a piece, or -1."""
+    """Return the nearest of the points ``found`` (r, k) on each side (r, 2) of a piece; -1 without one."""
     along = direction[piece[rows]]
     way = xyz[found] - xyz[rows][:, None]
     length = np.einsum("ijk,ik->ij", way, along)
@@ -132,7 +132,7 @@ def _pairs(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, nearest: np.ndarr
     count = np.bincount(which, minlength=len(key))
     mean = np.column_stack([np.bincount(which, column, len(key)) for column in way.T]) / np.maximum(count, 1)[:, None]
     one, other = np.divmod(key, max(m, 1))
-    # Each pair once in both directions, whichever saw the other.
+    # Keep each pair once in both directions, whichever side found it.
     key, at = np.unique(np.concatenate([key, other * m + one]), return_index=True)
     count, mean = np.tile(count, 2)[at], np.concatenate([mean, -mean])[at]
     one, other = np.divmod(key, max(m, 1))

@@ -1,4 +1,4 @@
-"""Points that segments and clusters are looked for among."""
+"""Candidate points of segments and clusters."""
 
 from __future__ import annotations
 

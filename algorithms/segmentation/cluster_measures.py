@@ -1,4 +1,4 @@
-"""Where groups of points lie in plan: their area, their surroundings, and whether the beam passes through them."""
+"""Measures of groups of points in plan: area, surroundings, and penetration by the beam."""
 
 from __future__ import annotations
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from ..geometry.groups import run_starts
 
-# A pause of more than this many median times between pulses ends a line: mirrors turn back, or pulses were lost over a
+# A pause longer than this (median time between pulses) ends a line: the mirror turned back, or pulses were lost over a
 # gap that no straight piece should cross.
 _PAUSE = 20.0
 
-# Scan angles that differ by more than this many median steps are of two lines: polygon mirrors start anew.
+# A jump of the scan angle by more than this (median steps) starts a new line, as with polygon mirrors.
 _JUMP = 10.0
 
-# Steps before and after a point whose directions show whether a line turns back there: a few are longer than noise.
+# Number of steps before and after a point that show whether a line turns back there: together they exceed noise.
 _STEPS = 3
 
 # Cosine of the angle between the directions before and after a point from which a line turns back there (120°): bends

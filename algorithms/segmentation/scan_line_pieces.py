@@ -49,7 +49,7 @@ def slices(xyz: np.ndarray, direction: float, width: float) -> tuple[np.ndarray,
     along, across = turned_in_plan(xyz[:, :2], -direction).T
     line = lattice(across + width / 2, width)
     line -= line.min(initial=0)
-    # All lines one behind the other: one key is sorted in a fraction of the time of three.
+    # Put all lines one behind the other: sorting one key takes a fraction of the time of three.
     position = along + line * (np.ptp(along) + 1)
     # Points at one position on a line go upward.
     order = ordered(position, xyz[:, 2], across)
@@ -110,7 +110,7 @@ def pieces_of_lines(
     number = np.where(large, np.cumsum(large) - 1, -1)[number]
     if obstacle > 0:
         along = turned_in_plan(points[:, :2], -direction)[:, 0]
-        # One axis for all lines, with more room between them than an obstacle is wide.
+        # Put all lines on one axis, farther apart than an obstacle is wide.
         along += line * (np.ptp(along) + 2 * obstacle)
         number = _over_obstacles(points, along, number, replace(near, distance=obstacle))
     return number
@@ -121,10 +121,10 @@ def _near_on_lines(points: np.ndarray, line: np.ndarray, near: NearPoints) -> np
     if not len(points):
         return np.zeros(0, np.int64)
     breaks = (line[1:] != line[:-1]) | ~near.hold(points[:-1], points[1:])
-    # Most points are near the next one: such runs are joined, not their points.
+    # Most points are near the next one, so join such runs instead of points.
     run = np.concatenate([[0], np.cumsum(breaks)])
     ones, others = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    # Each point is compared with several that follow it, as many as show a surface: a few outliers divide no piece.
+    # Compare each point with several that follow it, as many as show a surface, so that a few outliers divide no piece.
     for step in range(2, min(LEAST_NEIGHBORS, len(points) - 1) + 1):
         first = np.flatnonzero((run[step:] != run[:-step]) & (line[step:] == line[:-step]))
         first = first[near.hold(points[first], points[first + step])]

@@ -13,7 +13,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
 from .candidate_points import candidates
 
-# A gap of three spacings is hardly due to random sampling of a surface: one point in 10^12 has such a hole around it.
+# A gap of three spacings is no chance on a surface: one point in 10^12 has such a hole around it.
 _RADIUS_SPACINGS = 3.0
 
 

@@ -16,7 +16,7 @@ from ..sampling.surface_noise import ON_PLANE, ROUGHNESS
 from ..stage import Monitor, stage, tunable
 from .candidate_points import candidates
 
-# Points that a surface has in a voxel: enough for a plane that chance does not make.
+# Number of points of a surface in a voxel: enough for a plane that is no chance.
 _POINTS_IN_VOXEL = 20.0
 
 # Least side of a voxel (tolerances): noise around a surface must not fill it.

@@ -13,7 +13,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
 from .candidate_points import candidates
 
-# T_Dh over the surface noise: the paper takes 0.2 m and 0.3 m for scanners whose ranges are good to 2-3 cm.
+# T_Dh over the surface noise: the paper takes 0.2 m and 0.3 m for scanners with range errors of 2-3 cm.
 _HEIGHT_NOISE_FACTOR = 10.0
 
 # Bounds of T_Dh (m), the paper's two values: with less, roofs of common slopes fall apart, and with more, in forests

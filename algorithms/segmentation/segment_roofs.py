@@ -181,7 +181,7 @@ def _on_top(
 
 @dataclass(frozen=True)
 class _Planes:
-    """What smooth surfaces are searched for by: density (points/m²), noise (m), steepest slope (°)."""
+    """Input of the search for smooth surfaces: density (points/m²), noise (m), steepest slope (°)."""
 
     density: float
     noise: float
@@ -189,8 +189,8 @@ class _Planes:
 
     @property
     def off_plane(self) -> float:
-        """How far points of a roof lie off the planes of their neighbors (one standard deviation), m."""
-        # With fewer points per m² the nearest ones that show a plane reach farther than half a meter.
+        """Standard deviation (m) of roof points across the planes of their neighbors."""
+        # At lower densities the nearest points that define a plane reach beyond half a meter.
         dense = LEAST_NEIGHBORS / (np.pi * SURFACES.least_reach**2)
         farther = np.sqrt(max(0.0, 1 / self.density - 1 / dense))
         return float(np.hypot(plane_roughness(self.noise, self.density), SURFACE.farther * farther))
@@ -212,7 +212,7 @@ def _patches_of_images(
         return np.zeros(0, np.int32)
     rules = IMAGE_SURFACE
     highest, under = highest_of_cells(sampling.from_corner(xyz.take(used, axis=0)), rules.cell)
-    # Cells with points per square meter, of each of which one point is kept, if points lie at random.
+    # Expected number of occupied cells per m² for random points, each of which keeps one point.
     kept = -np.expm1(-planes.density * rules.cell**2) / rules.cell**2
     count = max(LEAST_NEIGHBORS, round(np.pi * SURFACES.least_reach**2 * kept))
     # Matched points share the error of their window, which is as large as their own.

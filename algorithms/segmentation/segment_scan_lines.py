@@ -22,7 +22,7 @@ _WIDTH_SPACINGS = 3.0
 # recorded three times as densely along as across.
 _DISTANCE_SPACINGS = 9.0
 
-# Difference in height that is noise (standard deviations).
+# Height differences up to this are noise (standard deviations).
 _NOISE_STEP = 4.0
 
 # Automatic distances are less than this (m) in clouds of 3.3 points per square meter and more. A piece that a window

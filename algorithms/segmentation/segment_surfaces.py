@@ -46,7 +46,7 @@ _WIDE_RADIUS = 0.5
     "Segmentation",
     tags="surface growing,region growing,plane growing,smooth,normals,Hough,planes,segmentation",
     writes=("segment_id",),
-    # What decides which points next to each other are of one surface; surfaces themselves may be larger.
+    # The reach of the decision on neighboring points; surfaces themselves may be larger.
     reach=lambda tunables: _GROWTH * (tunables["radius"] or _WIDE_RADIUS),
 )
 def segment_surfaces(

@@ -17,10 +17,10 @@ from .ground_points import usable_points, with_ground
 # Particles of the cloth beyond the points on each side.
 _BORDER = 2
 
-# Particles of a cloth that is simulated however few points there are for it: all steps take about a minute.
+# A cloth of up to this many particles is simulated however few points there are: all steps take about a minute.
 _MOST_PARTICLES = 500_000
 
-# Most particles of a hanging part of the cloth that stays as it is; larger ones are let down to the ground.
+# Hanging parts of the cloth with more particles than this are let down to the ground.
 _SMALL_PART = 50
 
 # Largest step (m) between neighboring particles over which a hanging part is let down.

@@ -33,10 +33,10 @@ class GROUND:
     )
 
 
-# Name of what parts of a cloud take of the whole: the roughness (m) of the finished surface.
+# Key of the roughness (m) of the finished surface, which blocks take from the whole survey.
 _ROUGHNESS = "surface_roughness"
 
-# The kinds of terrain: the largest building of each is twice as wide as the previous kind's.
+# The kinds of terrain, each with a largest building twice as wide as the one before.
 _TERRAINS = ("nature", "village", "town", "city", "industry")
 
 
@@ -45,7 +45,7 @@ def _largest_building(terrain: str) -> float:
     return USUAL_BUILDING * 2.0 ** (_TERRAINS.index(terrain) - _TERRAINS.index("town"))
 
 
-# The granularities: least cell, m; cells are the point spacing wide where that is more, half of it where fine.
+# The granularities: least cell, m. Cells are at least as wide as the point spacing, half of it where fine.
 _GRANULARITIES = {"coarse": 2.0, "medium": 1.0, "fine": 1.0, "extra fine": 0.5}
 
 # Least distance (m) around a part of a cloud within which points decide on its ground. In blocks of Delft with this

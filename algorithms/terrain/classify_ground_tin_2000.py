@@ -26,7 +26,7 @@ _MIN_EDGE = 2.0
 # Distance in plan over which points are mirrored: at least this, m, and the point spacing.
 _MIN_MIRROR_REACH = 1.0
 
-# Beyond a breakline the surface continues where it is less steep than this, °.
+# Beyond a breakline the surface continues if it is less steep than this, °.
 _LEVEL = 20.0
 
 # A mirrored point joins within this share of the distance at which others join.

@@ -17,8 +17,8 @@ from .tin_densification import JoinRules, grow
 # Least side (m) of the cells whose ground points make the surface, as of the ground filter.
 _LEAST_CELL = 1.0
 
-# Distance (m) in plan from a group of multipath points within which points are classified again: it drew the surface
-# down there.
+# Points within this distance (m) in plan of a group of multipath points are classified again, as it drew the surface
+# down.
 _REACH = 10.0
 
 

@@ -29,24 +29,25 @@ _KEPT_SPEED = 0.99
 # Greatest motion (m) in the step that ends the fall, of the authors' program.
 _AT_REST = 0.005
 
-# Share of its height difference to a neighbor that a particle moves in each of the passes that rigidness counts.
+# Share of its height difference to a neighbor that a particle moves in one pass; rigidness is the number of passes.
 _SHARE = 0.3
 
 # Neighbors (row, column) in the order in which a particle draws them: first those next to it, then those two away.
 _BESIDE = ((-1, -1), (0, -1), (1, -1), (-1, 0), (-1, 1), (0, 1), (1, 0), (1, 1))
 NEIGHBORS = tuple((reach * row, reach * column) for reach in (1, 2) for row, column in _BESIDE)
 
-# Columns by which a row is behind the row before it: the neighborhoods of two particles are five columns wide.
+# Lag (columns) of a row behind the row before it, as neighborhoods of particles are five columns wide.
 _APART = 5
 
 # Wavefronts (of _APART phases each) by which a step is behind the one before. A particle is drawn by others up to two
 # rows and columns away, whose values are up to 12 less or more than its own. So a step has to be more than 24 behind.
 _STEP_LAG = 6
 
-# Wavefronts after its own at which a particle lands and falls on: after the last time that others draw it.
+# Lag (wavefronts) of the landing of a particle behind its own motion: after the last time that others draw it.
 _LANDING_LAG = 3
 
-# Steps that are made together: more fill a wavefront better, and more are made again where the cloth comes to rest.
+# Number of steps made together: with more a wavefront is fuller, but more steps are repeated when the cloth comes to
+# rest.
 _STEPS_AT_ONCE = 32
 
 # Positions and diagonals around the stored particles: neighbors of those at the rim.
@@ -232,7 +233,7 @@ class Cloth:
                     self._make(count, part.part(1.0, 1.0))
                 return done + count
             done += count
-            # As long as none has landed all are at one height, and none draws another.
+            # Until the first particle lands, all are at one height and none draws another.
             is_level = is_level and bool(self.is_movable.all())
         return done
 

@@ -1,4 +1,4 @@
-"""Groups of multipath points under the ground: pits that no pulse but a few stray ones saw.
+"""Find groups of multipath points under the ground, which look like pits.
 
 The range of a pulse that took a detour is too long, so that its point lies under the surface along the beam. Several of
 them, from one mirror, make a pit: lower than the ground on all sides, with no terrain that leads down to it. A true pit
@@ -28,10 +28,10 @@ _DEPTH_SPACINGS = 0.4
 # Least depth in standard deviations of the ground around, if that is more: rough ground has true hollows.
 _DEPTH_DEVIATIONS = 6.0
 
-# Deviation (m) of the ground around from which on it is too rough for a pit to be seen in it.
+# Above this deviation (m) the ground around is too rough to tell a pit.
 _ROUGH = 0.25
 
-# Points from which on a group needs no more than the least depth.
+# A group of this many points needs no more than the least depth.
 _GROUP_POINTS = 3
 
 # Depth (m) under the ground of one or two points that are noise: shallower, they are as likely a gutter or a hollow.
@@ -70,19 +70,20 @@ _RIM_SPACINGS = 3.0
 # Sectors around a group in which ground is looked for.
 _SECTORS = 8
 
-# Sectors that must have some: half of them, for beyond a wall no ground is seen.
+# Least number of sectors with ground: half of them, as no ground shows beyond a wall.
 _LEAST_SECTORS = 4
 
-# Share of the points on the rim that may lie between ground and group: more of them are terrain that leads down.
+# Largest share of the points on the rim between the heights of ground and group; more show terrain that leads down.
 _LEADS_DOWN = 0.05
 
-# Fewer points than this are no floor: whether they fill a pit can't be decided.
+# Least number of points of a floor; with fewer it can't be decided whether they fill a pit.
 _FLOOR_POINTS = 6
 
-# Points on the ground amid a floor, as a share of its pulses: these see a true floor or the ground, and not both.
+# Largest number of ground points amid a floor, as a share of its pulses: pulses see a true floor or the ground, not
+# both.
 _MIXED = 0.15
 
-# Standard deviations by which the points of a floor may exceed those expected on its area; more are multipath points.
+# A floor may have more points than expected on its area by this many standard deviations; more are multipath points.
 _CROWDED_DEVIATIONS = 2.0
 
 

@@ -136,8 +136,8 @@ def find_free_standing(
     segments = _measured(surface, number)
     is_free = _are_free_standing(segments, least, usual_cells, largest_cells, low_uphill)
     monitor.progress(0.5)
-    # Half a hall that skylights cut in two is not free-standing by itself, nor is a hall next to a wing that is hardly
-    # lower. Of a smaller one that the end of the cloud cuts off, the windows of the ground filter don't see the whole.
+    # Half of a hall that skylights divide is not free-standing by itself, nor is a hall next to a wing that is hardly
+    # lower. A smaller one at the end of the cloud is not whole in the windows of the ground filter.
     hall = _reunited(segments, is_free, least)
     is_hall = (_box_sides(hall).min(axis=0) > usual_cells) | (_ends(surface, hall, hall.max() + 1) > 0)
     in_hall = is_hall[hall] & (hall > 0)
@@ -160,8 +160,8 @@ def _measured(surface: np.ndarray, number: np.ndarray) -> _Segments:
 def _are_free_standing(segments: _Segments, least: float, usual: float, largest: float, low_uphill: bool) -> np.ndarray:
     """Return the mask of segments (s,) that are free-standing.
 
-    ``least`` is the least height of a step (m), ``usual`` and ``largest`` are widths in cells. With ``low_uphill``
-    wide segments need high steps only on the mean.
+    ``least`` is the least height of a step (m), ``usual`` and ``largest`` are widths in cells. With ``low_uphill``,
+    wide segments need high steps on average only.
     """
     is_wide, is_high = segments.width > usual, segments.mean_step_down(least) >= LASER.lowest_roof
     is_low = is_wide & ~is_high if low_uphill else is_wide
@@ -192,9 +192,9 @@ def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.n
         Least height (m) of any step, of which the heights of walls that are cut off are multiples.
     """
     lengths = segments.edges.lengths(is_free, least_step)
-    # The outline of its box is no longer for a jagged edge, nor for other segments inside.
+    # Use the outline of its box, which neither a jagged edge nor segments inside make longer.
     outline = np.minimum(lengths.whole + segments.ends, 2 * segments.sides.sum(axis=0))
-    # The more the end of the cloud cuts off, the higher the walls: four times as high where half of it is left.
+    # The more the end of the cloud cuts off, the higher walls must be: four times as high if half of the edge is left.
     remaining = np.maximum(outline - segments.ends, 1)
     high = segments.edges.lengths(is_free, np.maximum(least_step, least * (outline / remaining) ** 2))
     # Enough must be open of the whole edge, machines included, and of the outline, the end of the cloud included.

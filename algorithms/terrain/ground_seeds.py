@@ -1,4 +1,4 @@
-"""Seeds of the terrain: points that are ground beyond doubt, from which a TIN can grow."""
+"""Seeds of the terrain: certain ground points, from which a TIN can grow."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     shape = int(row.max()) + 1, int(column.max()) + 1
     cell = np.ravel_multi_index((row, column), shape)
     as_low = np.flatnonzero(z == least_of(z, cell, shape[0] * shape[1])[cell])
-    # The last one that is written stays: ties go to the least x, then y, whatever the order.
+    # The last one written stays, so that ties go to the least x, then y, in any order of points.
     as_low = as_low[np.lexsort((-y[as_low], -x[as_low]))]
     index = np.full(shape, -1, np.int64)
     index.ravel()[cell[as_low]] = as_low
@@ -130,15 +130,16 @@ def seeds_by_opening(
     count = len(angles)
 
     def look(number: int, part: Monitor) -> tuple[_Surface, Optional[_View]]:
-        # Points are moved a third of a cell farther east and south for each: no edges of cells meet on a whole side.
+        # Shift the points of each by a further third of a cell east and south, so that the cells of two grids share no
+        # side.
         begin = np.array([number, -number, 0.0]) / count % 1
         cells = _Cells(box, angles[number], cell_size, spacing, low_uphill, nearly_empty)
         turned = turned_in_plan(xyz, angles[number]) + begin * cell_size
         surface = _lowest_surface(turned, cells, max_building_size, part.part(0, 0.3))
         return surface, None if number else _view(surface, xyz[:, 2], None, part.part(0.3, 1))
 
-    # Threads find the surfaces of the others while the slope of the first is measured: it serves for all, as it changes
-    # little from cell to cell.
+    # Threads find the other surfaces while the slope of the first is measured, which serves for all, as it changes
+    # little.
     surfaces, (first, *_) = zip(*made_ahead(look, count, monitor.part(0, 0.7)))
     others = made_ahead(
         lambda number, part: _view(surfaces[number + 1], xyz[:, 2], first.slope, part), count - 1, monitor.part(0.7, 1)
@@ -220,7 +221,7 @@ def _view(seen: _Surface, z: np.ndarray, slope: Optional[np.ndarray], monitor: M
     slope = lowest.at_points(known)
     above = z - lowest.at_points(removal.surface)
     says_terrain = np.where(is_object, -1, above <= removal.rise(slope)).astype(np.int8)
-    # Points seen through a roof, as in a pit, lie lower than the surface there.
+    # Points below a roof, as in a pit, lie lower than the surface there.
     stands_free = lowest.at_points(is_free) & (above >= 0)
     if seen.cells.low_uphill:
         below = lowest.at_points(_rim_levels(removal.surface, is_free)) - z

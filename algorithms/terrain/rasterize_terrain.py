@@ -23,7 +23,7 @@ _LEAST_CELL = 0.05
 # Largest side of a cell (m): rasters begin at whole kilometers, so that larger cells would differ between clouds.
 _MOST_CELL = 1000.0
 
-# People choose cells of 1, 2 or 5 times a power of ten.
+# Round sizes of cells: 1, 2 or 5 times a power of ten.
 _ROUND = np.array([1.0, 2.0, 5.0, 10.0])
 
 # Gaps are filled up to this distance (cells) from the nearest cell with points.

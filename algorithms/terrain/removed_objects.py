@@ -64,7 +64,8 @@ class ObjectRemoval:
     def slope(self, monitor: Monitor) -> np.ndarray:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
         first = np.full(self.surface.shape, REMOVAL.flat_slope)
-        # Free-standing objects are left out, or a low roof and a higher one next to it were as wide as both together.
+        # Leave out free-standing objects; otherwise a low roof and a higher one next to it would count as one wide
+        # object.
         removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
         slope = self._slope_without(removed)
         return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
@@ -117,8 +118,8 @@ class ObjectRemoval:
             Slope of the terrain (rise over run).
         """
         objects = (removed_by > 0) | self.is_free_standing
-        # Cells that only windows over half the largest remove are judged apart: together with others, the banks of a
-        # cut under a bridge become an object.
+        # Judge cells removed by windows above half the largest separately: together with others, the banks of a cut
+        # under a bridge would become an object.
         is_large = removed_by > self.windows[-1] / 2
         sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
         for group in (objects & ~is_large, is_large):
@@ -217,7 +218,7 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
     squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
-    # Crests have no slope of their own: means over twice the distance give them the slope of their flanks.
+    # The slope of a crest itself is zero; means over twice the distance give it the slope of its flanks.
     return np.sqrt(ndimage.gaussian_filter(squares, 2 * REMOVAL.smoothing / cell_size, mode="nearest"))
 
 

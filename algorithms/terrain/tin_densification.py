@@ -29,7 +29,7 @@ class DENSIFICATION:
 
 @dataclass(frozen=True)
 class JoinRules:
-    """When a point joins the TIN, and when rounds end: what differs between filters and clouds."""
+    """Limits that differ between filters and clouds: when a point joins the TIN, and when rounds end."""
 
     max_angle: float  #: Largest angle between the facet and the lines to its nodes, °
     max_distance: Optional[float]  #: Largest distance from the facet, m; None is estimated in each round
@@ -172,7 +172,7 @@ def _joining(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the candidates in open facets and away from nodes, and the ones that join now, one per facet."""
     tin, facet = surface.tin, surface.facet[candidates]
-    # Small facets mostly get smaller, and a point next to a node makes a sliver and adds no information.
+    # Skip points next to a node: they make slivers and add no information.
     is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]
     xyz = surface.points.take(candidates, axis=0)
