@@ -1,4 +1,4 @@
-"""What makes and compares coordinate reference systems: the libraries of QGIS in QGIS, pyproj without it."""
+"""Create and compare coordinate reference systems: by QGIS's libraries in QGIS, else by pyproj."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Optional, Protocol
 
 import numpy as np
 
-# Confidence (%) from which PROJ's database has the same plane, perhaps under another name.
+# Confidence (%) of PROJ's search from which two systems have the same plane, perhaps under other names.
 SAME_PLANE = 70
 # The axis of heights in WKT 2 of a system of three axes, and their numbers.
 _HEIGHT_AXIS = re.compile(r',\s*AXIS\["[^"]*",up(?:,\s*\w+\[(?:[^\[\]]|\[[^\[\]]*\])*\])*\]')
@@ -81,7 +81,7 @@ def identity_of(codes: Iterable[str], proj: str) -> str:
     return re.sub(r"(?<==)-?\d[\d.]*(?:e-?\d+)?(?= |$)", lambda number: f"{float(number[0]):.10g}", proj)
 
 
-# What a host program reads systems by.
+# The authority of the host program, None without one.
 _of_host: list[Authority] = []
 
 

@@ -1,4 +1,4 @@
-"""Descriptions of point clouds in JSON, read in a bounded memory."""
+"""Read descriptions of point clouds in JSON, in bounded memory."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _ORIGIN_STEP = 1000.0
 # Scale of new clouds (units of the file): more precise than any scanner.
 _NEW_SCALE = 0.001
 
-# Steps of the scale by which the sum of large coordinates may miss a half.
+# Rounding error (steps of the scale) of the sum of large coordinates at a half.
 _HALF = 1e-4
 
 
@@ -54,7 +54,7 @@ class Cloud:
         self.header, self.points, self.crs = header, points, crs
         self.files = files or []
         self._changes: dict[str, np.ndarray] = {}
-        # The coordinates made last, as long as someone holds them, and the records and the origin that they are of.
+        # Cache of the coordinates as long as someone holds them, with their records and origin.
         self._shared: Optional[tuple[ReferenceType[np.ndarray], np.ndarray, np.ndarray]] = None
         low = np.array([points[axis].min() for axis in "XY"]) * (header.scale[:2] * crs.horizontal)
         low += header.offset[:2] * crs.horizontal
@@ -78,7 +78,7 @@ class Cloud:
         return all(find_extra(self.header.layout, dimension, i) is not None for i in range(len(dimension.disk)))
 
     def foreign(self, name: str) -> list[str]:
-        """Return by what names another program stored a dimension, as its type or description shows; often none."""
+        """Return the names under which another program stored a dimension, by type or description; often none."""
         dimension, extras = _dimension(name), self.header.layout.extras
         if dimension.standard or name in self._changes:
             return []
@@ -165,7 +165,7 @@ class Cloud:
         for i, axis in enumerate("XYZ"):
             steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self.crs.factors[i])
             steps /= step[i]
-            # Round half up, as the center of two points often is a half: half to even would depend on the offset.
+            # Round half up: the center of two points is often a half, and half to even would depend on the offset.
             np.floor(steps + (0.5 + _HALF), out=steps)
             if not max(steps.max(), -steps.min()) <= LARGEST_STEP:
                 raise ValueError(
@@ -242,7 +242,7 @@ class Cloud:
         return list(dict.fromkeys(title for title, _ in self._known().values()))
 
     def _known(self) -> dict[str, tuple[str, Callable[[], np.ndarray]]]:
-        """Return for every name of a dimension, in lower case, how it is shown and what gives its values."""
+        """Return by name, in lower case, the spelling of each dimension for users and a function for its values."""
         layout = self.header.layout
         known: dict[str, tuple[str, Callable[[], np.ndarray]]] = {}
         for dimension in (one for one in DIMENSIONS.values() if self.has(one.name)):
@@ -287,7 +287,7 @@ class Cloud:
 
 
 def origin_before(low: np.ndarray) -> np.ndarray:
-    """Return the origin (3,), m, of what begins at an easting and northing ``low`` (2,), m."""
+    """Return the origin (3,), m, for coordinates from easting and northing ``low`` (2,), m."""
     return np.append(np.floor(low / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
 
 

@@ -27,7 +27,7 @@ from .header import (
 from .laspy_library import need_lazrs
 from .points import AT_ONCE
 
-# A node with no more points than this holds them all and has no children.
+# A node with at most this many points has no children.
 _LEAF_POINTS = 65_536
 # Levels of the grid within a node: 2^7 = 128 cells along its side. One point of each is shown at the node's level.
 _GRID_LEVELS = 7

@@ -1,4 +1,4 @@
-"""The index of a COPC file: which chunks of points may lie in a box."""
+"""The index of a COPC file: the chunks of points that may lie in a box."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ _DIGEST_AT, _DIGEST_SIZE = 8, 16
 # Positions (bytes) in that header of the name of the writing program and of the offsets to points and EVLRs, and the
 # size (bytes) of the header.
 _SOFTWARE_AT, _POINTS_AT, _EVLRS_AT, _HEADER_SIZE = 58, 96, 235, 375
-# Bytes that are read and digested at once, so that large files need little memory.
+# Size (bytes) of a portion for the digest, so that large files need little memory.
 _BLOCK = 1 << 20
 
 

@@ -34,17 +34,17 @@ from .units import (
 
 # User and record ids of the VLRs with WKT.
 _WKT = ((PROJECTION, 2112), (b"liblas", 2112))
-# WKT of real systems has some thousand bytes; a longer one takes seconds to parse and is taken for damage.
+# Longest WKT (bytes): real systems have some thousand; a longer one takes seconds to parse and counts as damage.
 _LONGEST_WKT = 1_000_000
 # Difference of the map's scale from 1 above which a warning names it: twice the difference at the edges of UTM zones.
 _NAMED_SCALE = 0.001
-# Scale, as a difference from 1, at which meters are those on the ground: no system for surveys has such a one within
-# its area, and world Mercator has it from 8 degrees of latitude on.
+# Scale, as a difference from 1, above which lengths are corrected to meters on the ground. No system for surveys
+# reaches it within its area; world Mercator does from 8 degrees of latitude on.
 _GROUND_SCALE = 0.01
 # Largest ratio of the scales of two directions: 1.06 at the edges of maps of continents, 1.007 in
 # the spherical Mercator.
 _LARGEST_DISTORTION = 1.1
-# Scales are multiples of this, so that parts of one cloud have the same.
+# Scales are rounded to multiples of this, so that parts of one cloud have the same scale.
 _STEP = 1e-4
 # Distance (m) of the positions that the scale is measured by from the middle, and the directions to them.
 _APART, _CROSS = 50.0, np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
@@ -56,7 +56,7 @@ _CODE = re.compile(r"[A-Za-z]{3,}:\w+(\+\d+)?")
 # Units of two readings of a system are one if they differ by no more than this share: US and international feet are.
 _SAME_UNIT = 1e-5
 
-# One sentence for every input, so that a chain shows it once: later steps inherit the lack from the first.
+# The same sentence for every input, so that a chain shows it once, as later steps inherit the lack.
 NO_CRS = "The input has no coordinate reference system; its coordinates are taken as meters."
 _ONLY_UNIT = "The input names a unit and no coordinate reference system; results have none either."
 _UNNAMED = "The coordinate reference system of the input has no definition that can be written; results name none."
@@ -139,7 +139,7 @@ def crs_of_text(text: str, authority: Optional[Authority] = None) -> Crs:
     if not text:
         return Crs(warnings=(NO_CRS,))
     if '"' not in text and not _CODE.fullmatch(text):
-        # Libraries take such texts for addresses and names of files, too, and would open them.
+        # Refuse such texts, as libraries would open them as addresses or names of files.
         return _unread(text)
     mended, warnings = with_named_units(text)
     known, is_code = authority.define(mended) if authority else None, '"' not in text

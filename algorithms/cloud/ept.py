@@ -21,11 +21,11 @@ from .point_formats import Layout
 from .printable import shown
 from .web_file import WebFile, fetch_files, is_on_web
 
-# How nodes are stored, by what their files end in: zstandard packs what binary nodes are.
+# Encodings of nodes with the extensions of their files; zstandard compresses binary nodes.
 _ENDINGS = {"laszip": "laz", "binary": "bin", "zstandard": "zst"}
 # Most nodes and pages of one hierarchy: ten times as many as the largest known data sets have.
 _MOST_NODES, _MOST_PAGES = 5_000_000, 20_000
-# In place of a number of points: the node begins a page of its own.
+# This value in place of a number of points means that the node begins a page of its own.
 _PAGE = -1
 # Most points of a node.
 _MOST_POINTS = 2**31 - 1
@@ -40,7 +40,7 @@ _LONGEST_NAME, _MOST_DIMENSIONS = 31, 300
 _SCALE = 0.001
 # Names of standard fields that differ from laspy's names in capitals.
 _NAMES = {"ScanAngleRank": "scan_angle", "ScanAngle": "scan_angle", "Infrared": "nir", "ScanChannel": "scanner_channel"}
-# Compact form of a name: without characters that PDAL and laspy write differently.
+# Compact form of a name, without the characters that PDAL and laspy spell differently.
 _FLAT = str.maketrans("", "", "_")
 
 
@@ -50,7 +50,7 @@ def is_ept(path: Path) -> bool:
 
 
 class Ept:
-    """What ept.json says: where the octree lies, how its nodes are stored, and what their points have.
+    """The content of ept.json: place of the octree, encoding of nodes, and dimensions of points.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class Ept:
                 "install it (pip install zstandard), or convert the points to COPC."
             )
         self.is_laz = self.kind == "laszip"
-        #: What shows whether a description on the web has changed; "" on this computer
+        #: Version of a description on the web, which shows whether it has changed; "" on this computer
         self.version = str(path.stat().st_mtime_ns or "") if is_on_web(path) else ""
         (self.low, self.high), self.bounds = ends
         #: Distance of the points that the root shows

@@ -59,7 +59,7 @@ class ExtraField:
 
     @property
     def is_plain(self) -> bool:
-        """Whether the numbers mean what they are: no scale and no offset."""
+        """Whether the numbers have neither scale nor offset."""
         descriptor = self.descriptor
         return self.is_scalar and descriptor.scale is None and descriptor.offset is None
 

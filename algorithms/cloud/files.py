@@ -36,7 +36,7 @@ from .points import (
 from .vpc import Named, read_tiles, tiles_of
 from .web_file import file_at, is_on_web
 
-# A box that no file touches: for what the first of the files on the web says of all.
+# A box that no file touches, to read only the header of the first file on the web.
 NOWHERE = np.full((2, 2), np.nan)
 
 # One sentence for every step of a chain.

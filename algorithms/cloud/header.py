@@ -1,4 +1,4 @@
-"""Header, VLRs and EVLRs of a LAS file: laspy's header, and as raw bytes what laspy would write anew or drop."""
+"""Header, VLRs and EVLRs of a LAS file: laspy's header, and the raw bytes that laspy would rewrite or drop."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ LARGEST_STEP = 2**31 - 1
 _KEPT_IN_MEMORY = 2**24
 # Bytes of a payload that are copied at once.
 _COPIED_AT_ONCE = 2**24
-# Doubles may be this many steps of the scale apart; some files are written with far too fine a scale.
+# Largest spacing of doubles (steps of the scale); some files have far too fine a scale.
 _COARSEST = 1000.0
 # Areas of cells whose sides are a smaller step are 0 in doubles.
 _LEAST_STEP = float(np.sqrt(np.finfo(float).tiny))
@@ -59,7 +59,7 @@ WAVEFORMS = (b"LASF_Spec", 65535)
 COPC_INFO, COPC_HIERARCHY = (b"copc", 1), (b"copc", 1000)
 # LAStools' index of the points by their positions in the file.
 LAX = (b"LAStools", 30)
-# Records that are wrong where points are compressed anew, and where they are others or in another order.
+# Records that become invalid when points are recompressed, and when they change or are reordered.
 OF_OLD_CHUNKS = (LASZIP, COPC_INFO, COPC_HIERARCHY)
 OF_OLD_POINTS = (*OF_OLD_CHUNKS, LAX)
 

@@ -1,4 +1,4 @@
-"""LAZ through laspy's backends, lazrs or laszip; what a file promises is held against its size first."""
+"""LAZ through laspy's backends, lazrs or laszip, after the claims of a file are checked against its size."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _SIZES = {6: 20, 7: 8, 8: 6, 9: 29, 10: 30, 11: 6, 12: 8, 13: 29}
 
 @dataclass
 class _Laz:
-    """A LAZ file whose promises are held against its size before anything is decompressed."""
+    """A LAZ file whose claims are checked against its size before anything is decompressed."""
 
     path: Path
     header: Header
@@ -99,7 +99,7 @@ class _Laz:
         return position
 
     def check_number(self, table_at: int, per_chunk: int) -> None:
-        """Hold the number of chunks against the bytes before the table, and the number of points against the chunks.
+        """Check the number of chunks against the bytes before the table, and the number of points against the chunks.
 
         Each chunk starts with one whole record.
         """
@@ -113,7 +113,7 @@ class _Laz:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold at most {held}")
 
     def check_chunks(self, table_at: int, record: bytes) -> np.ndarray:
-        """Hold the points and bytes of the chunk table against the file.
+        """Check the points and bytes of the chunk table against the file.
 
         Return position, bytes and number of points (m, 3) of each chunk, int64.
         """
@@ -136,7 +136,7 @@ class _Laz:
             raise truncated(self.path, "its LASzip record describes layered points without chunks")
 
     def check_layers(self, chunks: np.ndarray, record: bytes, stream: BinaryIO, origin: int = 0) -> None:
-        """Hold the sizes of the layers, which are allocated before they are read, against the sizes of their chunks.
+        """Check the sizes of the layers, which are allocated before they are read, against the sizes of their chunks.
 
         The stream begins at position ``origin`` of the file.
         """

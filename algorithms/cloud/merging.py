@@ -1,4 +1,4 @@
-"""Several clouds as one, whatever their scales, offsets, point formats and extra dimensions."""
+"""Merge clouds of any scales, offsets, point formats and extra dimensions."""
 
 from __future__ import annotations
 

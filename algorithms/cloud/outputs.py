@@ -33,7 +33,7 @@ _PREFIX, _SUFFIX = ".lb-", ".part"
 _NAME = re.compile(r"\.lb-([0-9a-f]{8})-.+\.part")
 LOCK = "lock"
 _OLD = "old"
-# What the system says of a lock that another program holds; any other error comes of a disk without locks.
+# Error numbers of a lock that another program holds; any other error means a disk without locks.
 _IS_HELD = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES, errno.EDEADLK)
 # A working folder younger than this (s) may belong to a run that has not locked it yet, which takes far less.
 _UNLOCKED = 2.0
@@ -111,7 +111,7 @@ def _identity(path: Path) -> tuple[int, ...]:
 
 
 class DiskFullError(ValueError):
-    """What a run had to write did not fit on the disk: nothing else that it writes will."""
+    """The disk is full: nothing else that the run writes will fit."""
 
 
 class KeptFailure(io.FileIO):
@@ -217,12 +217,12 @@ class _WorkingFolder:
 
     def remove(self) -> None:
         """Remove the folder, its lock last: a run that is killed here leaves what the next one recognizes."""
-        # Of a folder that somebody has removed meanwhile nothing is left to remove.
+        # If somebody has removed the folder meanwhile, nothing is left to do.
         for path in self.path.glob("*"):
             if path.is_dir():
                 shutil.rmtree(path, ignore_errors=True)
             elif path.name != LOCK:
-                # What another program holds is swept by a later run.
+                # A later run removes what another program still holds.
                 with suppress(OSError):
                     path.unlink()
         self._lock.close()

@@ -35,7 +35,7 @@ _MOST_BYTES_PER_BYTE = 10_000
 # Files that a warning names.
 _NAMED = 5
 
-# Points of a file, spread over it, that are held against the bounds in its header before anything is read.
+# Number of points, spread over a file, that are checked against the bounds in its header before anything is read.
 _PROBES = 16
 
 # A box in plan that all points lie in.
@@ -44,8 +44,8 @@ EVERYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
 # Bytes that are read at once of a file on the web without an index.
 _BUFFER = 2**22
 
-# Least share of the stated extent that points take on each axis, or all of them are measured: a bound that was never
-# set is 0, thousands of kilometers from the points.
+# If points take less than this share of the stated extent on an axis, all are measured: a bound that was never set is
+# 0, thousands of kilometers from the points.
 _LEAST_SHARE = 0.01
 
 

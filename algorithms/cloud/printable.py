@@ -1,4 +1,4 @@
-"""Texts of files in sentences to the user."""
+"""Show texts of files in sentences to the user."""
 
 from __future__ import annotations
 

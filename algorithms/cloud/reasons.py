@@ -96,7 +96,7 @@ _TEXTS = {
 
 
 class Evidence(IntEnum):
-    """What the decision on a cluster rests on."""
+    """Kinds of evidence in the decision on a cluster."""
 
     NONE = 0
     POINTS = 1

@@ -1,4 +1,4 @@
-"""Addresses on the web: which are read, how they are shown, and where redirections may lead."""
+"""Addresses on the web: those that may be read, their display, and redirections."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from .outputs import os_errors_as_messages, replacing
 _VARIABLE = "LIDARBUILDINGS_WEB_CACHE"
 # Bytes of all ranges in the folder: those written first are removed first.
 _MOST = 2 * 10**9
-# How the names of ranges end; no other file in the folder is removed.
+# Extension of kept ranges; no other file in the folder is removed.
 _ENDING = ".lidar-buildings-range"
 
 _folder = [os.environ.get(_VARIABLE, "")]

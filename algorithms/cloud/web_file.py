@@ -175,7 +175,7 @@ class _Content:
                 is_whole = is_short = False
             if reply.status in _REDIRECTIONS and redirections < _MOST_REDIRECTIONS:
                 leads = redirected(address, reply.location)
-                # Who knows the user at one server must not hear of it at another.
+                # A login for one server must not be sent to another.
                 login = login if same_server(leads, address) else ""
                 address, redirections = leads, redirections + 1
             elif is_short or reply.status in _AGAIN:

@@ -19,7 +19,7 @@ from ..stage import LayerFeatures, feature_names
 BUILDING, LEVEL, KIND, PATCH = "building", "lod", "kind", "patch"
 KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR, TERRAIN, SOFFIT)
 
-# Faces of less area (m²) are lines; without them a surface is closed still.
+# Faces below this area (m²) are lines; without them the surface is still closed.
 _LEAST_AREA = 1e-9
 
 # Levels of detail, of which files get their names.

@@ -27,7 +27,7 @@ _DEEPEST = 16
 # Rounding (m) of vertices to 24 bits, which stay within their box.
 _ROUNDED = 0.001
 
-# A coarser level that is hardly more off than the next finer one, by less (m) than this, is left out.
+# Leave out a coarser level if its error exceeds the next finer one's by less than this (m).
 _LEAST_ERROR = 0.1
 
 

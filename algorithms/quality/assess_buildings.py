@@ -1,4 +1,4 @@
-"""How good detected buildings are: against a reference, per point, per cell and per object."""
+"""Assess detected buildings against a reference, per point, per cell and per object."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How good all classes are: the confusion matrix against a reference, and what follows from it."""
+"""Assess all classes against a reference: the confusion matrix and the figures from it."""
 
 from __future__ import annotations
 

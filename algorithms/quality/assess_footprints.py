@@ -1,4 +1,4 @@
-"""How good the outlines of buildings are, building by building, against polygons that are trusted."""
+"""Assess outlines of buildings, one by one, against trusted polygons."""
 
 from __future__ import annotations
 

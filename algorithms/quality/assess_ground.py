@@ -1,4 +1,4 @@
-"""How good classified ground is, against a reference."""
+"""Assess classified ground against a reference."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far models of buildings are from the points of their roofs."""
+"""Assess models of buildings by the points of their roofs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How good segments are, against a reference: correct, over- and under-segmented, missed and noise."""
+"""Assess segments against a reference: correct, over- and under-segmented, missed and noise."""
 
 from __future__ import annotations
 

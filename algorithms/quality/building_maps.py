@@ -14,7 +14,7 @@ from ..geometry.rings import sampled_rings, signed_area
 from ..packages import spatial
 from ..stage import LayerFeatures, Monitor, feature_names
 
-# Footprints and a map that lie farther apart (m) show different areas, however incomplete each is.
+# Footprints and a map farther apart than this (m) show different areas, even if both are incomplete.
 _ELSEWHERE = 1000.0
 
 # Share of its area by which a polygon that winds twice, or the wrong way, differs from its overlap with itself.
@@ -23,7 +23,7 @@ _CROSSING = 0.01
 # Area (m²) below which a polygon is left out.
 _NO_AREA = 1e-6
 
-# How far around a building (m) a map shows by its other buildings that it has this area: a wide street or a small park.
+# A map covers an area within this distance (m) of its buildings: a wide street or a small park.
 _AROUND = 50.0
 
 # Distance (m) of positions along the outlines of a map: finer than any building.

@@ -162,8 +162,8 @@ class ChangedBlock:
         row = min(wide, key=lambda row: self._growth(row, mask), default=-1)
         old_side = sides.get(row, 0.0)
         new_side, number = max(((np.sum(self.wanted[near] == one) * least, one) for one in new), default=(0.0, 0))
-        # Walls of the map are known better than those that a survey has between roofs: a strip along one is the new
-        # building's beyond. Nodes of a strip lie a quarter of its depth from its sides.
+        # Walls of the map are more accurate than a survey's borders between roofs, so a strip along one belongs to the
+        # new building beyond it. Nodes of a strip lie a quarter of its depth from its sides.
         depth = 4 * RULES.step * ndimage.distance_transform_edt(mask)[mask].mean()
         if new_side > old_side or (new_side and depth < RULES.strip * self.width):
             return list(self.labels)[number - 1]

@@ -1,4 +1,4 @@
-"""How far the corners of buildings are from where an older map has them."""
+"""Compare corners of buildings with an older map."""
 
 from __future__ import annotations
 

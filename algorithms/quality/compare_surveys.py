@@ -1,4 +1,4 @@
-"""What has changed between the footprints of two surveys: buildings new, gone, or of another height or outline."""
+"""Compare the footprints of two surveys: buildings new, gone, or with another height or outline."""
 
 from __future__ import annotations
 

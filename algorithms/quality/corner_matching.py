@@ -17,7 +17,7 @@ _LEAST_TURN = 20.0
 # Largest difference in direction between corners that can be the same, degrees.
 _FACING = 60.0
 
-# No corner is looked for farther off (m) while the tolerance isn't known; most walls are longer.
+# Search radius (m) for corners before the tolerance is known; most walls are longer.
 FARTHEST = 3.0
 
 # Automatic tolerance (medians of the distances): where errors are normal, 99.8 % of the distances are less.
@@ -127,7 +127,7 @@ def match_corners(
 
 def typical_distance(distance: np.ndarray) -> float:
     """Return the median of the distances (up to 3 m) that are not by chance, 0 without any."""
-    # Pairs by chance are spread evenly in plan: how many there are shows where no others are left, far off.
+    # Random pairs are spread evenly in plan; their density shows at far distances, where no true pairs are left.
     ordered = np.sort(distance) / FARTHEST
     by_chance = min(float((ordered > _FAR_OFF).sum() / (1 - _FAR_OFF**2)), len(ordered))
     others = np.arange(1, len(ordered) + 1) - by_chance * ordered**2

@@ -1,4 +1,4 @@
-"""What becomes of each building of a map, and the points that decide on it."""
+"""Outcome for each building of a map, and the points that decide on it."""
 
 from __future__ import annotations
 

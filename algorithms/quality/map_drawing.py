@@ -1,4 +1,4 @@
-"""Buildings of a map drawn anew where they have changed: along old walls as far as these are right."""
+"""Redraw changed buildings of a map, along old walls as far as these are right."""
 
 from __future__ import annotations
 

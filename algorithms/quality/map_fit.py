@@ -1,4 +1,4 @@
-"""How an old map lies on new outlines: its shift, what it draws inside of eaves, and buildings that lie elsewhere."""
+"""Fit an old map to new outlines: its shift, the overhang of eaves, and displaced buildings."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _SAME_WAY = 0.7
 # Rounds of the fit; a shift of 3 m is found in five.
 _ROUNDS = 8
 
-# Deviation (m) from which on a position counts less, as in a fit of least absolute deviations.
+# Positions with a larger deviation (m) get less weight, as in a fit of least absolute deviations.
 _SURE = 0.1
 
 # Weight of the usual shift and overhang, as a share of the weight of the walls: it holds rows along their street.

@@ -1,4 +1,4 @@
-"""Bringing two classifications of the same points together."""
+"""Match two classifications of the same points."""
 
 from __future__ import annotations
 

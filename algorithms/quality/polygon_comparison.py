@@ -1,4 +1,4 @@
-"""Two layers of polygons compared building by building, and how square outlines are."""
+"""Compare two layers of polygons building by building, and measure the squareness of outlines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A map of buildings kept right: what has changed since it was drawn is drawn anew, everything else stays as it is."""
+"""Update a map of buildings: redraw what has changed, keep everything else as it is."""
 
 from __future__ import annotations
 

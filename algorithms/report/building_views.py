@@ -15,7 +15,7 @@ _WIDTH, _HEIGHT = 340, 240
 # Width of the surroundings of a building in its view, m.
 _AROUND = 4.0
 
-# Half of the thickness of a section, m: each roof has points in it where there is one per square meter.
+# Half of the thickness of a section, m: at one point per square meter each roof has points in it.
 _HALF = 1.0
 
 # Colors of the sections along and across a building.

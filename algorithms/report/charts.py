@@ -15,7 +15,7 @@ BLUE, YELLOW, RED, GRAY = "#004488", "#ddaa33", "#bb5566", "#bbbbbb"
 _WIDTH, _HEIGHT = 720, 320
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 50, 50
 
-# Narrower bars are not distinguishable, wider ones hide that there are two groups.
+# Bounds of the number of bars: narrower ones are not distinguishable, wider ones hide two groups.
 _MOST_BARS = 40
 _FEWEST_BARS = 20
 

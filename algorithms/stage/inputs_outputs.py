@@ -1,4 +1,4 @@
-"""What stages read and make besides points: declarations and contents of layers, rasters, files and reports."""
+"""Inputs and outputs of stages besides points: declarations and contents of layers, rasters, files and reports."""
 
 from __future__ import annotations
 

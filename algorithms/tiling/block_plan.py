@@ -1,4 +1,4 @@
-"""Which blocks a survey is worked on in: how large they are, and where."""
+"""Size and position of the blocks of a survey."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _BYTES_PER_POINT = 340
 # that was enlarged, and the main process need less than 4 GB.
 MOST_POINTS = 5_300_000
 
-# Sides of blocks are multiples of this, m: round numbers, and little smaller than what fits.
+# Sides of blocks are multiples of this, m: round numbers, little below what fits.
 _SIDE_STEP = 10.0
 
 # Least and greatest side unless a cloud is dense, m; smaller blocks would work mostly on what lies around them.
 _LEAST_SIDE, _MOST_SIDE = 100.0, 1600.0
 
-# Least side in dense clouds, in distances that are read around a block: the block is then a seventh of its window.
+# Least side in dense clouds, in reaches around a block: the block is then a seventh of its window.
 _LEAST_HALOS = 1.25
 
 # Larger blocks are advised where they save a third of the work or more.

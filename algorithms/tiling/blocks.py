@@ -25,8 +25,8 @@ NUMBERED = ("segment_id", "cluster_id")
 # Dimensions that hold the numbers of another one.
 REFERRING = {"wall_of": "cluster_id"}
 
-# Points up to this far (m) outside a block show which of its segments go on in the next one. Points of one segment are
-# closer together in any cloud that the methods are for (0.1 points/m² and more).
+# Points within this distance (m) outside a block show which of its segments continue in the next one. Points of one
+# segment are closer in any cloud that the methods support (0.1 points/m² and more).
 _BESIDE = 4.0
 
 # A window is enlarged where it cuts off features, to at most this many times its halo on a side.

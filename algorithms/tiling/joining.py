@@ -26,7 +26,7 @@ _EDGES_KEPT = 8
 # Fields with the number of a feature in its layer, and with the number of the cluster that it outlines.
 _ID, _CLUSTER = "id", "cluster_id"
 
-# The numbers of a block that has none.
+# The numbers of a block without any.
 _NO_NUMBERS = np.zeros(0, np.int64)
 
 # Returns the records inside and outside the edges of a block, by the position of the block.

@@ -1,4 +1,4 @@
-"""Rasters of a survey, of which each block made a part: without seams, and never whole in memory."""
+"""Rasters of a survey from the parts of its blocks: without seams, never whole in memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Worker processes of this machine: each with a connection of its own, so that one may end without the others.
+"""Worker processes of this machine, each with its own connection, so that one may end without the others.
 
 The pools of Python's library share one pipe between all processes: one that is killed leaves the others, and the
 program itself, waiting for each other. They also start their processes with the current folder on the search path and

@@ -1,4 +1,4 @@
-"""Which features of different blocks are the same one."""
+"""Match features of different blocks that are the same one."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def _shared_lines(
     positions = np.stack([start[short] - start[long], end[short] - start[long]], axis=1)
     along = np.einsum("kej,kj->ke", positions, way)
     shared = np.minimum(along.max(axis=1), length[long]) - np.maximum(along.min(axis=1), 0.0)
-    # Only where both are they must be at one position: an axis that is extended is less precise.
+    # Compare positions only where both axes extend: an extrapolated axis is less precise.
     step = np.diff(along, axis=1)[:, 0]
     near = _OFF * np.minimum(radius[one], radius[other])
     is_one = np.abs(radius[one] - radius[other]) < near

@@ -1,4 +1,4 @@
-"""What users set of a survey besides the parameters of the composite: titles and help of the dialog and the pages."""
+"""Settings of a run in tiles besides the parameters of the composite: titles and help for dialog and pages."""
 
 from __future__ import annotations
 

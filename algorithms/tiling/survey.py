@@ -1,4 +1,4 @@
-"""A survey of many tiles as one cloud: which files it has, where they lie, and the points of any part of it."""
+"""A survey of many tiles as one cloud: its files with their boxes, and the points of any part."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class Survey:
         """Least easting and northing (2,) of the files, m from ``origin``, also where only an extent is read."""
         low = np.min([source.header.low[:2] for source in self.sources], axis=0)
         scale, offset, unit = self.header.scale[:2], self.header.offset[:2], self.crs.horizontal
-        # As a cloud has its coordinates, to the last bit: no point lies before the first cell.
+        # Computed like the coordinates of a cloud, to the last bit, so that no point lies before the first cell.
         return np.rint((low - offset) / scale) * (scale * unit) + (offset * unit - self.origin[:2])
 
     @cached_property

@@ -1,4 +1,4 @@
-"""How a survey was sampled, measured before it is worked on in blocks, and the values that blocks take of the whole."""
+"""Measure the sampling of a survey, and the values that blocks take from the whole, before its blocks are processed."""
 
 from __future__ import annotations
 

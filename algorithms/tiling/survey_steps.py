@@ -1,4 +1,4 @@
-"""Steps that a run in tiles leaves to the whole survey: they work on its layers, and make its pages."""
+"""Run the steps of a composite that work on the layers of the whole survey and make its pages."""
 
 from __future__ import annotations
 

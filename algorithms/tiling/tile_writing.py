@@ -1,4 +1,4 @@
-"""Which tiles a run writes: one for each file, or for each block of a large file that is cut by its index."""
+"""Write the tiles of a run: one for each file, or for each block of a large file that is cut by its index."""
 
 from __future__ import annotations
 

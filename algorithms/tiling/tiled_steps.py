@@ -1,4 +1,4 @@
-"""Which steps of a composite are run in blocks, which once for the whole survey, and which can't be run in tiles."""
+"""Sort the steps of a composite: run in blocks, run once for the whole survey, or not possible in tiles."""
 
 from __future__ import annotations
 
