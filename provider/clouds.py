@@ -81,7 +81,7 @@ class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
         self.setMetadata(_LISTED)
 
     def clone(self) -> CloudsParameter:
-        """Return a copy of this very type; the base class would return its own."""
+        """Return a copy of this subclass; QGIS's clone() returns the base class."""
         return self._as_this(CloudsParameter(self.name(), self.description()))
 
     def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
