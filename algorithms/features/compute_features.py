@@ -119,7 +119,7 @@ def compute_features(
     *,
     neighborhood: str = tunable(
         "nearest",
-        "Which points describe a point: a number of nearest ones, all within a radius, or as many nearest ones as "
+        "Points that describe a point: a number of nearest ones, all within a radius, or as many nearest ones as "
         "show the clearest shape (least eigenentropy), chosen for each point.",
         choices=("nearest", "radius", "optimal"),
     ),
@@ -144,7 +144,7 @@ def compute_features(
     ),
     neighbors_step: int = tunable(
         1,
-        "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
+        "Step between the neighborhoods that 'optimal' tries; larger steps are faster and coarser.",
         label="Step of nearest points",
         within="[1, 100]",
         advanced=True,

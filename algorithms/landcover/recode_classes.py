@@ -39,7 +39,7 @@ def recode_classes(
     *,
     codes: str = tunable(
         _ASPRS,
-        "Whose class codes are written: the codes of ASPRS, which all other steps read, or of the Dutch, the "
+        "Class codes that are written: the codes of ASPRS, which all other steps read, or of the Dutch, the "
         "French or the American survey.",
         label="Codes to write",
         choices=tuple(CODES),

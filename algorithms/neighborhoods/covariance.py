@@ -34,7 +34,7 @@ _DOUBTFUL = 1e-6
 
 
 class Neighborhood(Protocol):
-    """Which points describe a point: :class:`Nearest`, :class:`Within`, the best number, or as many as are wide."""
+    """The points that describe a point: :class:`Nearest`, :class:`Within`, the best number, or as many as are wide."""
 
     def check(self, xyz: np.ndarray, tree: Any) -> None:
         """Raise ValueError when the neighborhood does not suit the cloud."""

@@ -50,7 +50,7 @@ def classify_noise_histogram(
     ),
     bin_height: Optional[float] = tunable(
         None,
-        "Height of the bins; noise is parted from the scene by at least two empty ones.",
+        "Height of the bins; at least two empty ones separate noise from the scene.",
         within="[0.01, 1000] m",
         automatic=AUTOMATIC_BIN,
         advanced=True,

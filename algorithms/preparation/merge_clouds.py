@@ -60,7 +60,7 @@ def merge_clouds(
     *,
     transforms: str = tunable(
         "",
-        "Where the clouds after the first go, in their order and separated by semicolons; empty for a cloud that "
+        "Positions of the clouds after the first, in their order and separated by semicolons; empty for a cloud that "
         "stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order, "
         "counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, "
         "row by row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the "

@@ -53,7 +53,7 @@ def detect_cylinders(
     max_gap: float = tunable(
         1.0,
         "Longest part of an axis without points, behind a flange or in the shadow of another object, across which "
-        "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always parts them.",
+        "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always separates them.",
         within="[0, 100] m",
     ),
     search_in: str = SEARCH_IN,
@@ -69,7 +69,7 @@ def detect_cylinders(
     squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over
     enough of its circumference, without a bend and with little inside. The surface must end at the visible arc, unlike
     that of a kerb, which goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that
-    are parted by a flange or by the shadow of another object are put together, if one cylinder lies as close to the
+    a flange or the shadow of another object separates are put together, if one cylinder lies as close to the
     points of each as its own one.
 
     Parameters

@@ -28,7 +28,7 @@ def simulate_flight(
     ),
     scanners: str = tunable(
         "both",
-        "Whose points are wanted. Run twice with one scanner each, the same flight gives two clouds to be merged.",
+        "Scanners whose points are wanted. Two runs with one scanner each give two clouds of one flight, to be merged.",
         choices=("both", *SCANNERS),
     ),
     trees: int = tunable(4, "Trees along the street.", within="[0, 22]"),
