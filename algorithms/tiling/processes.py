@@ -1,4 +1,4 @@
-"""Worker processes of this machine, each with its own connection, so that one may end without the others.
+"""Worker processes of this machine, each with its own pipes, so that one may end without the others.
 
 The pools of Python's library share one pipe between all processes: one that is killed leaves the others, and the
 program itself, waiting for each other. They also start their processes with the current folder on the search path and
@@ -8,24 +8,23 @@ run the main program again in each. Both are unsafe where the current folder hol
 from __future__ import annotations
 
 import os
-import pickle  # nosec B403 - only to send: what comes back is read by the connection
 import subprocess  # nosec B404 - no shell, see below
 import sys
 import tempfile
 import time
 from collections.abc import Iterable
-from concurrent.futures import BrokenExecutor, Executor, Future
-from multiprocessing import Pipe
-from multiprocessing.connection import Connection
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Lock, Thread
+from threading import Lock, local
 from typing import Any, Callable, Optional
+
+from . import worker_process
 
 # The package as workers import it, its folder, and the program that they run.
 PACKAGE = __name__.split(".", maxsplit=1)[0]
 FOLDER = Path(__file__).resolve().parents[2]
-_PROGRAM = Path(__file__).with_name("worker_process.py")
+_PROGRAM = str(Path(__file__).with_name("worker_process.py"))
 
 # Seconds that an interpreter has to answer.
 _ANSWER = 15
@@ -59,74 +58,49 @@ class Processes(Executor):
     """
 
     def __init__(self, count: int, threads: int, distrusted: Iterable[Path] = ()) -> None:
-        self._count, self._threads = count, threads
+        self._threads, self._python = threads, own_python()
         self._search_path = _trusted(sys.path, {folder.resolve() for folder in distrusted})
-        self._calls: SimpleQueue = SimpleQueue()
-        self._servers: list[Thread] = []
+        # Each of these threads waits for a process of its own.
+        self._waiting, self._own = ThreadPoolExecutor(count), local()
         self._running: set[_Process] = set()
         self._lock, self._is_closed = Lock(), False
-        self._python = own_python()
 
     def submit(self, fn: Callable, /, *args: Any, **kwargs: Any) -> Future:
         """Have a process call a function of a module with positional arguments; return its future.
 
         The future raises what the function raised, :class:`WorkerEnded` or :class:`CannotStart`.
         """
-        if self._is_closed:
-            raise RuntimeError("The processes are shut down.")
-        future: Future = Future()
-        self._calls.put((future, fn, args))
-        if len(self._servers) < self._count:
-            self._servers.append(Thread(target=self._serve, daemon=True))
-            self._servers[-1].start()
-        return future
+        return self._waiting.submit(self._call, fn, args)
 
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End all processes; with ``cancel_futures`` at once, with whatever they work on."""
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
+        """End all processes at once, with whatever they work on."""
         with self._lock:
             self._is_closed = True
-            running = list(self._running) if cancel_futures else []
-        if cancel_futures:
-            for call in _drained(self._calls):
-                call[0].cancel()
-        for process in running:
-            process.kill()
-        for _ in self._servers:
-            self._calls.put(None)
-        for server in self._servers if wait else ():
-            server.join()
+            for process in self._running:
+                process.program.kill()
+        self._waiting.shutdown(wait, cancel_futures=cancel_futures)
+        for process in list(self._running):
+            self._end(process)
 
     def at_work(self) -> str:
         """Return the names of the processes at work, and since when, in words."""
         with self._lock:
-            running = sorted((process.number, process.seconds) for process in self._running)
+            running = sorted((one.program.pid, time.monotonic() - one.since) for one in self._running)
         said = [f"process {number} has been at work for {seconds:.0f} s" for number, seconds in running]
         return ", ".join(said) or "processes are being started"
 
-    def _serve(self) -> None:
-        """Have one process, and its successors, work on calls until there are no more."""
-        process: Optional[_Process] = None
-        while True:
-            call = self._calls.get()
-            if call is None:
-                break
-            future, function, arguments = call
-            if not future.set_running_or_notify_cancel():
-                continue
-            for _ in range(_ATTEMPTS):
-                try:
-                    process = process or self._started()
-                    future.set_result(process.call(function, arguments))
-                except (EOFError, ConnectionError):
-                    self._ended(process)
-                    process = None
-                    continue
-                except Exception as error:
-                    future.set_exception(error)
-                break
-            else:
-                future.set_exception(WorkerEnded())
-        self._ended(process)
+    def _call(self, function: Callable, arguments: tuple) -> Any:
+        """Return the result of a function in the process of this thread, or in its successor."""
+        for _ in range(_ATTEMPTS):
+            process: Optional[_Process] = getattr(self._own, "process", None)
+            try:
+                process = self._own.process = process or self._started()
+                return process.call(function, arguments)
+            except (EOFError, ConnectionError):
+                self._own.process = None
+                if process is not None:
+                    self._end(process)
+        raise WorkerEnded
 
     def _started(self) -> _Process:
         """Return a new process; none is started once the executor is shut down."""
@@ -138,57 +112,42 @@ class Processes(Executor):
         try:
             process.prepare(self._threads)
         except (CannotStart, EOFError, ConnectionError):
-            self._ended(process)
+            self._end(process)
             raise
         return process
 
-    def _ended(self, process: Optional[_Process]) -> None:
-        if process is not None:
-            process.end()
-            with self._lock:
-                self._running.discard(process)
+    def _end(self, process: _Process) -> None:
+        process.end()
+        with self._lock:
+            self._running.discard(process)
 
 
 class _Process:
-    """One process: a connection to it, and its messages where it can't start."""
+    """One process: the pipes to and from it, and its messages where it can't start."""
 
     def __init__(self, python: str, search_path: list[str]) -> None:
-        own, other = Pipe()
-        self._connection, self._python, self._search_path = own, python, search_path
+        self._python, self._search_path = python, search_path
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process runs
         inherited = os.environ.get("PYTHONPATH", "").split(os.pathsep)
-        environment = {
-            **os.environ,
-            "PYTHONSAFEPATH": "1",
-            "PYTHONPATH": os.pathsep.join(one for one in inherited if one in search_path),
-        }
+        kept = os.pathsep.join(one for one in inherited if one in search_path)
+        # Signals of a terminal are for the main process: it ends the others.
+        apart: dict[str, Any] = {"start_new_session": True}
+        if os.name == "nt":
+            apart = {"creationflags": subprocess.CREATE_NO_WINDOW}  # type: ignore[attr-defined]
         try:
-            # Signals of a terminal are for the main process: it ends the others.
-            self._program = subprocess.Popen(  # nosec B603 - the interpreter that runs this, no shell
-                [python, str(_PROGRAM), str(other.fileno())],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
+            self.program = subprocess.Popen(  # nosec B603 - the interpreter that runs this, no shell
+                [python, _PROGRAM],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
                 stderr=self._errors,
-                env=environment,
-                **_inherits(other),
+                env={**os.environ, "PYTHONSAFEPATH": "1", "PYTHONPATH": kept},
+                **apart,
             )
         except OSError as error:
-            own.close()
             self._errors.close()
             raise CannotStart(_not_started(python, error.strerror or str(error))) from error
-        finally:
-            other.close()
-        self._since = time.monotonic()
-
-    @property
-    def number(self) -> int:
-        """The number that the system gave it."""
-        return self._program.pid
-
-    @property
-    def seconds(self) -> float:
-        """How long it has been at work on its call, or starting (s)."""
-        return time.monotonic() - self._since
+        #: When it began with its call, or was started (s)
+        self.since = time.monotonic()
 
     def prepare(self, threads: int) -> None:
         """Send the process the folder of its package; wait until it has imported it.
@@ -201,10 +160,9 @@ class _Process:
             If the system ends it.
         """
         try:
-            self._send((PACKAGE, str(FOLDER), self._search_path, threads))
-            self._connection.recv()
+            self._answer(PACKAGE, str(FOLDER), self._search_path, threads)
         except (EOFError, ConnectionError):
-            code = self._program.wait()
+            code = self.program.wait()
             self._errors.seek(0)
             lines = self._errors.read().decode(errors="replace").strip().splitlines()
             # A signal has a negative code; on Windows whoever ends a process chooses its code.
@@ -221,35 +179,35 @@ class _Process:
         EOFError, ConnectionError
             If the process ends before it has answered.
         """
-        self._since = time.monotonic()
-        self._send((function, arguments))
-        returned, value, trace = self._connection.recv()
+        self.since = time.monotonic()
+        returned, value, trace = self._answer(function, arguments)
         if returned:
             return value
         if isinstance(value, (EOFError, ConnectionError)):
-            # Of a file or a network drive, not of this connection.
+            # Of a file or a network drive, not of these pipes.
             raise OSError(str(value))
         raise value from RuntimeError(trace)
 
-    def _send(self, message: tuple) -> None:
-        """Send as :meth:`Connection.send` does, but from bytes: its buffer can't be freed when the process has ended.
-
-        Python reports that whenever it collects garbage (github.com/python/cpython/issues/111331).
-        """
-        self._connection.send_bytes(pickle.dumps(message))
-
-    def kill(self) -> None:
-        """End the process at once, whatever it works on."""
-        self._program.kill()
+    def _answer(self, *message: Any) -> Any:
+        """Send a message, and return the answer."""
+        try:
+            worker_process.send(self.program.stdin, message)
+        except OSError as error:
+            # Windows has another error where the process has ended.
+            raise ConnectionError(str(error)) from error
+        return worker_process.receive(self.program.stdout)
 
     def end(self) -> None:
-        """Close the connection, by which the process ends, and wait for that."""
-        self._connection.close()
+        """Close the pipes, by which the process ends, and wait for that."""
+        for pipe in (self.program.stdin, self.program.stdout):
+            # What could not be sent to a process that has ended.
+            with suppress(OSError):
+                pipe.close()  # type: ignore[union-attr]
         try:
-            self._program.wait(_END)
+            self.program.wait(_END)
         except subprocess.TimeoutExpired:
-            self._program.kill()
-            self._program.wait()
+            self.program.kill()
+            self.program.wait()
         self._errors.close()
 
 
@@ -286,26 +244,5 @@ def _trusted(search_path: Iterable[str], distrusted: set[Path]) -> list[str]:
     return [entry for entry in absolute if Path(entry).resolve() not in distrusted]
 
 
-def _inherits(connection: Connection) -> dict[str, Any]:
-    """Return the arguments by which a new process inherits a connection, and nothing else."""
-    if os.name != "nt":
-        return {"pass_fds": (connection.fileno(),), "start_new_session": True}
-    handle = connection.fileno()
-    os.set_handle_inheritable(handle, True)  # type: ignore[attr-defined]
-    startup = subprocess.STARTUPINFO()  # type: ignore[attr-defined]
-    startup.lpAttributeList = {"handle_list": [handle]}
-    return {"startupinfo": startup, "creationflags": subprocess.CREATE_NO_WINDOW}  # type: ignore[attr-defined]
-
-
 def _not_started(python: str, why: str) -> str:
     return f"Worker processes can't be started with {python} ({why}); set the number of processes to 1."
-
-
-def _drained(calls: SimpleQueue) -> list:
-    """Return the items of a queue, and empty it."""
-    found = []
-    while True:
-        try:
-            found.append(calls.get_nowait())
-        except Empty:
-            return found

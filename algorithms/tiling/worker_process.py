@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import pickle  # nosec B403 - between a program and the process that it has started
+import struct
 import sys
 import threading
 import traceback
@@ -19,30 +21,42 @@ from typing import Any
 _OWN_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
 # Exit code where the other end is gone.
 _GONE = 1
+# The size of a message (bytes), which comes before it.
+_SIZE = struct.Struct("<Q")
 
 
 def main() -> None:
-    """Serve the process at the other end of the connection until it closes it, or ends."""
+    """Serve the process at the other end of the pipes until it closes them, or ends."""
     sys.path[:] = [folder for folder in sys.path if folder not in ("", _OWN_FOLDER)]
-    connection = _connected(int(sys.argv[1]))
-    package, folder, search_path, threads = connection.recv()
+    # What libraries print goes nowhere.
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    package, folder, search_path, threads = receive(sys.stdin.buffer)
     sys.path[:] = search_path
     _register(package, folder)
     importlib.import_module(f"{package}.algorithms.threads").use_threads(threads)
     calls: SimpleQueue = SimpleQueue()
-    threading.Thread(target=_receive, args=(connection, calls), daemon=True).start()
-    connection.send(None)
+    threading.Thread(target=_receive, args=(calls,), daemon=True).start()
+    send(answers, None)
     while True:
-        function, arguments = calls.get()
-        _answer(connection, function, arguments)
+        _answer(answers, *calls.get())
 
 
-def _connected(number: int) -> Any:
-    """Return the connection with the number of the file or, on Windows, the handle that was inherited."""
-    from multiprocessing import connection
+def send(pipe: Any, message: Any) -> None:
+    """Send a message to the process at the other end."""
+    data = pickle.dumps(message)
+    pipe.write(_SIZE.pack(len(data)))
+    pipe.write(data)
+    pipe.flush()
 
-    kind = connection.PipeConnection if os.name == "nt" else connection.Connection  # type: ignore[attr-defined]
-    return kind(number)
+
+def receive(pipe: Any) -> Any:
+    """Return the next message; raise EOFError where the other end is closed or its process is gone."""
+    head = pipe.read(_SIZE.size)
+    data = pipe.read(*_SIZE.unpack(head)) if len(head) == _SIZE.size else b""
+    if not data or len(data) < _SIZE.unpack(head)[0]:
+        raise EOFError
+    return pickle.loads(data)  # nosec B301 - see above
 
 
 def _register(package: str, folder: str) -> None:
@@ -55,26 +69,26 @@ def _register(package: str, folder: str) -> None:
     spec.loader.exec_module(sys.modules[package])
 
 
-def _receive(connection: Any, calls: SimpleQueue) -> None:
+def _receive(calls: SimpleQueue) -> None:
     """Forward calls; exit at once when the parent closes the pipe or dies."""
     try:
         while True:
-            calls.put(connection.recv())
+            calls.put(receive(sys.stdin.buffer))
     except (EOFError, OSError):
         os._exit(_GONE)
 
 
-def _answer(connection: Any, function: Any, arguments: tuple) -> None:
+def _answer(answers: Any, function: Any, arguments: tuple) -> None:
     """Call a function, and send whether it returned, what it returned or raised, and the traceback."""
     try:
         answer = True, function(*arguments), ""
     except Exception as error:
         answer = False, error, traceback.format_exc()
     try:
-        connection.send(answer)
+        send(answers, answer)
     except (TypeError, AttributeError, ValueError) as error:
         # What can't be sent is an error of the program.
-        connection.send((False, RuntimeError(f"{answer[1]!r} can't be sent: {error}"), answer[2]))
+        send(answers, (False, RuntimeError(f"{answer[1]!r} can't be sent: {error}"), answer[2]))
 
 
 if __name__ == "__main__":
