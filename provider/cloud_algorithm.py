@@ -66,7 +66,7 @@ from .inputs import (
     spacing_parameter,
     subject_of,
 )
-from .layer_outputs import write_layer
+from .layer_outputs import write_layer, write_text
 from .memory_needs import warn_if_memory_is_short
 from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_clouds
 from .places import Place, place_of_cloud, place_of_layers
@@ -75,7 +75,6 @@ from .rasters import write_raster
 from .run_log import RunLog, about_run, write_page
 from .run_outputs import all_in_place, check_targets, write_for_qgis
 from .styles import cloud_style, layer_style, show_on_load
-from .text_files import write_text
 from .web import check_sizes, tell_sizes
 
 
@@ -292,7 +291,7 @@ class _Writer:
         if isinstance(declared, Raster):
             return self._write_raster(made.name, declared, results.rasters[made.key], monitor)
         if isinstance(declared, TextFile):
-            return write_text(self.given, declared, results.files[made.key], self.place, monitor)
+            return write_text(self.given, made.name, declared, results.files[made.key], self.place, monitor)
         cloud = results.cloud if made.key == CLOUD else results.clouds[made.key]
         return self._write_cloud(made, cloud, monitor) if cloud is not None else {}
 

@@ -7,8 +7,6 @@ thread that made it (see :func:`.crs.is_hollow`). GDAL, by which QGIS reads and 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import lru_cache, partial
 from typing import Optional
 
@@ -26,7 +24,7 @@ from ..algorithms.cloud.authority import (
     without_code,
 )
 from ..algorithms.cloud.crs import CrsReader, read_crs
-from .memory_files import memory_folder
+from .memory_files import gdal_errors, memory_folder
 
 # LAS 1.4 asks for WKT 1; WKT 2 has words for all systems.
 _WKT1, _WKT2 = ["FORMAT=WKT1_GDAL"], ["FORMAT=WKT2_2019"]
@@ -52,12 +50,19 @@ def text_of(crs: QgsCoordinateReferenceSystem) -> str:
 class _Gdal:
     """Systems by GDAL."""
 
+    @lru_cache(maxsize=256)  # noqa: B019 - there is one for the life of the process
     def define(self, text: str, keys: tuple[tuple[int, bytes], ...] = ()) -> Optional[Definition]:
-        return _defined(text, keys)
+        # As texts, which outlive the thread.
+        try:
+            with gdal_errors():
+                whole = _system(text) if text else _of_keys(keys)
+                return None if whole is None else _definition(whole)
+        except RuntimeError:
+            return None
 
     def to_radians(self, plane: str, positions: np.ndarray) -> tuple[np.ndarray, Optional[Area]]:
         nowhere = np.full(np.shape(positions), np.inf)
-        with _errors():
+        with gdal_errors():
             system = _system(plane)
             if not system.IsProjected():
                 return nowhere, None
@@ -78,17 +83,6 @@ class _Gdal:
 
 GDAL = _Gdal()
 use_authority(GDAL)
-
-
-@lru_cache(maxsize=256)
-def _defined(text: str, keys: tuple[tuple[int, bytes], ...]) -> Optional[Definition]:
-    """Return the system of a text or of GeoKeys, as texts, which outlive the thread."""
-    try:
-        with _errors():
-            whole = _system(text) if text else _of_keys(keys)
-            return None if whole is None else _definition(whole)
-    except RuntimeError:
-        return None
 
 
 def _system(text: str) -> osr.SpatialReference:
@@ -161,21 +155,3 @@ def _image(keys: tuple[tuple[int, bytes], ...]) -> bytes:
         directory += struct.pack("<HHI", tag, kind, count) + at
         values += data + b"\0" * (len(data) % 2) if len(data) > 4 else b""
     return struct.pack("<2sHIH", b"II", 42, 8, len(tags)) + directory + bytes(4) + values
-
-
-@contextmanager
-def _errors() -> Iterator[None]:
-    """Have GDAL raise errors and print nothing, whatever it does elsewhere in QGIS."""
-    before = osr.GetUseExceptions(), gdal.GetUseExceptions()
-    osr.UseExceptions()
-    gdal.UseExceptions()
-    gdal.PushErrorHandler("CPLQuietErrorHandler")
-    try:
-        yield
-    finally:
-        gdal.PopErrorHandler()
-        # In the reverse order, or GDAL refuses.
-        if not before[1]:
-            gdal.DontUseExceptions()
-        if not before[0]:
-            osr.DontUseExceptions()

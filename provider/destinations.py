@@ -14,7 +14,6 @@ from qgis.core import (
 
 from ..algorithms.stage import CLOUD, Declared, Layer, Raster, Stage, TextFile
 from .inputs import with_help
-from .text_files import file_parameter
 from .vectors import SOURCE_TYPES
 
 
@@ -47,8 +46,9 @@ class Made:
             made = QgsProcessingParameterRasterDestination(self.name, self.title, optional=self.optional)
             with_help(made, "A GeoTIFF, tiled and compressed.")
         elif isinstance(declared, TextFile):
-            made = file_parameter(declared)
-            made.setDescription(self.title)
+            filters = ";;".join(f"{called} (*{' *'.join(endings)})" for called, endings in declared.formats.items())
+            made = QgsProcessingParameterFileDestination(self.name, self.title, filters, optional=True)
+            with_help(made, f"A file: {' / '.join(declared.formats)}, as its name ends.")
         elif declared == CLOUD:
             made = QgsProcessingParameterPointCloudDestination(self.name, self.title, optional=self.optional)
             with_help(made, "A .las, .laz or .copc.laz file.")

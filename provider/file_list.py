@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -44,13 +43,8 @@ class FileList(QWidget):
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.addWidget(self.list, 0, 0, 5, 1)
-        for row, (text, slot) in enumerate(
-            (
-                ("Files…", self._add_files),
-                ("Folder…", self._add_folder),
-                ("Remove", self._remove),
-            )
-        ):
+        slots = {"Files…": self._add_files, "Folder…": self._add_folder, "Remove": self._remove}
+        for row, (text, slot) in enumerate(slots.items()):
             button = QPushButton(text)
             button.clicked.connect(slot)
             grid.addWidget(button, row, 1)
@@ -81,9 +75,6 @@ class FileList(QWidget):
         )
         self._keep([folder] if folder else [])
 
-    def _add_layer(self, source: str, *_: Any) -> None:
-        self.add([source])
-
     def _keep(self, names: list[str]) -> None:
         self.add(names)
         if names:
@@ -96,7 +87,8 @@ class FileList(QWidget):
     def _fill_menu(self) -> None:
         self.layers.menu().clear()
         for layer in clouds_of_project():
-            self.layers.menu().addAction(layer.name(), partial(self._add_layer, layer.source()))
+            action = self.layers.menu().addAction(layer.name())
+            action.triggered.connect(lambda _, layer=layer: self.add([layer.source()]))
 
 
 def clouds_of_project() -> list[QgsMapLayer]:

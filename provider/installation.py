@@ -37,7 +37,7 @@ from .dependencies import (
     system_command,
 )
 from .paths import PLUGIN
-from .questions import is_answered_yes
+from .questions import is_answered_yes, push_with_button
 from .run_log import plugin_version
 
 _VERSIONS = ("numpy", *packages.REQUIRED.values(), "lazrs")
@@ -61,10 +61,9 @@ def installation_text() -> str:
     )
 
 
-def show_installation(parent: Optional[QWidget]) -> None:
+def show_installation(iface: Any) -> None:
     """Show what is installed, and offer to install what is missing."""
-    dialog = InstallationDialog(parent)
-    dialog.exec()
+    InstallationDialog(iface.mainWindow()).exec()
 
 
 class InstallationDialog(QDialog):
@@ -101,11 +100,8 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
     absent = packages.absent()
     by_system = system_command(absent)
     if by_system:
-        QMessageBox.information(
-            parent,
-            SOFTWARE,
-            f"Packages of the system have to be installed in a terminal, then QGIS be started again:\n\n{by_system}",
-        )
+        what = "Packages of the system have to be installed in a terminal, then QGIS be started again"
+        QMessageBox.information(parent, SOFTWARE, f"{what}:\n\n{by_system}")
         return False
     if not absent or not (ask or (lambda command: _is_wanted(parent, command)))(shown_command(absent)):
         return not absent
@@ -161,41 +157,18 @@ def _find_new_packages() -> None:
 
 def warn_at_start(iface: Any) -> Callable[[], None]:
     """Show a message with a button where the algorithms can't run; return what takes it away again."""
-    return _StartMessage(iface).remove if packages.missing(packages.ESSENTIAL) else lambda: None
+    missing = packages.missing(packages.ESSENTIAL)
+    if not missing:
+        return lambda: None
+    text = f"Python packages are missing or too old: {', '.join(missing)}."
+    level = Qgis.MessageLevel.Warning
+    return push_with_button(iface, SOFTWARE, text, "Install…", lambda: _installed(iface.mainWindow()), level)
 
 
-class _StartMessage:
-    """The message that packages are missing.
-
-    The object has to live as long as its button: Python removes objects that only a signal refers to.
-    """
-
-    def __init__(self, iface: Any) -> None:
-        self.iface = iface
-        text = f"Python packages are missing or too old: {', '.join(packages.missing(packages.ESSENTIAL))}."
-        self.item = iface.messageBar().createMessage(SOFTWARE, text)
-        self.button = QPushButton("Install…", self.item)
-        self.button.clicked.connect(self.install)
-        self.item.layout().addWidget(self.button)
-        iface.messageBar().pushWidget(self.item, Qgis.MessageLevel.Warning)
-
-    def install(self) -> None:
-        """Install what is missing; then the message has done its work."""
-        if install_missing(self.iface.mainWindow()):
-            self.remove()
-            _refresh()
-
-    def remove(self) -> None:
-        """Take the message away, if the user has not."""
-        try:
-            self.iface.messageBar().popWidget(self.item)
-        except RuntimeError:
-            # Qt has deleted it with the bar.
-            return
-
-
-def _refresh() -> None:
-    """Have the toolbox ask again which algorithms can run."""
+def _installed(parent: Optional[QWidget]) -> bool:
+    """Install what is missing; return whether all is there, and have the toolbox ask then which algorithms can run."""
+    is_complete = install_missing(parent)
     provider = QgsApplication.processingRegistry().providerById(PROVIDER_ID)
-    if provider is not None:
+    if is_complete and provider is not None:
         provider.refreshAlgorithms()
+    return is_complete

@@ -1,20 +1,17 @@
-"""Layers that algorithms make, written to the outputs that the user chose."""
+"""Layers and text files that algorithms make, written to the outputs that the user chose."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
 
-from qgis.core import (
-    QgsCoordinateReferenceSystem,
-    QgsFeatureSink,
-    QgsProcessingException,
-)
+from qgis.core import QgsCoordinateReferenceSystem, QgsCsException, QgsFeatureSink, QgsProcessingException
 
-from ..algorithms.stage import Layer, LayerFeatures, Monitor
+from ..algorithms.cloud.outputs import replacing
+from ..algorithms.stage import FileContent, Layer, LayerFeatures, MapFrame, Monitor, TextFile
 from .given import Given
 from .places import Place
-from .qgis_crs import crs_of
+from .qgis_crs import crs_of, to_degrees
 from .run_outputs import target_path, through_memory
 from .styles import layer_style, show_on_load, store_styles, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
@@ -28,7 +25,7 @@ _UNDEFINED = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1],AXIS["Easting",
 GPKG = ".gpkg"
 
 # Features, or pieces of a text, that are written between two looks at whether to stop.
-BETWEEN_CHECKS = 1000
+_BETWEEN_CHECKS = 1000
 
 
 def write_layer(given: Given, name: str, layer: Layer, features: LayerFeatures, place: Place, monitor: Monitor) -> dict:
@@ -79,7 +76,7 @@ def _fill_sink(given: Given, name: str, layer: Layer, features: LayerFeatures, p
         raise QgsProcessingException(given.algorithm.invalidSinkError(given.parameters, name))
     try:
         for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
-            if row % BETWEEN_CHECKS == 0:
+            if row % _BETWEEN_CHECKS == 0:
                 monitor.progress(1.0)
             if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
                 raise QgsProcessingException(_unwritten(layer, target, sink))
@@ -95,3 +92,27 @@ def _unwritten(layer: Layer, target: str, sink: QgsFeatureSink) -> str:
     """Return why a layer can't be written, with the reason that its format gives, if any."""
     why = f" ({sink.lastError()})" if sink.lastError() else ""
     return f"{layer.title} can't be written to {target}{why}; free some space or choose another folder."
+
+
+def write_text(given: Given, name: str, file: TextFile, content: FileContent, place: Place, monitor: Monitor) -> dict:
+    """Write a text file, such as CityJSON and GLB, if it is wanted, to the output ``name``; return it by that name."""
+    target = given.read("FileOutput", name) if given.has(name) else ""
+    if not target:
+        return {}
+    path = Path(target)
+    frame = MapFrame(place.to_map, place.code, to_degrees(place.crs, given.context), path.name.split(".")[0])
+    try:
+        with replacing(path) as stream:
+            for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
+                if number % _BETWEEN_CHECKS == 0 or isinstance(piece, tuple):
+                    monitor.progress(0.0)
+                if isinstance(piece, tuple):
+                    # Into the working folder of the run, from which it is put in place with the file.
+                    path.with_name(piece[0]).write_bytes(piece[1])
+                else:
+                    stream.write(piece.encode() if isinstance(piece, str) else piece)
+    except QgsCsException as error:
+        raise ValueError(
+            f"The models lie outside of {place.crs.userFriendlyIdentifier()}; check the coordinate reference system."
+        ) from error
+    return {name: target}

@@ -1,4 +1,4 @@
-"""Files that GDAL makes in memory before they are written to a disk.
+"""Files that GDAL makes in memory before they are written to a disk, and its errors.
 
 When a disk is full, GDAL fails at closing a file, where it reports no error. Files copied from memory by this module
 are complete, or copying raises the error of the system.
@@ -12,12 +12,30 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from osgeo import gdal
+from osgeo import gdal, osr
 
 from ..algorithms.cloud.outputs import os_errors_as_messages
 
 # Bytes that are copied at once: 16 MiB.
 _PIECE = 2**24
+
+
+@contextmanager
+def gdal_errors() -> Iterator[None]:
+    """Have GDAL raise errors and print nothing, whatever it does elsewhere in QGIS."""
+    before = osr.GetUseExceptions(), gdal.GetUseExceptions()
+    osr.UseExceptions()
+    gdal.UseExceptions()
+    gdal.PushErrorHandler("CPLQuietErrorHandler")
+    try:
+        yield
+    finally:
+        gdal.PopErrorHandler()
+        # In the reverse order, or GDAL refuses.
+        if not before[1]:
+            gdal.DontUseExceptions()
+        if not before[0]:
+            osr.DontUseExceptions()
 
 
 @contextmanager

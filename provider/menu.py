@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Callable, Optional
 
@@ -38,6 +39,16 @@ MENU = "LiDAR Buildings"
 # Text of the menu entry and of the button.
 FIND_IN_VIEW = "Find buildings in this view…"
 
+# Entries of the menu: text, icon, and the module and the function that are called. The first one is the button, too.
+_ENTRIES = (
+    (FIND_IN_VIEW, GROUP_ICONS / "buildings.svg", "menu", "open_dialog"),
+    ("Show models in 3D", GROUP_ICONS / "3d.svg", "view3d", "show_view"),
+    ("Review buildings…", GROUP_ICONS / "quality.svg", "review_dock", "show_review"),
+    ("Open sample data", GROUP_ICONS / "simulation.svg", "sample", "open_sample"),
+    ("First steps", ICON, "menu", "show_first_steps"),
+    ("Check installation…", ICON, "installation", "show_installation"),
+)
+
 # Points that it works on in a minute, from file to file, on the slowest computer that it was measured on (2 cores).
 _POINTS_PER_MINUTE = 2_000_000
 
@@ -47,14 +58,9 @@ _REVIEWED = ("footprints", "updated_map")
 
 def add_menu(iface: Any) -> Callable[[], None]:
     """Add the menu and the toolbar button; return what takes them away again."""
-    find = _action(iface, FIND_IN_VIEW, GROUP_ICONS / "buildings.svg", lambda: open_dialog(iface))
+    actions = [_action(iface, *entry) for entry in _ENTRIES]
+    find = actions[0]
     find.setToolTip("Find the buildings of the active point cloud within the map view")
-    view = _action(iface, "Show models in 3D", GROUP_ICONS / "3d.svg", lambda: _show_in_3d(iface))
-    review = _action(iface, "Review buildings…", GROUP_ICONS / "quality.svg", lambda: _review(iface))
-    sample = _action(iface, "Open sample data", GROUP_ICONS / "simulation.svg", lambda: _open_sample(iface))
-    check = _action(iface, "Check installation…", ICON, lambda: _check_installation(iface))
-    steps = _action(iface, "First steps", ICON, lambda: _show_first_steps(iface))
-    actions = (find, view, review, sample, steps, check)
     for action in actions:
         iface.addPluginToMenu(MENU, action)
     iface.addToolBarIcon(find)
@@ -85,31 +91,15 @@ def offer_reviews(iface: Any) -> Callable[[], None]:
     return lambda: WHEN_LOADED.remove(offer)
 
 
-def _action(iface: Any, text: str, icon: Path, run: Callable[[], None]) -> QAction:
+def _action(iface: Any, text: str, icon: Path, module: str, function: str) -> QAction:
+    """Return an entry that calls a function with QGIS's windows; its module is imported then."""
     action = QAction(QIcon(str(icon)), text, iface.mainWindow())
-    action.triggered.connect(run)
+    action.triggered.connect(lambda: getattr(import_module(f".{module}", __package__), function)(iface))
     return action
 
 
-def _show_in_3d(iface: Any) -> None:
-    from .view3d import show_view
-
-    show_view(iface)
-
-
-def _review(iface: Any) -> None:
-    from .review_dock import show_review
-
-    show_review(iface)
-
-
-def _open_sample(iface: Any) -> None:
-    from .sample import open_sample
-
-    open_sample(iface)
-
-
-def _show_first_steps(iface: Any) -> None:
+def show_first_steps(iface: Any) -> None:
+    """Show the page with the way to a first result."""
     page = QTextBrowser(iface.mainWindow())
     page.setWindowFlags(Qt.WindowType.Window)
     page.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -117,12 +107,6 @@ def _show_first_steps(iface: Any) -> None:
     page.setSource(QUrl.fromLocalFile(str(PLUGIN / "docs" / "first_steps.md")))
     page.resize(1060, 800)  # pixels: its pictures are 1000 wide
     page.show()
-
-
-def _check_installation(iface: Any) -> None:
-    from .installation import show_installation
-
-    show_installation(iface.mainWindow())
 
 
 def open_dialog(iface: Any) -> None:

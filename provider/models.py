@@ -118,20 +118,15 @@ def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
 
     The designer runs a model with QGIS's own parameters; those for layers take no LAS and LAZ where QGIS has no PDAL.
     """
+    others = []
     if pipeline.compared is not None:
-        both = (
-            (INPUT, pipeline.input_title, False),
-            (REFERENCE, pipeline.compared.reference_title, not pipeline.needs_reference),
-        )
-        return [
-            QgsProcessingParameterFile(name, title, optional=optional, fileFilter=FILTER)
-            for name, title, optional in both
-        ]
-    if pipeline.merges:
+        title, optional = pipeline.compared.reference_title, not pipeline.needs_reference
+        others = [QgsProcessingParameterFile(REFERENCE, title, optional=optional, fileFilter=FILTER)]
+    elif pipeline.merges:
         return [QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", Qgis.ProcessingSourceType.File)]
     if not pipeline.reads_cloud:
         return []
-    return [QgsProcessingParameterFile(INPUT, pipeline.input_title, fileFilter=FILTER)]
+    return [QgsProcessingParameterFile(INPUT, pipeline.input_title, fileFilter=FILTER), *others]
 
 
 def output_title(pipeline: Pipeline, output: Output) -> str:

@@ -84,17 +84,14 @@ def _boolean(tunable: Tunable) -> QgsProcessingParameterDefinition:
 
 def _word(tunable: Tunable) -> QgsProcessingParameterDefinition:
     if tunable.param.choices:
-        return _enum(tunable, several=False)
+        return _enum(tunable)
     return QgsProcessingParameterString(
         parameter_name(tunable), label(tunable), tunable.default, optional=not tunable.default
     )
 
 
-def _words(tunable: Tunable) -> QgsProcessingParameterDefinition:
-    return _enum(tunable, several=True)
-
-
-def _enum(tunable: Tunable, several: bool) -> QgsProcessingParameterDefinition:
+def _enum(tunable: Tunable) -> QgsProcessingParameterDefinition:
+    several = tunable.type is tuple
     default = list(tunable.default) if several and tunable.default is not None else tunable.default
     # Static strings: a saved model keeps the word, not its position in today's list.
     return QgsProcessingParameterEnum(
@@ -108,7 +105,7 @@ def _enum(tunable: Tunable, several: bool) -> QgsProcessingParameterDefinition:
     )
 
 
-_MAKERS = {float: _number, int: _number, bool: _boolean, str: _word, tuple: _words}
+_MAKERS = {float: _number, int: _number, bool: _boolean, str: _word, tuple: _enum}
 
 
 def automatic_numbers(stage: Stage) -> list:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Callable
 
 from qgis.PyQt.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QToolButton, QWidget
@@ -47,12 +46,7 @@ def fill_with_classes(menu: QMenu, field: QLineEdit) -> None:
         action = menu.addAction(class_name(one))
         action.setCheckable(True)
         action.setChecked(int(one) in chosen)
-        action.toggled.connect(partial(_toggle, field, int(one)))
-
-
-def _toggle(field: QLineEdit, number: int, is_chosen: bool) -> None:
-    """Add a class to the text of a field, or take it away."""
-    field.setText(with_class(field.text(), number, is_chosen))
+        action.toggled.connect(lambda is_on, one=int(one): field.setText(with_class(field.text(), one, is_on)))
 
 
 def chosen_classes(text: str) -> set[int]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from qgis.core import QgsProcessingContext, QgsProcessingFeedback
@@ -10,7 +9,7 @@ from qgis.core import QgsProcessingContext, QgsProcessingFeedback
 from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.run import Results, run_pipeline
-from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster, TextFile
+from ..algorithms.stage import CLOUD, REPORT, Monitor, Raster
 from .cloud_algorithm import CloudAlgorithm, Read
 from .destinations import Made
 from .feedback import ChainMonitor
@@ -137,11 +136,8 @@ def pipeline_tunables(given: Given, pipeline: Pipeline) -> dict[str, Any]:
 
 def _made(pipeline: Pipeline, output: Output) -> Made:
     """Return how an output is declared and shown. Results of steps in between are made on request only."""
-    declared = output.declared
-    if isinstance(declared, TextFile):
-        declared = replace(declared, name=output.name)
     # Layers, such as footprints, may be all that is wanted.
     optional = output.name != CLOUD or any(other.of != CLOUD for other in pipeline.outputs)
     title, is_result = output_title(pipeline, output), output.name == CLOUD or _rank(output) < _INTERMEDIATE
     only_with = output.step.only_with
-    return Made(output.name.upper(), title, output.step.stage, declared, optional, is_result, only_with)
+    return Made(output.name.upper(), title, output.step.stage, output.declared, optional, is_result, only_with)

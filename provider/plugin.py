@@ -51,11 +51,8 @@ class Plugin:
         try:
             self._undo.append(add())
         except Exception as error:  # noqa: BLE001 - whatever another version of QGIS raises
-            QgsMessageLog.logMessage(
-                f"{what} is missing in this version of QGIS ({error}); all algorithms work without it.",
-                LOG,
-                Qgis.MessageLevel.Warning,
-            )
+            said = f"{what} is missing in this version of QGIS ({error}); all algorithms work without it."
+            QgsMessageLog.logMessage(said, LOG, Qgis.MessageLevel.Warning)
 
     def _with_iface(self, module: str, function: str) -> Callable[[], None]:
         """Call a function of a module that needs the windows of QGIS, where there are some."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any, Callable, Optional
 
 from qgis.core import Qgis
@@ -26,11 +27,19 @@ def is_answered_yes(parent: Optional[QWidget], title: str, text: str) -> bool:
     return question_box(parent, title, text).exec() == QMessageBox.StandardButton.Yes
 
 
-def push_with_button(iface: Any, title: str, text: str, label: str, run: Callable[[], Any]) -> None:
-    """Show a message above the map with a button, which closes it."""
+def push_with_button(
+    iface: Any, title: str, text: str, label: str, run: Callable[[], Any], level: Any = Qgis.MessageLevel.Info
+) -> Callable[[], None]:
+    """Show a message above the map with a button, which closes it unless ``run`` returns False; return what does."""
     item = iface.messageBar().createMessage(title, text)
     button = QPushButton(label, item)
-    button.clicked.connect(run)
-    button.clicked.connect(lambda: iface.messageBar().popWidget(item))
+
+    def remove() -> None:
+        # Qt may have deleted it with the bar.
+        with suppress(RuntimeError):
+            iface.messageBar().popWidget(item)
+
+    button.clicked.connect(lambda: remove() if run() is not False else None)
     item.layout().addWidget(button)
-    iface.messageBar().pushWidget(item, Qgis.MessageLevel.Info)
+    iface.messageBar().pushWidget(item, level)
+    return remove

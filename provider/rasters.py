@@ -14,7 +14,7 @@ from qgis.core import QgsCoordinateReferenceSystem
 from ..algorithms.cloud.outputs import os_errors_as_messages, replacing
 from ..algorithms.stage import Cancelled, Monitor, Raster, RasterSurface
 from ..algorithms.tiling.mosaics import RasterMosaic
-from .memory_files import copy_file, memory_folder
+from .memory_files import copy_file, gdal_errors, memory_folder
 from .places import Place
 
 # Extensions of file names that are written, the first one by default.
@@ -119,18 +119,14 @@ class _Progress:
 
 @contextmanager
 def _errors(path: Path, progress: _Progress) -> Iterator[None]:
-    """Have GDAL raise errors here, whatever it does elsewhere in QGIS, and raise the program's own in their place."""
-    before = gdal.GetUseExceptions()
-    gdal.UseExceptions()
+    """Have GDAL raise errors, and raise the program's own in their place."""
     try:
-        yield
+        with gdal_errors():
+            yield
     except RuntimeError as error:
         if progress.is_cancelled:
             raise Cancelled from None
         raise ValueError(f"{path} can't be made ({error}); choose larger cells.") from error
-    finally:
-        if not before:
-            gdal.DontUseExceptions()
 
 
 def _copy(image: gdal.Dataset, path: str, progress: _Progress) -> None:

@@ -118,13 +118,8 @@ def offer_review(iface: Any, layer: QgsVectorLayer, context: QgsProcessingContex
     if before is not None:
         changes = changes_between(before, layer)
         said += f" Since the review: {', '.join(f'{count} {kind}' for kind, count in changes.items())}."
-    push_with_button(
-        iface,
-        "LiDAR Buildings",
-        said,
-        "Review buildings…",
-        lambda: show_review(iface, QgsProject.instance().mapLayer(made)),
-    )
+    find = QgsProject.instance().mapLayer
+    push_with_button(iface, "LiDAR Buildings", said, "Review buildings…", lambda: show_review(iface, find(made)))
 
 
 class ReviewDock(QDockWidget):

@@ -34,7 +34,6 @@ from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
 from ..algorithms.tiling.tile_writing import SHOWN
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
 from ..algorithms.tiling.tiled_run import TilesOptions, TilesOutcome
-from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
 from .caller import is_step, on_command_line
@@ -59,7 +58,7 @@ from .inputs import (
     with_help,
     with_setting,
 )
-from .layer_outputs import write_layer
+from .layer_outputs import write_layer, write_text
 from .models import pipeline_parameters
 from .named_clouds import names_of_crs
 from .pipeline_algorithm import pipeline_tunables
@@ -70,7 +69,6 @@ from .run_outputs import all_in_place, check_targets, target_path
 from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, check_vpc, place_of_survey, write_survey
-from .text_files import write_text
 from .web import check_sizes, tell_sizes
 
 BLOCK_SIDE, PROCESSES, COMPRESSED, LOAD = "BLOCK_SIDE", "PROCESSES", "COMPRESSED", "LOAD"
@@ -219,7 +217,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         def take_file(survey: Survey, name: str, content: FileContent) -> None:
             part, place, file = monitor.part(_DONE, _DONE), place_of_survey(survey), declared.get(name)
             if isinstance(file, TextFile):
-                results.update(write_text(given, file, content, place, part))
+                results.update(write_text(given, name.upper(), file, content, place, part))
 
         return run_in_tiles(
             self.tiled.pipeline,
@@ -235,7 +233,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 spacing=self.spacing,
                 wanted=wanted,
                 find_layers=find_layers,
-                take_raster=take_raster if self.tiled.rasters else None,
+                take_raster=take_raster,
                 take_file=take_file,
                 shown=self.shows,
             ),
@@ -302,11 +300,9 @@ def _workers(given: Given) -> Workers:
 
 def _made(tiled: TiledPipeline) -> list[Made]:
     """Return the outputs other than the tiles."""
-    files = {name: file for name, (file, _) in files_of(tiled.pipeline).items()}
-    outputs = [*tiled.layers, *tiled.rasters, *tiled.files, *([tiled.report] if tiled.report else [])]
     made = []
-    for output in outputs:
-        stage, declared = output.step.stage, files.get(output.name, output.declared)
+    for output in tiled.outputs:
+        stage, declared = output.step.stage, output.declared
         title = stage.report_title if isinstance(declared, str) else declared.title
         made.append(Made(output.name.upper(), title, stage, declared))
     return made

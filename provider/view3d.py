@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import Any
 
+import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
@@ -21,6 +22,7 @@ from qgis.core import (
 )
 from qgis.gui import QgsProjectionSelectionDialog
 
+from ..algorithms.geometry.polygons import area_vector
 from .named_clouds import SIMULATED_CRS
 from .questions import push_with_button
 
@@ -107,12 +109,10 @@ def view_angles(layers: list[QgsMapLayer]) -> tuple[float, float]:
     Facades are upright polygons that look to one side, which the order of their corners says; walls of solids look to
     all sides.
     """
-    fronts = [normal for layer in layers for normal in _normals(layer)]
-    if not fronts:
-        return _PITCH, _YAW
-    east, north, up = (sum(normal[axis] for normal in fronts) for axis in range(3))
-    total = sum(math.sqrt(sum(part * part for part in normal)) for normal in fronts)
-    if math.hypot(east, north) < _ONE_SIDED * total or abs(up) > math.hypot(east, north):
+    fronts = np.array([normal for layer in layers for normal in _normals(layer)]).reshape(-1, 3)
+    east, north, up = fronts.sum(axis=0).tolist()
+    total = np.linalg.norm(fronts, axis=1).sum()
+    if not len(fronts) or math.hypot(east, north) < _ONE_SIDED * total or abs(up) > math.hypot(east, north):
         return _PITCH, _YAW
     return _PITCH_OF_FRONT, math.degrees(math.atan2(east, -north)) % 360.0
 
@@ -124,28 +124,15 @@ def _corners(layer: QgsMapLayer) -> Iterator[QgsPoint]:
             yield from feature.geometry().vertices()
 
 
-def _normals(layer: QgsMapLayer) -> Iterator[tuple[float, float, float]]:
-    """Yield the normals of the first polygons of a layer in space, as long as their areas (Newell's method)."""
+def _normals(layer: QgsMapLayer) -> Iterator[np.ndarray]:
+    """Yield the normals (3,) of the first polygons of a layer in space, as long as their areas."""
     if not isinstance(layer, QgsVectorLayer) or not QgsWkbTypes.hasZ(layer.wkbType()):
         return
     for feature in islice(layer.getFeatures(), _LOOKED_AT):
         for part in feature.geometry().constParts():
             ring = part.exteriorRing() if hasattr(part, "exteriorRing") else None
             if ring is not None:
-                corners = [(corner.x(), corner.y(), corner.z()) for corner in ring.points()]
-                yield _newell(corners)
-
-
-def _newell(corners: list[tuple[float, float, float]]) -> tuple[float, float, float]:
-    """Return the normal of a closed ring of corners, as long as the area."""
-    x, y, z = corners[0]
-    moved = [(one[0] - x, one[1] - y, one[2] - z) for one in corners]
-    pairs = list(zip(moved, moved[1:]))
-    return (
-        sum((a[1] - b[1]) * (a[2] + b[2]) for a, b in pairs) / 2,
-        sum((a[2] - b[2]) * (a[0] + b[0]) for a, b in pairs) / 2,
-        sum((a[0] - b[0]) * (a[1] + b[1]) for a, b in pairs) / 2,
-    )
+                yield area_vector(np.array([(corner.x(), corner.y(), corner.z()) for corner in ring.points()]))
 
 
 def layers_to_show(group: QgsLayerTree, visible: list[QgsMapLayer]) -> list[QgsMapLayer]:

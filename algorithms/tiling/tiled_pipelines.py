@@ -80,19 +80,12 @@ class TiledPipeline:
         return self.pipeline.needed_packages
 
     @property
-    def layers(self) -> list[Output]:
-        """The outputs that are layers."""
-        return [output for output in self.pipeline.outputs if isinstance(output.declared, Layer)]
-
-    @property
-    def rasters(self) -> list[Output]:
-        """The outputs that are rasters."""
-        return [output for output in self.pipeline.outputs if isinstance(output.declared, Raster)]
-
-    @property
-    def files(self) -> list[Output]:
-        """The outputs that are text files."""
-        return [output for output in self.pipeline.outputs if isinstance(output.declared, TextFile)]
+    def outputs(self) -> list[Output]:
+        """The outputs besides the tiles: layers, rasters, text files, and the report."""
+        made = [
+            one for kind in (Layer, Raster, TextFile) for one in self.pipeline.outputs if isinstance(one.declared, kind)
+        ]
+        return [*made, *([self.report] if self.report else [])]
 
     @property
     def report(self) -> Optional[Output]:
@@ -152,9 +145,7 @@ TILED_PIPELINES = {
 
 def tiled_pipeline_help(tiled: TiledPipeline) -> str:
     """Return the help of a composite in tiles, and of its steps, as HTML that QGIS's help pane shows."""
-    made = [output_text(tiled.pipeline, output) for output in (*tiled.layers, *tiled.rasters, *tiled.files)]
-    if tiled.report:
-        made.append(output_text(tiled.pipeline, tiled.report))
+    made = [output_text(tiled.pipeline, output) for output in tiled.outputs]
     tiles = (
         f"<b>OUTPUT</b>: a folder with a tile for each file, with {written_by(tiled.pipeline)}, and a virtual point "
         "cloud over all of them."

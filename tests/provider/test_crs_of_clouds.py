@@ -16,8 +16,9 @@ from lidar_buildings.algorithms.cloud.crs import crs_of_text, read_crs
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.header import WKT_BIT, Vlr, read_header
 from lidar_buildings.algorithms.cloud.point_formats import Layout
-from lidar_buildings.provider.crs_authority import GDAL, _errors
+from lidar_buildings.provider.crs_authority import GDAL
 from lidar_buildings.provider.layer_outputs import _UNDEFINED
+from lidar_buildings.provider.memory_files import gdal_errors
 from lidar_buildings.tests.algorithms.cloud.crs_texts import (
     COMPOUND_FEET,
     ETRS_32,
@@ -181,7 +182,7 @@ def test_exceptions_are_switched_off_in_the_reverse_order(qgis_application, monk
         monkeypatch.setattr(library, "GetUseExceptions", lambda: False)
         for call in ("UseExceptions", "DontUseExceptions"):
             monkeypatch.setattr(library, call, lambda one=f"{name}.{call}": calls.append(one))
-    with _errors():
+    with gdal_errors():
         pass
     first, second, third, last = calls
     assert (first.split(".")[0], second.split(".")[0]) == (last.split(".")[0], third.split(".")[0])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import Qt, QUrl
 from qgis.PyQt.QtGui import QTextDocument
-from qgis.PyQt.QtWidgets import QMainWindow, QMessageBox, QTextBrowser
+from qgis.PyQt.QtWidgets import QMainWindow, QMessageBox, QPushButton, QTextBrowser
 
 import lidar_buildings
 from lidar_buildings.algorithms import package_versions, packages
@@ -64,7 +65,7 @@ def test_the_menu_shows_the_first_steps_with_their_pictures():
         def mainWindow(self):
             return self.window
 
-    menu._show_first_steps(Window())
+    menu.show_first_steps(Window())
     page = Window.window.findChild(QTextBrowser)
     assert page.isVisible()
     assert "A first result" in page.toPlainText()
@@ -380,3 +381,25 @@ def test_the_button_opens_the_dialog_of_detect_buildings_and_keeps_it(provider, 
     monkeypatch.setattr(processing, "execAlgorithmDialog", lambda *arguments: opened.append(arguments))
     open_dialog(Interface(None, [], QgsRectangle(0, 0, 1, 1), "EPSG:28992"))
     assert opened == [("lidarbuildings:detectbuildings", {})]
+
+
+def test_a_message_says_what_is_missing_and_goes_when_it_is_installed(qgis_application, monkeypatch):
+    from qgis.gui import QgsMessageBar
+
+    bar, asked, missing = QgsMessageBar(), [], ["laspy"]
+    iface = SimpleNamespace(messageBar=lambda: bar, mainWindow=lambda: None)
+    monkeypatch.setattr(installation.packages, "missing", lambda needed: missing)
+    monkeypatch.setattr(installation, "install_missing", lambda parent: asked.append(1) or len(asked) > 1)
+    remove = installation.warn_at_start(iface)
+    button = bar.currentItem().findChild(QPushButton)
+    assert "laspy" in bar.currentItem().text()
+    assert bar.currentItem().level() == Qgis.MessageLevel.Warning
+    button.click()
+    assert len(bar.items()) == 1
+    button.click()
+    assert bar.items() == []
+    # The plugin takes it away once more when it is unloaded.
+    remove()
+    missing.clear()
+    installation.warn_at_start(iface)()
+    assert bar.items() == []
