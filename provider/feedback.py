@@ -41,24 +41,14 @@ class FeedbackMonitor(Monitor):
     ----------
     feedback : QgsProcessingFeedback
         What shows progress and the log.
-    stage : Stage, optional
-        The stage that runs: the log uses its labels and units.
-    given : dict, optional
-        Its tunables; those with a value were set by the user, and the log doesn't call them automatic.
     log : RunLog, optional
-        Keeps values and sentences for the pages of the run.
+        Keeps values and sentences for the pages of the run. The labels and units of the stage that runs are used;
+        tunables that were given are not called automatic.
     """
 
-    def __init__(
-        self,
-        feedback: QgsProcessingFeedback,
-        stage: Optional[Stage] = None,
-        given: Optional[dict[str, Any]] = None,
-        log: Optional[RunLog] = None,
-    ) -> None:
+    def __init__(self, feedback: QgsProcessingFeedback, log: Optional[RunLog] = None) -> None:
         super().__init__()
-        self._feedback, self._stage, self._given = feedback, stage, given or {}
-        self._log = log or RunLog()
+        self._feedback, self._log = feedback, log or RunLog()
         self._bar = ProgressBar(feedback)
 
     def progress(self, fraction: float) -> None:
@@ -70,11 +60,9 @@ class FeedbackMonitor(Monitor):
     def resolved(self, **values: Any) -> None:
         """Keep the values that stages report, and log those that the user didn't give."""
         super().resolved(**values)
-        self._log.resolved(values)
-        for name, value in values.items():
-            if self._given.get(name) is None and value is not None:
-                self._bar.end_line()
-                self._feedback.pushInfo(value_sentence(self._stage, name, value))
+        for sentence in found_by(self._log, values):
+            self._bar.end_line()
+            self._feedback.pushInfo(sentence)
 
     def warn(self, sentence: str) -> None:
         """Log and keep a warning."""
@@ -97,6 +85,14 @@ class FeedbackMonitor(Monitor):
     def end(self) -> None:
         """End the run."""
         self.progress(1.0)
+
+
+def found_by(log: RunLog, values: dict[str, Any]) -> list[str]:
+    """Keep the values that the step that runs reports; return those that the user didn't give, as the log says them."""
+    log.resolved(values)
+    stage, given = log.running
+    found = {name: value for name, value in values.items() if given.get(name) is None and value is not None}
+    return [value_sentence(stage, name, value) for name, value in found.items()]
 
 
 def value_sentence(stage: Optional[Stage], name: str, value: Any) -> str:
@@ -134,7 +130,7 @@ class ChainMonitor(FeedbackMonitor):
     """
 
     def __init__(self, feedback: QgsProcessingFeedback, log: RunLog) -> None:
-        super().__init__(feedback, log=log)
+        super().__init__(feedback, log)
         self._title, self._name = _READING, "reading"
         self._held: list[str] = []
         self._summary: list[str] = []
@@ -154,7 +150,7 @@ class ChainMonitor(FeedbackMonitor):
         self._log.begin(stage, tunables)
         self._title, self._name, self._began = stage.title, name, time.monotonic()
         self._sums_up = bool(stage.measures) and not stage.makes_cloud
-        return _StepMonitor(self, self._log, stage, tunables, name, start, end)
+        return _StepMonitor(self, self._log, name, start, end)
 
     def end_steps(self) -> None:
         """End the last step: all is computed, and is written next."""
@@ -219,19 +215,15 @@ class ChainMonitor(FeedbackMonitor):
 class _StepMonitor(Part):
     """The monitor of one step of a chain: values have its labels and units in the log, its name among the results."""
 
-    def __init__(
-        self, chain: ChainMonitor, log: RunLog, stage: Stage, given: dict[str, Any], name: str, start: float, end: float
-    ) -> None:
+    def __init__(self, chain: ChainMonitor, log: RunLog, name: str, start: float, end: float) -> None:
         super().__init__(chain, start, end, f"{name}_")
-        self._chain, self._log, self._stage, self._given = chain, log, stage, given
+        self._chain, self._log = chain, log
 
     def resolved(self, **values: Any) -> None:
         """Pass on values, and log those that the user didn't give."""
         super().resolved(**values)
-        self._log.resolved(values)
-        for name, value in values.items():
-            if self._given.get(name) is None and value is not None:
-                self._chain.found(value_sentence(self._stage, name, value))
+        for sentence in found_by(self._log, values):
+            self._chain.found(sentence)
 
 
 def show_heading(feedback: QgsProcessingFeedback, heading: str, rest: str = "") -> None:

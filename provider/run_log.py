@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterable, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
@@ -34,6 +34,11 @@ class RunLog:
         self.steps.append(StepFacts(stage.title))
         self._given.append((stage, given, {}))
         self._began = time.monotonic()
+
+    @property
+    def running(self) -> tuple[Optional[Stage], dict[str, Any]]:
+        """The stage that runs and the tunables that it was given, None and none before the first."""
+        return self._given[-1][:2] if self._given else (None, {})
 
     def resolved(self, values: dict[str, Any]) -> None:
         """Keep the values that automatic tunables of the step took."""

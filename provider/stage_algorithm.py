@@ -61,7 +61,7 @@ class StageAlgorithm(CloudAlgorithm):
         """Return the monitor of a run: it shows the progress and keeps the messages."""
         announce(self.stage.title, feedback)
         log.begin(self.stage, self.job.tunables)
-        return FeedbackMonitor(feedback, self.stage, self.job.tunables, log)
+        return FeedbackMonitor(feedback, log)
 
     def _read(self, given: Given, monitor: Monitor) -> Read:
         """Read clouds and layers; of a large cloud that is worked on part by part the layers alone."""

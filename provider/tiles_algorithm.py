@@ -27,7 +27,7 @@ from ..algorithms.pipeline import CLOUD
 from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
 from ..algorithms.stage import FileContent, InputLayer, Layer, LayerFeatures, Raster, TextFile
-from ..algorithms.tiling.mosaics import RasterMosaic
+from ..algorithms.tiling.joined_files import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
 from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey

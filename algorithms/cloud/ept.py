@@ -269,11 +269,7 @@ class EptOctree:
 
 @lru_cache(maxsize=8)
 def _hierarchy(
-    path: Path,
-    reach: Optional[tuple],
-    spacing: Optional[tuple],
-    size: int,
-    changed: int,  # noqa: ARG001
+    path: Path, reach: Optional[tuple], spacing: Optional[tuple], size: int, changed: int
 ) -> tuple[np.ndarray, np.ndarray, Nodes]:
     """Return keys (m, 4), numbers of points (m,) and nodes of those that touch a box; ``size``, ``changed``: its state.
 

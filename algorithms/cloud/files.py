@@ -85,7 +85,7 @@ def read_cloud(
     with readable(path):
         files = list(touching(named_files_of(path), box))
         states = [state_of(file) for file in files]
-        with_points, headers = _opened(path, monitor, box, spacing)
+        with_points, headers = _opened(path, box, spacing, monitor)
         crs = crs_of_tiles(headers, [file.name for file in with_points], read, monitor)
         with_points, headers = _near(with_points, headers, box)
         header = headers[0]
@@ -180,7 +180,7 @@ def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None, spaci
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _opened(file_at(path), None, box, spacing)
+    files, headers = _opened(file_at(path), box, spacing)
     thins = [spacing is not None and has_octree(file, header) for file, header in zip(files, headers)]
     found = [
         size_within(file, header, box)[0] if thin else header.count * _share_in(header, box)
@@ -201,7 +201,7 @@ def sizes_within(
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _near(*_opened(file_at(path), None, box, spacing), box)
+    files, headers = _near(*_opened(file_at(path), box, spacing), box)
     found = [(file, header) for file, header in zip(files, headers) if is_on_web(file)]
     with readable(file_at(path)):
         return [(file, size_within(file, header, box)) for file, header in found]
@@ -220,10 +220,7 @@ def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
 
 
 def _opened(
-    path: Path,
-    monitor: Optional[Monitor] = None,
-    box: Optional[np.ndarray] = None,
-    spacing: Optional[np.ndarray] = None,
+    path: Path, box: Optional[np.ndarray], spacing: Optional[np.ndarray] = None, monitor: Optional[Monitor] = None
 ) -> tuple[list[Path], list[Header]]:
     """Return a file, or all its tiles that have points and are to be opened for a box, and their headers."""
     with readable(path):
@@ -231,10 +228,7 @@ def _opened(
 
 
 def open_named(
-    named: dict[Path, Named],
-    monitor: Optional[Monitor] = None,
-    box: Optional[np.ndarray] = None,
-    spacing: Optional[np.ndarray] = None,
+    named: dict[Path, Named], monitor: Optional[Monitor], box: Optional[np.ndarray], spacing: Optional[np.ndarray]
 ) -> tuple[list[Path], list[Header]]:
     """Return the files that have points, and their headers.
 
@@ -384,7 +378,7 @@ def check_compression(path: Path, clouds: Iterable[Path]) -> None:
         If a package is missing, or in one sentence, what is wrong with a cloud.
     """
     if kind_of(path) in (LAZ, COPC):
-        layouts = [header.layout for cloud in clouds for header in _opened(cloud)[1]]
+        layouts = [header.layout for cloud in clouds for header in _opened(cloud, None)[1]]
         _check_packages(kind_of(path), merged_layout(layouts or [Layout(6)]))
 
 

@@ -222,15 +222,10 @@ def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Head
         If a point lies where the scale of the merged cloud doesn't reach.
     """
     convert(records, tile.layout, merged.layout, out)
-    _rescale(records, tile, merged, out)
-
-
-def _rescale(chunk: np.ndarray, tile: Header, merged: Header, out: np.ndarray) -> None:
-    """Write the coordinates of records of a tile in steps of the merged cloud."""
     for i, axis in enumerate("XYZ"):
         if tile.scale[i] == merged.scale[i] and tile.offset[i] == merged.offset[i]:
             continue
-        steps = np.rint((chunk[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
+        steps = np.rint((records[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
         if len(steps) and not np.abs(steps).max() <= LARGEST_STEP:
             raise ValueError("A tile has points outside the bounds in its header; repair its header first.")
         out[axis] = steps

@@ -9,7 +9,7 @@ import numpy as np
 
 
 class Reason(IntEnum):
-    """Why a cluster, or a point that was added to a building, is called building or not."""
+    """Why a cluster, or a point that was added to a building, is called building (1 to 10) or not (from 11 on)."""
 
     NOT_LOOKED_AT = 0
     PLANE = 1
@@ -48,21 +48,8 @@ class Reason(IntEnum):
     @property
     def is_building(self) -> bool:
         """Whether this is a reason for calling something a building."""
-        return self in _FOR_BUILDING
+        return Reason.NOT_LOOKED_AT < self < Reason.ROUGH
 
-
-_FOR_BUILDING = frozenset(
-    {
-        Reason.PLANE,
-        Reason.SOLID_PLANE,
-        Reason.SOLID,
-        Reason.ATTACHED,
-        Reason.NEXT_TO_BUILDINGS,
-        Reason.SURFACE,
-        Reason.LIKE_BUILDINGS,
-        Reason.KEPT,
-    }
-)
 
 # Reasons of points that belong to a building by the roof next to them: walls, edges, equipment on it.
 ADDED = (Reason.ATTACHED, Reason.LIKE_BUILDINGS)

@@ -16,7 +16,7 @@ from ..run import Results, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Cancelled, LayerFeatures, Monitor, RasterSurface
 from .block_result import BlockResult
-from .survey import Survey, Window
+from .survey import Survey, Window, inside
 from .tiled_steps import files_of, in_blocks, layers_of, owners
 
 # Dimensions that number what points belong to: each block has numbers of its own, which are joined afterwards.
@@ -153,22 +153,14 @@ def work_on_block(task: BlockTask) -> Path:
 def _window(task: BlockTask, box: np.ndarray, monitor: Monitor) -> Optional[Window]:
     """Return the points in a box, None where the block itself has none of them."""
     window = task.survey.window(box, monitor)
-    if window is None or not _inside(_positions(task.survey, window), task.block.box).any():
+    if window is None or not inside(_positions(task.survey, window), task.block.box).any():
         return None
     return replace(window, source=np.array(task.numbers, np.int32)[window.source])
 
 
 def _positions(survey: Survey, window: Window) -> np.ndarray:
-    """Return easting and northing (n, 2) of the records of a window, m, as the edges of blocks count them."""
-    header, records = survey.header, window.cloud.points
-    unit = survey.crs.horizontal
-    positions = [records[axis] * (header.scale[i] * unit) + header.offset[i] * unit for i, axis in enumerate("XY")]
-    return np.column_stack(positions)[window.point]
-
-
-def _inside(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return the mask of positions (n, 2) that lie in a box (2, 2), its upper edges not in it."""
-    return ((positions >= box[0]) & (positions < box[1])).all(axis=1)
+    """Return easting and northing (n, 2) of the records of a window, m."""
+    return survey.in_plan(window.cloud.points, survey.header)[window.point]
 
 
 def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMonitor) -> tuple[BlockResult, np.ndarray]:
@@ -180,7 +172,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     seconds = monitor.seconds()
     point, stays = _result_points(window, made)
     values = _written(pipeline, made, point, task.survey.origin)
-    core = _inside(positions, task.block.box)
+    core = inside(positions, task.block.box)
     result = BlockResult(
         window.source[core], window.position[core], stays[core] if made.selected is not None else stays[:0]
     )
@@ -282,9 +274,9 @@ def _number(
     block: Block,
 ) -> None:
     """Keep in a result which numbers its points have, and the numbers of records on both sides of its edges."""
-    near = _inside(positions, block.box + np.array([[-_BESIDE], [_BESIDE]]))
-    near &= ~_inside(positions, block.box + np.array([[_BESIDE], [-_BESIDE]]))
-    core = _inside(positions, block.box)
+    near = inside(positions, block.box + np.array([[-_BESIDE], [_BESIDE]]))
+    near &= ~inside(positions, block.box + np.array([[_BESIDE], [-_BESIDE]]))
+    core = inside(positions, block.box)
     for name in (name for name in NUMBERED if name in values):
         number = np.where(stays, values[name], 0).astype(np.int64)
         others = [values[one][core & stays] for one, of in REFERRING.items() if of == name and one in values]

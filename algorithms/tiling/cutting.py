@@ -88,16 +88,12 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
     share = 1 / len(survey.sources)
     for number, source in enumerate(survey.sources):
         header = source.header
-        unit = survey.crs.horizontal
-        box = source.box / unit
+        box = source.box / survey.crs.horizontal
         for _, found in chunks_near(source.path, header, box, monitor.part(number * share, (number + 1) * share)):
             chunk = found[survey.holds(found, header)]
             records = np.zeros(len(chunk), survey.header.layout.dtype)
             fill_merged(records, chunk, header, survey.header)
-            column, row = (
-                np.floor((chunk[axis] * (header.scale[i] * unit) + header.offset[i] * unit) / side).astype(np.int64)
-                for i, axis in enumerate("XY")
-            )
+            column, row = np.floor(survey.in_plan(chunk, header) / side).astype(np.int64).T
             order = np.lexsort([column, row])
             column, row, records = column[order], row[order], records[order]
             starts = run_starts(row * (1 << 32) + column)

@@ -34,10 +34,7 @@ Edges = Callable[[int], tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
 
 
 def join_numbers(
-    blocks: list[Block],
-    results: list[BlockResult],
-    edges: Edges,
-    features: Optional[dict[str, list[np.ndarray]]] = None,
+    blocks: list[Block], results: list[BlockResult], edges: Edges, features: dict[str, list[np.ndarray]]
 ) -> list[dict[str, np.ndarray]]:
     """Return for each block and numbered dimension what its numbers become: an array that they are positions in.
 
@@ -53,14 +50,14 @@ def join_numbers(
         Results of the blocks; their edges are read by ``edges`` only.
     edges : callable
         As ``edges`` of :class:`.BlockResult`. Memory: a few blocks at a time.
-    features : dict of str to list of ndarray, optional
+    features : dict of str to list of ndarray
         For each dimension by which points refer to features the numbers of these in each block; they become 0, since
         features are recognized as the same by their geometry.
     """
     joined: list[dict[str, np.ndarray]] = [{} for _ in results]
     links = _links(blocks, edges)
     for name in NUMBERED:
-        of_features = (features or {}).get(name, [_NO_NUMBERS] * len(results))
+        of_features = features.get(name, [_NO_NUMBERS] * len(results))
         most = [max(_largest(one, name), int(own.max(initial=0))) for one, own in zip(results, of_features)]
         first = np.concatenate([[0], np.cumsum(most)])
         found = [np.zeros((0, 2), np.int64)]
@@ -305,10 +302,10 @@ def new_names(kept: np.ndarray) -> dict[tuple[int, str], int]:
 
 def _numbered(features: LayerFeatures, rows: np.ndarray, called: np.ndarray) -> LayerFeatures:
     """Return some features by their positions (m,), with their numbers (m,) now."""
-    columns = {name: [values[row] for row in rows] for name, values in features.columns.items()}
-    if _ID in columns:
-        columns[_ID] = called.tolist()
-    return LayerFeatures([features.geometries[row] for row in rows], columns)
+    some = take_features(features, rows)
+    if _ID in some.columns:
+        some.columns[_ID] = called.tolist()
+    return some
 
 
 def _all(layers: list[LayerFeatures], numbers: list[np.ndarray]) -> LayerFeatures:

@@ -26,9 +26,8 @@ from .block_plan import blocks_of, larger_blocks, memory_of_window, side_of_bloc
 from .block_result import BlockResult, flat
 from .blocks import MOST_HALOS, Block, BlockTask, feature_boxes, take_features, work_on_block
 from .cutting import cut_into_tiles
-from .joined_files import join_files
+from .joined_files import join_files, join_rasters
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
-from .mosaics import join_rasters
 from .survey import Source, Survey, files_of_survey, open_survey, tiles_folder
 from .survey_sampling import samplings_of
 from .survey_steps import SurveySteps

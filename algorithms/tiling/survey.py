@@ -152,7 +152,7 @@ class Survey:
         position = np.concatenate([position for _, position, _ in found])
         if self.header.spacing is not None:
             kept = lowest_rows(records, self.header)
-            kept = kept[self._inside(records[kept], self.header, box)]
+            kept = kept[inside(self.in_plan(records[kept], self.header), box)]
             records, source, position = records[kept], source[kept], position[kept]
         return self._in_order(records, source, position) if len(records) else None
 
@@ -189,12 +189,11 @@ class Survey:
 
     def _positions_of(self, source: Source, rows: np.ndarray, monitor: Monitor) -> list[np.ndarray]:
         """Return the positions (k, 2), m, of the records of a file at ascending positions, in parts."""
-        scale, offset = (values * self.crs.horizontal for values in (source.header.scale, source.header.offset))
         found = []
         with readable(source.path):
             for start, chunk in read_chunks(source.path, source.header, monitor):
                 own = rows[(rows >= start) & (rows < start + len(chunk))] - start
-                found.append(np.column_stack([chunk[axis][own] * scale[i] + offset[i] for i, axis in enumerate("XY")]))
+                found.append(self.in_plan(chunk[own], source.header))
                 if start + len(chunk) > rows[-1]:
                     break
         return found
@@ -206,7 +205,7 @@ class Survey:
             near = np.array([np.maximum(near[0], self.extent[0]), np.minimum(near[1], self.extent[1])])
         with readable(source.path):
             for start, chunk in chunks_near(source.path, header, near, monitor):
-                rows = np.flatnonzero(self.holds(chunk, header) & self._inside(chunk, header, box))
+                rows = np.flatnonzero(self.holds(chunk, header) & inside(self.in_plan(chunk, header), box))
                 if header.spacing is not None:
                     rows = rows[lowest_rows(chunk[rows], header)]
                 if len(rows):
@@ -215,11 +214,10 @@ class Survey:
                     yield start + rows, records
         source.check_state()
 
-    def _inside(self, records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarray:
-        """Return the mask of records (n,) with this header that lie in a box (2, 2), m, its upper edges not in it."""
+    def in_plan(self, records: np.ndarray, header: Header) -> np.ndarray:
+        """Return easting and northing (n, 2), m, of records with this header, as the edges of blocks count them."""
         scale, offset = (values * self.crs.horizontal for values in (header.scale, header.offset))
-        found = np.column_stack([records[axis] * scale[i] + offset[i] for i, axis in enumerate("XY")])
-        return ((found >= box[0]) & (found < box[1])).all(axis=1)
+        return np.column_stack([records[axis] * scale[i] + offset[i] for i, axis in enumerate("XY")])
 
     def _in_order(self, records: np.ndarray, source: np.ndarray, position: np.ndarray) -> Window:
         """Sort records by their measurements, and keep each measurement once."""
@@ -251,6 +249,11 @@ class Survey:
 def boxes_meet(boxes: np.ndarray, box: np.ndarray) -> np.ndarray:
     """Return the mask of boxes (m, 2, 2) that meet a box (2, 2)."""
     return ((boxes[:, 0] <= box[1]) & (boxes[:, 1] >= box[0])).all(axis=1)
+
+
+def inside(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Return the mask of positions (n, 2) that lie in a box (2, 2), its upper edges not in it."""
+    return ((positions >= box[0]) & (positions < box[1])).all(axis=1)
 
 
 def open_survey(
@@ -347,7 +350,7 @@ def crs_of_survey(paths: Iterable[Union[str, Path]], read: CrsReader = read_crs)
     ValueError
         If a file can't be read, none has points, or they have different systems.
     """
-    files, headers = open_named(touching(_named_files(paths), NOWHERE), box=NOWHERE)
+    files, headers = open_named(touching(_named_files(paths), NOWHERE), None, NOWHERE, None)
     return crs_of_tiles(headers, [file.name for file in files], read, Monitor())
 
 

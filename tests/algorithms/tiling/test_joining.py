@@ -24,7 +24,7 @@ def result(used, inside=(), beside=(), features=None):
 def joined(*results):
     """Join blocks that lie side by side."""
     blocks = [Block(column, 0, 10.0) for column in range(len(results))]
-    return join_numbers(blocks, list(results), lambda at: (results[at].inside, results[at].beside))
+    return join_numbers(blocks, list(results), lambda at: (results[at].inside, results[at].beside), {})
 
 
 def square(west, south, side, number):

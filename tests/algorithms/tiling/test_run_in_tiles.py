@@ -19,9 +19,9 @@ from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
 from lidar_buildings.algorithms.tiling.block_plan import larger_blocks, side_of_blocks
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
+from lidar_buildings.algorithms.tiling.tile_writing import rows_of
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.tiled_steps import why_whole
-from lidar_buildings.algorithms.tiling.tiles import rows_of
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import crown, roof
 from lidar_buildings.tests.monitors import Listening
