@@ -36,6 +36,9 @@ from .stage import (
 from .stages import STAGES
 from .threads import one_blas_thread
 
+# For each cloud the mask of points that stages may see, None where it is all of them.
+_Masks = list[Optional[np.ndarray]]
+
 
 @dataclass
 class Outcome:
@@ -228,12 +231,7 @@ def _used(cloud: Cloud) -> Optional[np.ndarray]:
 
 
 def _argument(
-    stage: Stage,
-    name: str,
-    clouds: list[Cloud],
-    reference: Optional[Cloud],
-    used: list[Optional[np.ndarray]],
-    tunables: dict[str, Any],
+    stage: Stage, name: str, clouds: list[Cloud], reference: Optional[Cloud], used: _Masks, tunables: dict[str, Any]
 ) -> Any:
     """Return the array that a positional argument names, or one per cloud; None where an optional one is absent."""
     if name.startswith(REFERENCE_PREFIX):
@@ -265,9 +263,7 @@ def _present(cloud: Cloud, name: str) -> np.ndarray:
     return cloud.get(name)
 
 
-def _result(
-    stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: StageResults, monitor: Monitor
-) -> Optional[Cloud]:
+def _result(stage: Stage, clouds: list[Cloud], used: _Masks, made: StageResults, monitor: Monitor) -> Optional[Cloud]:
     """Return the cloud with the results of the stage: the same one, or a new one."""
     written = {name: values for name, values in made.dimensions.items() if values is not None}
     if stage.creates:

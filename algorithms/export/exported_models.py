@@ -126,11 +126,8 @@ def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optio
             # Layers have it as it is seen on a map, solids as it is seen from below.
             rings = [ring[::-1] for ring in rings]
         level = str(levels[row])
-        yield (
-            str(names[row]),
-            level if _LEVELS.fullmatch(level) else "",
-            Face(own, rings, facts) if has_heights else None,
-        )
+        face = Face(own, rings, facts) if has_heights else None
+        yield str(names[row]), level if _LEVELS.fullmatch(level) else "", face
 
 
 def _model(name: str, levels: dict[str, list[Face]], rise: float) -> ExportedModel:

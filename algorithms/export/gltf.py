@@ -13,18 +13,15 @@ import numpy as np
 from ..geometry.polygons import area_vector
 from ..models3d.face_triangles import triangulate_face
 from ..models3d.solids import GROUND, TERRAIN
+from ..report.page import png
 from .exported_models import KINDS, ExportedModel, Face
-from .textures import Atlas, atlas_of, png
+from .textures import Atlas, atlas_of
 
 # Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows, doors, terrain and soffits, as in the styles of
 # layers, where soffits are among the walls.
 _WALL_COLOR = (226, 216, 196)
-COLORS = dict(
-    zip(
-        KINDS,
-        ((178, 72, 54), _WALL_COLOR, (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108), _WALL_COLOR),
-    )
-)
+_RGB = (178, 72, 54), _WALL_COLOR, (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108), _WALL_COLOR
+COLORS = dict(zip(KINDS, _RGB))
 
 # Codes of glTF 2.0: types of numbers, and what a part of the buffer is for.
 _FLOAT, _UINT = 5126, 5125
@@ -73,7 +70,7 @@ def glb(
     file = _File()
     is_textured = any(face.texture is not None for _, face in rows)
     atlas = atlas_of([image_of(face) for _, face in rows]) if is_textured else None
-    primitives = _primitives(rows, placed, np.asarray(middle, float), file, atlas)
+    primitives = _primitives(rows, lambda local: (placed(local) - np.asarray(middle)) @ _Y_UP.T, file, atlas)
     of_models = [{"name": model.name, **model.facts} for model in models]
     of_faces = [{"kind": face.kind, **({} if face.kind in (GROUND, TERRAIN) else face.facts)} for _, face in rows]
     tables = [_property_table(name, facts, file) for name, facts in (("building", of_models), ("face", of_faces))]
@@ -155,16 +152,12 @@ class _File:
 
 
 def _primitives(
-    rows: list[tuple[int, Face]],
-    placed: Callable[[np.ndarray], np.ndarray],
-    middle: np.ndarray,
-    file: _File,
-    atlas: Optional[Atlas],
+    rows: list[tuple[int, Face]], placed: Callable[[np.ndarray], np.ndarray], file: _File, atlas: Optional[Atlas]
 ) -> list[dict[str, Any]]:
     """Return the primitives of faces, with the numbers of their buildings, in the order of kinds."""
     corners = [face.corners for _, face in rows]
     ends = np.cumsum([0, *map(len, corners)])
-    positions = (placed(np.concatenate(corners)) - middle) @ _Y_UP.T
+    positions = placed(np.concatenate(corners))
     building = np.array([number for number, _ in rows])
     kind = np.array([KINDS.index(face.kind) for _, face in rows])
     made = []

@@ -8,10 +8,11 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from ..models3d.wavefront import object_line, vertex_lines
+from ..report.page import png
 from ..stage import MapFrame, Piece
 from .exported_models import KINDS, ExportedModel
 from .gltf import COLORS, image_of, triangles_of
-from .textures import atlas_of, png
+from .textures import atlas_of
 
 
 def obj_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) -> Iterator[Piece]:

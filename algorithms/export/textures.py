@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Optional
@@ -121,15 +119,3 @@ def atlas_of(images: Sequence[np.ndarray]) -> Atlas:
     for (column, row), one in zip(starts.tolist(), padded):
         image[row : row + one.shape[0], column : column + one.shape[1]] = one
     return Atlas(image, starts + 1)
-
-
-def png(image: np.ndarray) -> bytes:
-    """Return an image (rows, columns, 3), uint8, as a PNG file."""
-    rows, columns = image.shape[:2]
-    lines = np.column_stack([np.zeros(rows, np.uint8), image.reshape(rows, -1)]).tobytes()
-    head = struct.pack(">IIBBBBB", columns, rows, 8, 2, 0, 0, 0)
-    chunks = [(b"IHDR", head), (b"IDAT", zlib.compress(lines, 9)), (b"IEND", b"")]
-    parts = [
-        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in chunks
-    ]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)

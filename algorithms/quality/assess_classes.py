@@ -192,15 +192,9 @@ def _of_kinds(matrix: np.ndarray) -> dict[str, float]:
 def _table(matrix: np.ndarray, names: list[str], rates: dict[str, np.ndarray]) -> str:
     """Return the HTML of the figures of each class."""
     head = ["Class", "Points in the reference", "Points in the input", "Completeness", "Correctness", "F-score", "IoU"]
-    rows = [
-        [
-            name,
-            f"{true:,}",
-            f"{called:,}",
-            *(percent(float(rates[rate][i])) for rate in ("completeness", "correctness", "f", "iou")),
-        ]
-        for i, (name, true, called) in enumerate(zip(names, matrix.sum(axis=1), matrix.sum(axis=0)))
-    ]
+    figures = zip(*(rates[name].tolist() for name in ("completeness", "correctness", "f", "iou")))
+    counts = zip(names, matrix.sum(axis=1), matrix.sum(axis=0), figures)
+    rows = [[name, f"{true:,}", f"{called:,}", *map(percent, of_class)] for name, true, called, of_class in counts]
     return draw_table("Classes", head, rows)
 
 

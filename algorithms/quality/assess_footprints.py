@@ -411,15 +411,7 @@ def _meanings(values: dict[str, float]) -> dict[str, dict[str, tuple[str, str]]]
 def _worst(table: dict) -> str:
     """Return the table of the buildings that agree least with their footprints."""
     order = [row for row in np.argsort(table["iou"], kind="stable").tolist() if np.isfinite(table["iou"][row])]
-    rows = [
-        [
-            table["building"][row],
-            table["status"][row],
-            f"{table['area'][row]:,.0f}",
-            f"{table['iou'][row]:.2f}",
-            f"{table['hausdorff'][row]:.2f}",
-        ]
-        for row in order[:_WORST]
-    ]
+    forms = {"building": "", "status": "", "area": ",.0f", "iou": ".2f", "hausdorff": ".2f"}
+    rows = [[format(table[name][row], form) for name, form in forms.items()] for row in order[:_WORST]]
     head = ["Building", "Status", "Area (m²)", "IoU", "Hausdorff distance (m)"]
     return draw_table("Buildings that agree least", head, rows) if rows else ""

@@ -194,11 +194,8 @@ def assess_models(
     min_points = max(5, round(min_plane_area * sampling.density))
     buildings = _compared(faces, points, _Search(tolerance, min_points, sampling), monitor)
     values = _values(buildings)
-    return (
-        _face_layer(buildings, points),
-        _building_layer(buildings),
-        Report(values, _page(buildings, values, tolerance)),
-    )
+    report = Report(values, _page(buildings, values, tolerance))
+    return _face_layer(buildings, points), _building_layer(buildings), report
 
 
 @dataclass

@@ -214,17 +214,12 @@ def _page(xyz: np.ndarray, found: np.ndarray, true: np.ndarray, matches: Matches
         "under": ("Under-segmented", "are run together with others."),
         "missed": ("Missed", "are matched in none of these ways."),
     }
-    rows = [
-        Row(
-            title,
-            f"{values[name]:,.0f}",
-            f"Of {total:,} in the reference, with {percent(values[f'points_{name}'])} of the points, {meaning}",
-        )
-        for name, (title, meaning) in meanings.items()
-    ]
-    rows.append(
-        Row("Noise", f"{values['noise']:,.0f}", f"Of {n_segments:,} segments, these have no part in the reference.")
-    )
+    rows = []
+    for name, (title, meaning) in meanings.items():
+        share = f"with {percent(values[f'points_{name}'])} of the points"
+        rows.append(Row(title, f"{values[name]:,.0f}", f"Of {total:,} in the reference, {share}, {meaning}"))
+    noise = f"Of {n_segments:,} segments, these have no part in the reference."
+    rows.append(Row("Noise", f"{values['noise']:,.0f}", noise))
     outcomes = _outcomes(found, true, matches)
     outcome = np.full(len(xyz), REST, np.uint8)
     outcome[outcomes["noise"]] = FALSE

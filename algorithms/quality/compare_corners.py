@@ -300,13 +300,10 @@ def _shift_rows(moved: np.ndarray) -> list[Row]:
     undefined = float("nan")
     dx, dy = moved.mean(axis=0).tolist() if len(moved) else (undefined, undefined)
     remaining = float(np.sqrt(((moved - [dx, dy]) ** 2).sum(axis=1).mean())) if len(moved) else undefined
+    left = "Root mean square of the distances that were left if the shift were taken off."
     return [
         Row("Eastward", meters(dx), "Mean of the displacements to the east; negative is to the west."),
         Row("Northward", meters(dy), "Mean of the displacements to the north; negative is to the south."),
         Row("Together", meters(float(np.hypot(dx, dy))), "Length of the mean shift."),
-        Row(
-            "Without it",
-            meters(remaining),
-            "Root mean square of the distances that were left if the shift were taken off.",
-        ),
+        Row("Without it", meters(remaining), left),
     ]

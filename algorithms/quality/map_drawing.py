@@ -81,12 +81,7 @@ def _is_sound(polygons: list, count: int, lattice: Lattice, fixed: list, width: 
 
 
 def _drawn(
-    lattice: Lattice,
-    wanted: np.ndarray,
-    old: np.ndarray,
-    fixed: np.ndarray,
-    new: np.ndarray,
-    snaps: tuple[float, float],
+    lattice: Lattice, wanted: np.ndarray, old: np.ndarray, fixed: np.ndarray, new: np.ndarray, snaps: tuple
 ) -> dict[int, list[list[np.ndarray]]]:
     """Return the polygons of each label where cuts along old and new walls pass vertices closer than ``snaps`` (m)."""
     positions, walls = lattice.positions, np.concatenate([old, fixed])

@@ -187,7 +187,7 @@ def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, s
     order = np.argsort(xyz[:, 2], kind="stable")
     # Of values that go to one pixel the last one stays, which is the highest.
     image[row[order], column[order]] = outcome[order]
-    data = base64.b64encode(png(image[::-1])).decode()
+    data = base64.b64encode(png(image[::-1], _COLORS)).decode()
     legend = "".join(
         f'<span class="swatch" style="background:rgb{_COLORS[code]}"></span>{html.escape(name)}'
         for code, name in enumerate(names)
@@ -210,16 +210,21 @@ def svg_image(image: np.ndarray, colors: np.ndarray, box: tuple[float, float, fl
     )
 
 
-def png(image: np.ndarray, colors: Iterable[Iterable[int]] = _COLORS) -> bytes:
-    """Return a PNG file of an image of color numbers (rows, columns), uint8, and of the colors, red, green and blue."""
+def png(image: np.ndarray, colors: Iterable[Iterable[int]] = ()) -> bytes:
+    """Return a PNG file of an image, uint8: (rows, columns, 3), or (rows, columns) of numbers of the ``colors``.
+
+    Colors are red, green and blue.
+    """
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    height, width = image.shape
-    # Each line of a PNG begins with the number of its filter; 0 means no filter.
-    lines = np.concatenate([np.zeros((height, 1), np.uint8), image], axis=1).tobytes()
-    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
+    height, width = image.shape[:2]
     palette = bytes(value for color in colors for value in color)
-    parts = (b"IHDR", header), (b"PLTE", palette), (b"IDAT", zlib.compress(lines)), (b"IEND", b"")
+    # Each line of a PNG begins with the number of its filter; 0 means no filter.
+    lines = np.column_stack([np.zeros(height, np.uint8), image.reshape(height, -1)]).tobytes()
+    header = struct.pack(">IIBBBBB", width, height, 8, 3 if palette else 2, 0, 0, 0)
+    parts = [(b"IHDR", header), *([(b"PLTE", palette)] if palette else [])]
+    # Photographs are large, and worth the time of the best compression.
+    parts += [(b"IDAT", zlib.compress(lines, -1 if palette else 9)), (b"IEND", b"")]
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, data) for kind, data in parts)

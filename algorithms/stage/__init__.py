@@ -28,7 +28,6 @@ package needs the standard library and numpy only, and is independent of QGIS.
 """
 
 from .arguments import REFERENCE_PREFIX  # noqa: F401 - the names that stages import
-from .columns import all_fields, as_column, column_on_map, plain  # noqa: F401
 from .declaration import CLOUD, DIMENSION, REPORT, SAMPLING, VALUES, Declared, Stage, stage  # noqa: F401
 from .inputs_outputs import (  # noqa: F401
     Field,
@@ -45,8 +44,12 @@ from .inputs_outputs import (  # noqa: F401
     Report,
     StageResults,
     TextFile,
+    all_fields,
+    as_column,
+    column_on_map,
     feature_names,
     given_layers,
+    plain,
 )
 from .monitor import Cancelled, Monitor, Part, ProgressOnly  # noqa: F401
 from .tunables import Param, Tunable, tunable, with_unit  # noqa: F401

@@ -176,14 +176,10 @@ class Tunable:
             if isinstance(value, str):
                 raise TypeError
             return tuple(str(item) for item in value)
-        if self.type is bool:
-            if not isinstance(value, (bool, np.bool_)):
+        if self.type in (bool, str):
+            if not isinstance(value, (bool, np.bool_) if self.type is bool else str):
                 raise TypeError
-            return bool(value)
-        if self.type is str:
-            if not isinstance(value, str):
-                raise TypeError
-            return value
+            return self.type(value)
         if isinstance(value, (bool, np.bool_, str)):
             raise TypeError
         if self.type is int and value != int(value):
