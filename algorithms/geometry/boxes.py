@@ -181,7 +181,7 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
         left.append((here[~touching], there[~touching]))
         monitor.progress(done / (2 * n_columns))
     for done, pairs in enumerate(left, start=1):
-        component = _compared(boxes, _apart(pairs, component), component, is_near)
+        component = _joined(component, *_touching(boxes, *_apart(pairs, component), is_near))
         monitor.progress(0.5 + done / (2 * n_columns))
     return component
 
@@ -193,18 +193,12 @@ def _apart(pairs: tuple[np.ndarray, np.ndarray], component: np.ndarray) -> tuple
     return here[apart], there[apart]
 
 
-def _compared(
-    boxes: Boxes,
-    pairs: tuple[np.ndarray, np.ndarray],
-    component: np.ndarray,
-    is_near: Callable[[np.ndarray], np.ndarray],
-) -> np.ndarray:
-    """Return the components after joining pairs of boxes whose points show that they touch."""
-    here, there = pairs
+def _touching(boxes: Boxes, here: np.ndarray, there: np.ndarray, is_near: Callable) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pairs of boxes whose points show that they touch."""
     touching = np.zeros(len(here), bool)
     for pair, a, b in boxes.pairs(here, boxes, there):
         touching[pair[is_near(boxes.xyz[a] - boxes.xyz[b])]] = True
-    return _joined(component, here[touching], there[touching])
+    return here[touching], there[touching]
 
 
 def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.ndarray:

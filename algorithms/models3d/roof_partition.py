@@ -130,13 +130,7 @@ def _mean_widths(cells: Subdivision) -> np.ndarray:
 
 
 def divide_footprint(
-    xyz: np.ndarray,
-    is_top: np.ndarray,
-    planes: RoofPlanes,
-    rings: list,
-    spacing: float,
-    tolerance: float,
-    base: float,
+    xyz: np.ndarray, is_top: np.ndarray, planes: RoofPlanes, rings: list, spacing: float, tolerance: float, base: float
 ) -> Partition:
     """Divide a footprint among roof planes so that points and borders cost least.
 

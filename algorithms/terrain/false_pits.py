@@ -187,24 +187,18 @@ class _Near:
 
     @classmethod
     def around(
-        cls,
-        points: np.ndarray,
-        is_last: np.ndarray,
-        deep: np.ndarray,
-        level: _Levels,
-        limit: np.ndarray,
-        spacing: float,
+        cls, xyz: np.ndarray, is_last: np.ndarray, deep: np.ndarray, level: _Levels, limit: np.ndarray, spacing: float
     ) -> _Near:
         """Return the last returns as near to the ``deep`` points as a group and its rim are."""
         reach = max(_WIDEST, _WIDEST_SPACINGS * spacing) + max(_RIM, _RIM_SPACINGS * spacing)
-        grid = grid_over(points, reach)
-        cells = np.unique(grid.number(points[deep])[:, None] + [0, *grid.around])
-        rows = np.flatnonzero(find_cells(cells, grid.number(points))[1] & is_last)
-        distance, nearest = spatial.cKDTree(points[deep, :2]).query(points[rows, :2], distance_upper_bound=reach)
+        grid = grid_over(xyz, reach)
+        cells = np.unique(grid.number(xyz[deep])[:, None] + [0, *grid.around])
+        rows = np.flatnonzero(find_cells(cells, grid.number(xyz))[1] & is_last)
+        distance, nearest = spatial.cKDTree(xyz[deep, :2]).query(xyz[rows, :2], distance_upper_bound=reach)
         rows, nearest = rows[np.isfinite(distance)], nearest[np.isfinite(distance)]
-        off = points[rows] - points[deep[nearest]]
-        height = points[rows, 2] - level.height[nearest] - np.einsum("mi,mi->m", off[:, :2], level.slope[nearest])
-        return cls(rows, points[rows], height, limit[nearest], spacing)
+        off = xyz[rows] - xyz[deep[nearest]]
+        height = xyz[rows, 2] - level.height[nearest] - np.einsum("mi,mi->m", off[:, :2], level.slope[nearest])
+        return cls(rows, xyz[rows], height, limit[nearest], spacing)
 
     @cached_property
     def _tree(self):  # noqa: ANN202 - scipy is imported when first used
