@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.polygons import axes_across
+
 # Rounds of Gauss and Newton: from a start within a few percent they converge in three to five.
 _ROUNDS = 8
 
@@ -35,19 +37,8 @@ class Cylinder:
 
     def angle(self, away: np.ndarray) -> np.ndarray:
         """Return the angle (n,) around the axis, radians, of directions away from it (n, 3)."""
-        first, second = across_axis(self.axis)
+        first, second = axes_across(self.axis)
         return np.arctan2(away @ second, away @ first)
-
-
-def across_axis(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return two unit vectors across an axis (3,) and each other."""
-    x, y, z = axis
-    # Perpendicular to the coordinate axis that makes the largest angle with it.
-    least = int(np.argmin(np.abs(axis)))
-    first = np.array([(0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0)][least])
-    first /= np.sqrt(first @ first)
-    a, b, c = first
-    return first, np.array([y * c - z * b, z * a - x * c, x * b - y * a])
 
 
 def upward(axis: np.ndarray) -> np.ndarray:
@@ -67,7 +58,7 @@ def fit_cylinder(xyz: np.ndarray, start: Cylinder, rounds: int = _ROUNDS) -> Cyl
     # The distance falls as the axis moves or leans toward the point, and as the radius grows.
     design = np.ones((5, len(xyz)))
     for _ in range(rounds):
-        first, second = across_axis(cylinder.axis)
+        first, second = axes_across(cylinder.axis)
         frame = np.array([first, second, cylinder.axis])
         a, b, along = frame @ (xyz - cylinder.center).T
         middle = along.sum() / len(along)
@@ -139,7 +130,7 @@ def bends(cylinder: Cylinder, xyz: np.ndarray) -> float:
     """
     along, distance, away = cylinder.local(xyz)
     u = (along - (along.max() + along.min()) / 2) / max(float(np.ptp(along)) / 2, 1e-9)
-    first, second = across_axis(cylinder.axis)
+    first, second = axes_across(cylinder.axis)
     a, b = away @ first, away @ second
     square = u * u - 1 / 3
     # Faces that enclose the axis, from a flat bar to a hexagon.

@@ -8,12 +8,14 @@ from typing import Optional
 
 import numpy as np
 
+from ..geometry.polygons import axes_across
 from ..neighborhoods.covariance import symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
 from .cylinder_evidence import FACING, MOST_LOOKED_AT, CylinderEvidence, Points
-from .cylinder_fits import Cylinder, across_axis, fit_cylinder, upward
+from .cylinder_fits import Cylinder, fit_cylinder, upward
 from .hough_planes import PlaneDirections
+from .searched_points import MeasuredPoints
 from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
 
 # Width of a bin of the Gaussian sphere, as a slope: 8°, about three times the error of a normal.
@@ -107,33 +109,24 @@ class CylinderSearch:
 
     Parameters
     ----------
-    xyz, normals : ndarray of shape (n, 3)
-        Points (m), sorted by elevation, and their unit normals; zero if undefined.
-    shift : ndarray of shape (n,)
-        How far (m) each was moved along x from where it lies in ``evidence.positions``.
-    evidence : CylinderEvidence
-        Noise, tolerance and spacing, and the criteria of a cylinder's points.
+    measured : MeasuredPoints
+        The points.
     min_seen : float
         Least share of the circumference with points.
     min_points : int
         Points of the smallest cylinder.
     """
 
-    def __init__(
-        self,
-        xyz: np.ndarray,
-        normals: np.ndarray,
-        shift: np.ndarray,
-        evidence: CylinderEvidence,
-        min_seen: float,
-        min_points: int,
-    ) -> None:
-        self.xyz, self.normals, self.shift, self.evidence = xyz, normals, shift, evidence
-        self.noise, self.tolerance, self.spacing = evidence.noise, evidence.tolerance, evidence.spacing
+    def __init__(self, measured: MeasuredPoints, min_seen: float, min_points: int) -> None:
+        self.xyz, self.normals, self.shift = measured.xyz, measured.normals, measured.shift
+        self.noise, self.tolerance, self.spacing = measured.noise, measured.tolerance, measured.spacing
         self.min_seen, self.min_points = min_seen, min_points
-        self.is_free = normals.any(axis=1)
+        # Segments are searched apart; the surroundings of a cylinder, and other pieces of it, lie in several.
+        positions = self.xyz - np.column_stack([self.shift, np.zeros((len(self.shift), 2))])
+        self.evidence = CylinderEvidence(self.noise, self.tolerance, self.spacing, positions)
+        self.is_free = self.normals.any(axis=1)
         self.directions = PlaneDirections(_DIRECTION_BIN)
-        self.bins = self.directions.bin_of(np.where(self.is_free[:, None], normals, [0.0, 0.0, 1.0]))
+        self.bins = self.directions.bin_of(np.where(self.is_free[:, None], self.normals, [0.0, 0.0, 1.0]))
         # For each bin, the mask of bins on the great circle across its middle.
         cosine = np.abs(self.directions.normal @ self.directions.normal.T)
         self.on_circle = (cosine <= np.sin(np.radians(_ON_CIRCLE))).astype(np.float32)
@@ -236,7 +229,7 @@ class CylinderSearch:
 
     def _circle(self, rows: np.ndarray, axis: np.ndarray, low: float, high: float) -> Cylinder:
         """Return the circle across an axis for which most points vote: each along its normal, to both sides."""
-        first, second = across_axis(axis)
+        first, second = axes_across(axis)
         middle = self.xyz[rows].mean(axis=0)
         positions = np.column_stack([(self.xyz[rows] - middle) @ first, (self.xyz[rows] - middle) @ second])
         toward = np.column_stack([self.normals[rows] @ first, self.normals[rows] @ second])

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from typing import Optional
 
-import numpy as np
-
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_evidence import CylinderEvidence
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
 from .joined_cylinders import joined, without_nested
 from .joined_pieces import whole_axis
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
-from .searched_points import SEARCH_IN, MeasuredPoints, SearchTunables, Shape, search_shapes
+from .searched_points import SEARCH_IN, MeasuredPoints, SearchedCloud, SearchTunables, Shape, search_shapes
 from .surface_normals import NORMAL_POINTS
 
 _FIELDS = (
@@ -121,6 +118,7 @@ def detect_cylinders(
 
     Examples
     --------
+    >>> import numpy as np
     >>> angle, along = np.mgrid[0:6.28:0.05, 0:4:0.05].reshape(2, -1)
     >>> xyz = np.column_stack([along, 0.5 * np.cos(angle), 0.5 * np.sin(angle)])
     >>> ids, shapes, axes = detect_cylinders(xyz, np.zeros(len(xyz)))
@@ -129,16 +127,14 @@ def detect_cylinders(
     """
 
     def search(measured: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[Found]:
-        # Segments are searched apart; the surroundings of a cylinder, and other pieces of it, lie in several.
-        positions = measured.xyz - np.column_stack([measured.shift, np.zeros((len(measured.shift), 2))])
-        evidence = CylinderEvidence(measured.noise, measured.tolerance, measured.spacing, positions)
-        search = CylinderSearch(measured.xyz, measured.normals, measured.shift, evidence, min_seen, min_points)
-        apart = [one.moved(-measured.shift[one.points[0]]) for one in search.find(low, high, monitor)]
-        apart = without_nested(apart)
-        return joined(apart, positions, measured.noise, measured.spacing, max_gap)
+        search = CylinderSearch(measured, min_seen, min_points)
+        in_place = [one.moved(-measured.shift[one.points[0]]) for one in search.find(low, high, monitor)]
+        positions = search.evidence.positions
+        return joined(without_nested(in_place), positions, measured.noise, measured.spacing, max_gap)
 
-    tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors, search_in)
-    found = search_shapes((xyz, classification, segment_id, shape), Shape.CYLINDER, search, tunables, sampling, monitor)
+    cloud = SearchedCloud(xyz, classification, segment_id, shape, search_in)
+    tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors)
+    found = search_shapes(cloud, Shape.CYLINDER, search, tunables, sampling, monitor)
     ones = found.shapes
     axes = LayerFeatures(
         [one.ends + found.points.origin for one in ones],

@@ -12,7 +12,7 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .cylinder_fits import explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
-from .searched_points import SEARCH_IN, MeasuredPoints, SearchTunables, Shape, search_shapes
+from .searched_points import SEARCH_IN, MeasuredPoints, SearchedCloud, SearchTunables, Shape, search_shapes
 from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, WINDOW, level_of, levels
 from .surface_normals import NORMAL_POINTS
 
@@ -85,12 +85,8 @@ class SphereSearch:
 
     Parameters
     ----------
-    xyz, normals : ndarray of shape (n, 3)
-        Points (m), sorted by elevation, and their unit normals; zero if undefined.
-    noise : float
-        Standard deviation across smooth surfaces, m.
-    tolerance : float
-        Distance within which a point lies on a sphere, m.
+    measured : MeasuredPoints
+        The points.
     min_seen : float
         Least share of the sphere with points.
     min_points : int
@@ -99,19 +95,11 @@ class SphereSearch:
         Whether centers are voted for before radii, or both together in four dimensions.
     """
 
-    def __init__(
-        self,
-        xyz: np.ndarray,
-        normals: np.ndarray,
-        noise: float,
-        tolerance: float,
-        min_seen: float,
-        min_points: int,
-        centers_first: bool,
-    ) -> None:
-        self.xyz, self.normals, self.noise, self.tolerance = xyz, normals, noise, tolerance
+    def __init__(self, measured: MeasuredPoints, min_seen: float, min_points: int, centers_first: bool) -> None:
+        self.xyz, self.normals = measured.xyz, measured.normals
+        self.noise, self.tolerance = measured.noise, measured.tolerance
         self.min_seen, self.min_points, self.centers_first = min_seen, min_points, centers_first
-        self.is_free = normals.any(axis=1)
+        self.is_free = self.normals.any(axis=1)
         # Parts of a sphere that are seen or not: 48 on each half.
         self.parts = PlaneDirections(0.5)
 
@@ -312,18 +300,11 @@ def detect_spheres(
     """
 
     def search(measured: MeasuredPoints, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:
-        return SphereSearch(
-            measured.xyz,
-            measured.normals,
-            measured.noise,
-            measured.tolerance,
-            min_seen,
-            min_points,
-            method == CENTER_FIRST,
-        ).find(low, high, monitor)
+        return SphereSearch(measured, min_seen, min_points, method == CENTER_FIRST).find(low, high, monitor)
 
-    tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors, search_in)
-    found = search_shapes((xyz, classification, segment_id, shape), Shape.SPHERE, search, tunables, sampling, monitor)
+    cloud = SearchedCloud(xyz, classification, segment_id, shape, search_in)
+    tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors)
+    found = search_shapes(cloud, Shape.SPHERE, search, tunables, sampling, monitor)
     ones = found.shapes
     centers = LayerFeatures(
         [found.points.in_place(one.center, int(one.points[0])) for one in ones],

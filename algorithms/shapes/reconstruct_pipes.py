@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..geometry.polygons import axes_across
 from ..stage import Field, InputLayer, Layer, LayerFeatures, stage, tunable
 
 _FIELDS = (
@@ -122,11 +123,9 @@ def _tube(axis: np.ndarray, radius: float) -> list[np.ndarray]:
 
 def _circle(along: np.ndarray, radius: float) -> np.ndarray:
     """Return the corners (sides + 1, 3) of a closed circle across a direction, from its middle, m."""
-    # The axis that the direction is least along is never parallel to it.
-    across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
-    across /= np.linalg.norm(across)
+    first, second = axes_across(along)
     angle = np.linspace(0, 2 * np.pi, _SIDES + 1)[:, None]
-    return radius * (np.cos(angle) * across + np.sin(angle) * np.cross(along, across))
+    return radius * (np.cos(angle) * first + np.sin(angle) * second)
 
 
 def _band(first: np.ndarray, second: np.ndarray) -> list[np.ndarray]:

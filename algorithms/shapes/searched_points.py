@@ -68,109 +68,93 @@ class SearchedPoints:
         return positions - np.array([self.shift[point], 0.0, 0.0]) + self.origin
 
 
-def searched_points(
-    xyz: np.ndarray,
-    classification: np.ndarray,
-    segment_id: Optional[np.ndarray],
-    shape: Optional[np.ndarray],
-    search_in: str,
-    side: float,
-    corner: Optional[np.ndarray] = None,
-) -> SearchedPoints:
-    """Return the points that may be of objects by their class, and belong to the searched segments.
+@dataclass(frozen=True)
+class SearchedCloud:
+    """A cloud and what was found in it before, and which of its points are searched."""
 
-    Parameters
-    ----------
-    xyz, classification : ndarray of shape (n, 3) and (n,)
-        The cloud.
-    segment_id, shape : ndarray of shape (n,), optional
-        Segments and shapes found before.
-    search_in : str
-        One of ``SEARCHES``.
-    side : float
-        Side of the largest window (m).
-    corner : ndarray of shape (2,), optional
-        Where windows begin in plan (m): coordinates are then from a corner of a window. Segments are moved apart by
-        whole windows, so that a part of a cloud has the windows of the whole. Elevation 0 is at half the height of a
-        window.
+    #: xyz, classification, (n, 3) and (n,): coordinates, m, and classes
+    xyz: np.ndarray
+    classification: np.ndarray
+    #: segment_id, shape, (n,): segments and shapes found before
+    segment_id: Optional[np.ndarray]
+    shape: Optional[np.ndarray]
+    search_in: str  #: One of ``SEARCHES``
 
-    Raises
-    ------
-    ValueError
-        If segments are asked for and the cloud has none.
-    """
-    rows = candidates(classification, None, 0)
-    if search_in != WHOLE_CLOUD and shape is not None:
-        rows = rows[shape[rows] == Shape.NONE]
-    if search_in == EACH_SEGMENT:
-        if segment_id is None:
-            raise ValueError(
-                "Searching in each segment needs SegmentID; run a segmentation first, or search the whole cloud."
-            )
-        rows = rows[segment_id[rows] > 0]
-    origin, apart = xyz.min(axis=0), np.ptp(xyz[:, 0]) + _SIDES_APART * side
-    if corner is not None:
-        start = np.append(corner, side / 2)
-        origin, apart = start + np.floor((origin - start) / side) * side, np.ceil(apart / side + 1) * side
-    positions = xyz[rows] - origin
-    order = np.lexsort(positions.T)
-    rows, positions = rows[order], positions[order]
-    shift = np.zeros(len(rows))
-    if search_in == EACH_SEGMENT and segment_id is not None and len(rows):
-        # Numbers of segments follow the first points in this order, as the order of the cloud must not matter.
-        number = by_first_point(segment_id[rows])
-        shift = number * apart
-        positions[:, 0] += shift
-    return SearchedPoints(rows, positions, shift, origin)
+    def points(self, side: float, corner: Optional[np.ndarray] = None) -> SearchedPoints:
+        """Return the points that may be of objects by their class, and belong to the searched segments.
 
+        Parameters
+        ----------
+        side : float
+            Side of the largest window (m).
+        corner : ndarray of shape (2,), optional
+            Where windows begin in plan (m): coordinates are then from a corner of a window. Segments are moved apart by
+            whole windows, so that a part of a cloud has the windows of the whole. Elevation 0 is at half the height of
+            a window.
 
-def numbered(
-    points: SearchedPoints,
-    label: np.ndarray,
-    kind: Shape,
-    segment_id: Optional[np.ndarray],
-    shape: Optional[np.ndarray],
-    n: int,
-    search_in: str,
-) -> tuple[np.ndarray, np.ndarray, int]:
-    """Return the dimensions ``segment_id`` and ``shape`` of a cloud in which shapes of one kind were found.
+        Raises
+        ------
+        ValueError
+            If segments are asked for and the cloud has none.
+        """
+        rows = candidates(self.classification, None, 0)
+        if self.search_in != WHOLE_CLOUD and self.shape is not None:
+            rows = rows[self.shape[rows] == Shape.NONE]
+        if self.search_in == EACH_SEGMENT:
+            if self.segment_id is None:
+                raise ValueError(
+                    "Searching in each segment needs SegmentID; run a segmentation first, or search the whole cloud."
+                )
+            rows = rows[self.segment_id[rows] > 0]
+        origin, apart = self.xyz.min(axis=0), np.ptp(self.xyz[:, 0]) + _SIDES_APART * side
+        if corner is not None:
+            start = np.append(corner, side / 2)
+            origin, apart = start + np.floor((origin - start) / side) * side, np.ceil(apart / side + 1) * side
+        positions = self.xyz[rows] - origin
+        order = np.lexsort(positions.T)
+        rows, positions = rows[order], positions[order]
+        shift = np.zeros(len(rows))
+        if self.search_in == EACH_SEGMENT and self.segment_id is not None and len(rows):
+            # Numbers of segments follow the first points in this order, as the order of the cloud must not matter.
+            shift = by_first_point(self.segment_id[rows]) * apart
+            positions[:, 0] += shift
+        return SearchedPoints(rows, positions, shift, origin)
 
-    Parameters
-    ----------
-    points : SearchedPoints
-        The points that were searched.
-    label : ndarray of shape (k,), int
-        Number of the shape that each lies on, from 1; 0 if unassigned.
-    kind : Shape
-        Shape found at each point.
-    segment_id, shape : ndarray of shape (n,), optional
-        Dimensions of the cloud before. A search of the whole cloud discards both. One of the points without a shape
-        keeps the ids of points with a shape; a search in each segment keeps all.
-    n : int
-        Points of the cloud.
-    search_in : str
-        One of ``SEARCHES``.
+    def numbered(self, points: SearchedPoints, label: np.ndarray, kind: Shape) -> tuple[np.ndarray, np.ndarray, int]:
+        """Return the dimensions ``segment_id`` and ``shape`` of the cloud in which shapes of one kind were found.
 
-    Returns
-    -------
-    segment_id, shape : ndarray of shape (n,), int32 and uint8
-        New numbers follow the largest one that is kept.
-    offset : int
-        Number that is added to the numbers of the shapes.
-    """
-    ids, shapes = np.zeros(n, np.int32), np.zeros(n, np.uint8)
-    if search_in == EACH_SEGMENT and segment_id is not None:
-        ids[:] = segment_id
-    if search_in != WHOLE_CLOUD and shape is not None:
-        shapes[:] = shape
-        has_shape = shape != Shape.NONE
-        if segment_id is not None:
-            ids[has_shape] = segment_id[has_shape]
-    offset = int(ids.max(initial=0))
-    found = label > 0
-    ids[points.rows[found]] = label[found] + offset
-    shapes[points.rows[found]] = kind
-    return ids, shapes, offset
+        A search of the whole cloud discards both dimensions of before. One of the points without a shape keeps the ids
+        of points with a shape; a search in each segment keeps all.
+
+        Parameters
+        ----------
+        points : SearchedPoints
+            The points that were searched.
+        label : ndarray of shape (k,), int
+            Number of the shape that each lies on, from 1; 0 if unassigned.
+        kind : Shape
+            Shape found at each point.
+
+        Returns
+        -------
+        segment_id, shape : ndarray of shape (n,), int32 and uint8
+            New numbers follow the largest one that is kept.
+        offset : int
+            Number that is added to the numbers of the shapes.
+        """
+        ids, shapes = np.zeros(len(self.xyz), np.int32), np.zeros(len(self.xyz), np.uint8)
+        if self.search_in == EACH_SEGMENT and self.segment_id is not None:
+            ids[:] = self.segment_id
+        if self.search_in != WHOLE_CLOUD and self.shape is not None:
+            shapes[:] = self.shape
+            has_shape = self.shape != Shape.NONE
+            if self.segment_id is not None:
+                ids[has_shape] = self.segment_id[has_shape]
+        offset = int(ids.max(initial=0))
+        found = label > 0
+        ids[points.rows[found]] = label[found] + offset
+        shapes[points.rows[found]] = kind
+        return ids, shapes, offset
 
 
 @dataclass(frozen=True)
@@ -206,11 +190,10 @@ class SearchTunables:
     max_radius: Optional[float]
     tolerance: Optional[float]
     n_neighbors: Optional[int]
-    search_in: str
 
 
 def search_shapes(
-    cloud: tuple[np.ndarray, np.ndarray, Optional[np.ndarray], Optional[np.ndarray]],
+    cloud: SearchedCloud,
     kind: Shape,
     search: Callable[[MeasuredPoints, float, float, Monitor], list[F]],
     tunables: SearchTunables,
@@ -221,8 +204,8 @@ def search_shapes(
 
     Parameters
     ----------
-    cloud : tuple of ndarray
-        Coordinates (n, 3), m, and classes (n,); segments and shapes (n,) found before, or None.
+    cloud : SearchedCloud
+        The cloud.
     kind : Shape
         Kind of the shapes.
     search : callable
@@ -244,15 +227,14 @@ def search_shapes(
     ValueError
         If the range of radii is empty, segments are asked for and missing, or all points lie on one line.
     """
-    xyz, classification, segment_id, shape = cloud
     spacing = 1 / float(np.sqrt(sampling.surface_density))
     noise = point_noise(sampling)
     tolerance = _TOLERANCE * noise if tunables.tolerance is None else tunables.tolerance
-    min_radius, max_radius = check_radii(tunables.min_radius, tunables.max_radius, noise, spacing, xyz)
+    min_radius, max_radius = check_radii(tunables.min_radius, tunables.max_radius, noise, spacing, cloud.xyz)
     n_neighbors = normal_points(sampling) if tunables.n_neighbors is None else tunables.n_neighbors
     monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
-    normals = normals_of(xyz, n_neighbors, sampling, monitor.part(0, 0.2))
-    points = searched_points(xyz, classification, segment_id, shape, tunables.search_in, WINDOW * max_radius)
+    normals = normals_of(cloud.xyz, n_neighbors, sampling, monitor.part(0, 0.2))
+    points = cloud.points(WINDOW * max_radius)
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
         # A tolerance set by the user implies a noise.
@@ -266,5 +248,5 @@ def search_shapes(
     inside = label > 0
     old, label[inside] = label[inside], by_first_point(label[inside]) + 1
     order = sorted(dict(zip(label[inside].tolist(), old.tolist())).items())
-    ids, shapes, offset = numbered(points, label, kind, segment_id, shape, len(xyz), tunables.search_in)
+    ids, shapes, offset = cloud.numbered(points, label, kind)
     return SearchResult(ids, shapes, [found[n - 1] for _, n in order], [n + offset for n, _ in order], points)

@@ -18,7 +18,7 @@ from .hough_planes import HoughPlanes
 from .joined_pieces import whole_plane
 from .plane_polygons import PLANE_FIELDS, plane_polygons
 from .search_settings import point_noise
-from .searched_points import SEARCH_IN, SearchedPoints, Shape, numbered, searched_points
+from .searched_points import SEARCH_IN, SearchedCloud, SearchedPoints, Shape
 from .surface_normals import NORMAL_POINTS, normal_points, normals_of, refuse_line
 
 METHODS = ("points", "normals")
@@ -204,13 +204,14 @@ def segment_planes_hough(
         monitor.resolved(n_neighbors=n_neighbors)
     else:
         n_neighbors = None
-    points = searched_points(xyz, classification, segment_id, shape, search_in, window_size, sampling.corner)
+    cloud = SearchedCloud(xyz, classification, segment_id, shape, search_in)
+    points = cloud.points(window_size, sampling.corner)
     search = _Search(window_size, tolerance, distance_bin, slope_bin, n_neighbors, sampling)
     plane = search.planes(xyz, points, monitor.part(0, 0.8))
     label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
     if not label.any():
         monitor.none_found("No plane was found; no point got a new SegmentID.")
-    ids, shapes, offset = numbered(points, label, Shape.PLANE, segment_id, shape, len(xyz), search_in)
+    ids, shapes, offset = cloud.numbered(points, label, Shape.PLANE)
     return ids, shapes, plane_polygons(xyz[points.rows], label, offset, sampling.surface_density)
 
 

@@ -7,10 +7,11 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.groups import split_groups
+from ..geometry.polygons import axes_across
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.candidate_points import candidates
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_fits import Cylinder, across_axis, fit_cylinder
+from .cylinder_fits import Cylinder, fit_cylinder
 from .stem_search import BREAST, FAR, LEAST_POINTS, ROUND, find_stems, ground_level
 from .surface_normals import refuse_line
 from .tree_structure import (
@@ -281,7 +282,7 @@ def _fitted(xyz: np.ndarray, chord: np.ndarray, reach: float) -> Optional[float]
         return None
     axis = chord / length
     center = xyz.mean(axis=0)
-    across = np.array(across_axis(axis))
+    across = np.array(axes_across(axis))
     # The circle of least squares of its equation: arcs make it too small, so that it is the start only.
     plan = (xyz - center) @ across.T
     x, y, rest = np.linalg.lstsq(np.column_stack([2 * plan, np.ones(len(plan))]), (plan**2).sum(axis=1), rcond=None)[0]

@@ -7,7 +7,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from ..shapes.cylinder_fits import across_axis
+from ..geometry.polygons import axes_across
 from ..shapes.searched_points import Shape
 
 # What a surface gives: positions (k, 3) and outward normals (k, 3) of k random points on it.
@@ -48,7 +48,7 @@ def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Pl
     """
     length = float(np.linalg.norm(end - start))
     axis = (end - start) / length
-    first, second = across_axis(axis)
+    first, second = axes_across(axis)
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         angle = rng.uniform(0, 2 * np.pi, count)[:, None]
@@ -74,7 +74,7 @@ def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer:
     inner, outer : float
         Radii, m.
     """
-    first, second = across_axis(normal)
+    first, second = axes_across(normal)
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         angle = rng.uniform(0, 2 * np.pi, count)[:, None]

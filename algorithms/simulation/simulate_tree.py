@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..geometry.polygons import axes_across
 from ..params import SEED
-from ..shapes.cylinder_fits import across_axis
 from ..shapes.stem_search import BREAST
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 
@@ -163,7 +163,7 @@ def _branch(parent: _Limb, share: float, turn: float, rng: np.random.Generator) 
     base = parent.line[first] + (at - first) * (parent.line[first + 1] - parent.line[first])
     along = parent.line[first + 1] - parent.line[first]
     along /= np.linalg.norm(along)
-    one, other = across_axis(along)
+    one, other = axes_across(along)
     angle = np.radians(rng.uniform(*_ANGLE))
     direction = np.cos(angle) * along + np.sin(angle) * (np.cos(turn) * one + np.sin(turn) * other)
     length = rng.uniform(*_LENGTH) * (1 - share) * parent.length
@@ -191,7 +191,7 @@ def _bark(limb: _Limb, density: float, noise: float, rng: np.random.Generator) -
     counts = np.round(2 * np.pi * middle * lengths * density).astype(np.int64)
     piece = np.repeat(np.arange(len(steps)), counts)
     share, angle = rng.random(len(piece)), rng.uniform(0, 2 * np.pi, len(piece))
-    frames = np.array([across_axis(step / length) for step, length in zip(steps, lengths)])
+    frames = np.array([axes_across(step / length) for step, length in zip(steps, lengths)])
     away = np.cos(angle)[:, None] * frames[piece, 0] + np.sin(angle)[:, None] * frames[piece, 1]
     radius = limb.radius[piece] + share * (limb.radius[piece + 1] - limb.radius[piece])
     radius = radius + noise * rng.standard_normal(len(piece))
