@@ -28,12 +28,7 @@ from qgis.PyQt.QtCore import QMetaType
 from ..algorithms.stage import Field, Layer, LayerFeatures, all_fields, column_on_map, plain
 from .memory_files import memory_folder
 
-_TYPES = {
-    bool: QMetaType.Type.Bool,
-    int: QMetaType.Type.Int,
-    float: QMetaType.Type.Double,
-    str: QMetaType.Type.QString,
-}
+_TYPES = {bool: QMetaType.Type.Bool, int: QMetaType.Type.Int, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
 WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
 SOURCE_TYPES = {
     "Polygon": Qgis.ProcessingSourceType.VectorPolygon,

@@ -194,12 +194,7 @@ def _primitives(
 
 
 def _features(count: int, number: int) -> dict[str, Any]:
-    return {
-        "featureCount": count,
-        "attribute": number,
-        "label": ("building", "face")[number],
-        "propertyTable": number,
-    }
+    return {"featureCount": count, "attribute": number, "label": ("building", "face")[number], "propertyTable": number}
 
 
 def triangles_of(corners: np.ndarray, face: Face) -> list[list[int]]:

@@ -35,14 +35,7 @@ _OF = {"cloud": "As classified", "nearest": "Nearest points", "optimal": "Optima
         Measure("fewer_neighbors", "Optimal: points with fewer neighbors than 'Nearest points'", "%"),
     ),
 )
-def report_structure(
-    xyz,
-    dimensionality,
-    voxel_count=None,
-    *,
-    n_neighbors: int = N_NEIGHBORS,
-    monitor=None,
-):
+def report_structure(xyz, dimensionality, voxel_count=None, *, n_neighbors: int = N_NEIGHBORS, monitor=None):
     """Report the points left by thinning, and the shares of linear, planar and volumetric points in two neighborhoods.
 
     In addition to the classes that points have, both neighborhoods of 'Compute features' are tried on some of the

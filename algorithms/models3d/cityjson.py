@@ -144,10 +144,7 @@ def _building(one: NamedModel, vertices: Vertices) -> dict[str, Any]:
         (solid,) = one.model.best
         numbers = vertices.numbers(solid.vertices)
         triangles = [[[numbers[v] for v in ring] for ring in rings] for rings in solid.faces]
-        return {
-            "type": RELIEF,
-            "geometry": [{"type": "CompositeSurface", "lod": "1", "boundaries": triangles}],
-        }
+        return {"type": RELIEF, "geometry": [{"type": "CompositeSurface", "lod": "1", "boundaries": triangles}]}
     geometry = []
     for level, solids in one.model.solids.items():
         parts = [_shell(one, solid, vertices, level == one.model.level) for solid in solids]

@@ -109,13 +109,7 @@ _FIELDS = (
     each="footprints",
 )
 def compute_building_heights(
-    xyz,
-    classification,
-    gps_time=None,
-    footprints=None,
-    *,
-    sampling: CloudSampling = MEASURED,
-    monitor=None,
+    xyz, classification, gps_time=None, footprints=None, *, sampling: CloudSampling = MEASURED, monitor=None
 ):
     """Measure the heights, volume and roof type of the buildings of a map, without models.
 

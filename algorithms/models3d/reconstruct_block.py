@@ -13,15 +13,7 @@ from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
 from . import cityjson
-from .building_facts import (
-    BUILDING_FIELDS,
-    ROOF_FIELDS,
-    WALL_FIELDS,
-    NamedModel,
-    face_attributes,
-    face_rings,
-    faces_of,
-)
+from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, WALL_FIELDS, NamedModel, face_attributes, face_rings, faces_of
 from .reconstruct_roofs import reconstruct_roofs
 from .set_openings import DOOR, WINDOW, WallOpening, with_openings
 from .solid_faults import fault_of
@@ -36,10 +28,7 @@ _ON_FACADE = 0.1
 
 STREET, AIR = "street", "air"
 
-BLOCK_WALL_FIELDS = (
-    *WALL_FIELDS,
-    Field("source", str, f"{STREET}: on a facade; {AIR}: on the outline of a footprint"),
-)
+BLOCK_WALL_FIELDS = (*WALL_FIELDS, Field("source", str, f"{STREET}: on a facade; {AIR}: on the outline of a footprint"))
 OPENING_FIELDS = (
     Field("id", int, "number of the opening, from 1"),
     Field("building", str, "building that it is part of, as in the layer of buildings", of="footprints"),
@@ -67,13 +56,7 @@ OPENING_FIELDS = (
     ),
     layers=(
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
-        Layer(
-            "walls",
-            "Walls",
-            "Polygon",
-            BLOCK_WALL_FIELDS,
-            style="model_walls",
-        ),
+        Layer("walls", "Walls", "Polygon", BLOCK_WALL_FIELDS, style="model_walls"),
         Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
         Layer("set_openings", "Windows and doors of the model", "Polygon", OPENING_FIELDS, style="openings"),
     ),

@@ -57,17 +57,9 @@ def faults_of(solid: Solid) -> dict[int, str]:
         if found:
             return found
     faces = [_Face(solid, face) for face in range(len(solid.faces))]
-    for one in faces:
-        fault = one.fault()
-        if fault:
-            found[one.number] = fault
-    if not found:
-        found.update(_fan_faults(solid, faces))
-    if not found:
-        found.update(_meeting_faults(solid, faces))
-    if not found and solid.volume <= 0:
-        found = {0: "the faces look inward"}
-    return found
+    found = {one.number: fault for one in faces if (fault := one.fault())}
+    found = found or _fan_faults(solid, faces) or _meeting_faults(solid, faces)
+    return found or ({0: "the faces look inward"} if solid.volume <= 0 else {})
 
 
 def _edges(rings: Iterable[Ring]) -> list[tuple[int, int]]:

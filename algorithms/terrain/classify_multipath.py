@@ -30,13 +30,7 @@ _REACH = 10.0
     reach=2 * _REACH,
 )
 def classify_multipath(
-    xyz,
-    classification,
-    return_number=None,
-    number_of_returns=None,
-    *,
-    sampling: CloudSampling = MEASURED,
-    monitor=None,
+    xyz, classification, return_number=None, number_of_returns=None, *, sampling: CloudSampling = MEASURED, monitor=None
 ):
     """Find groups of multipath points under the ground, which a ground filter takes for pits.
 
