@@ -30,9 +30,9 @@ from ..algorithms.cloud.outputs import (
     ResultFiles,
     all_or_nothing,
     check_output,
+    check_place,
     kind_of,
     os_errors_as_messages,
-    same_file,
 )
 from ..algorithms.stage import Monitor
 from .clouds import reads_las
@@ -153,8 +153,7 @@ def _check_target(definition, path: Path, inputs: list) -> None:
     else:
         _check_ending(definition, path)
     for file in files_of(definition, str(path)):
-        if any(same_file(file, source) for source in inputs):
-            raise ValueError(f"The output {file} is also an input; choose another name.")
+        check_place(file, inputs)
     _check_file(path)
 
 
@@ -169,11 +168,8 @@ def _check_ending(definition, path: Path) -> None:
 
 def _check_file(path: Path) -> None:
     """Refuse a file that can't be written where it is to be, because of its folder or because the disk is full."""
+    check_place(path)
     folder = path.absolute().parent
-    if not folder.is_dir():
-        raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
-    if path.is_dir():
-        raise ValueError(f"{path} is a folder; give the name of a file.")
     if path.exists() and not path.is_file():
         raise ValueError(f"{path} is a device, not a file; choose another name.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):

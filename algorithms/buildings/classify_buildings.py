@@ -202,11 +202,11 @@ def classify_buildings(
     evidence = ClusterEvidence(xyz, group, numbers, density, min_area, *returns)
     through = evidence.penetration()
     monitor.progress(0.94)
-    given = _Given(by_entropy, evidence, through, split.separates, max_penetration, min_share_around)
     surface = by_entropy.is_building.astype(float) if segment_id is None else entropies.share_of(segment_id > 0)
+    thresholds, colors = (split.separates, max_penetration, min_share_around), (red, green, blue)
+    given = _Given(by_entropy, evidence, through, *thresholds, surface, colors)
     kind = sampling.kind(source)
-    decide = kind.choose(laser=_decided_in_scan, images=_decided_in_images)
-    decided = decide(given, surface, (red, green, blue), monitor)
+    decided = kind.choose(laser=_decided_in_scan, images=_decided_in_images)(given, monitor)
 
     # 3. All points of a cluster get its class.
     report = build_report(Clusters(entropies.means, decided.reasons, split, through, max_penetration))
@@ -222,7 +222,8 @@ def classify_buildings(
 class _Given:
     """What clusters are decided by: decisions by entropy, evidence, penetration (m,), and the thresholds of these.
 
-    ``separates`` is whether the entropies have two means.
+    ``separates`` is whether the entropies have two means, ``surface_share`` (m,) the share of points on surfaces,
+    ``colors`` are red, green and blue (n,).
     """
 
     by_entropy: Decisions
@@ -231,30 +232,28 @@ class _Given:
     separates: bool
     max_penetration: float
     min_share: float
+    surface_share: np.ndarray
+    colors: tuple[Optional[np.ndarray], ...]
 
 
-def _decided_in_scan(
-    given: _Given, surface_share: np.ndarray, colors: tuple[Optional[np.ndarray], ...], monitor: Monitor
-) -> Decisions:
+def _decided_in_scan(given: _Given, monitor: Monitor) -> Decisions:
     """Decide on the clusters of a laser scan by entropy, penetration and surroundings."""
     if not given.separates:
         return given.by_entropy
     decided = with_penetration(given.by_entropy, given.through, given.max_penetration, given.evidence)
     monitor.progress(0.98)
     if not given.evidence.has_returns:
-        is_green, green_from = green_clusters(colors, given.evidence, surface_share > 0.5)
+        is_green, green_from = green_clusters(given.colors, given.evidence, given.surface_share > 0.5)
         monitor.resolved(plant_greenness=green_from)
         decided = without_green(decided, is_green)
     return with_surroundings(decided, given.min_share, given.evidence)
 
 
-def _decided_in_images(
-    given: _Given, surface_share: np.ndarray, colors: tuple[Optional[np.ndarray], ...], monitor: Monitor
-) -> Decisions:
+def _decided_in_images(given: _Given, monitor: Monitor) -> Decisions:
     """Decide on the clusters of matched images by :func:`.decide_in_images`, with the greenness of the scene."""
-    is_green, green_from = green_clusters(colors, given.evidence, surface_share > 0.5)
+    is_green, green_from = green_clusters(given.colors, given.evidence, given.surface_share > 0.5)
     monitor.resolved(matched_images=True, plant_greenness=green_from)
-    return decide_in_images(surface_share, is_green, given.evidence, given.min_share)
+    return decide_in_images(given.surface_share, is_green, given.evidence, given.min_share)
 
 
 def _surface_neighborhood(sampling: CloudSampling, density: float, noise: float) -> Union[Nearest, Wide]:

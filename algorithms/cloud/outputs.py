@@ -65,13 +65,18 @@ def check_output(path: Path, sources: Iterable[Path]) -> None:
         raise ValueError(
             f"{path.name} can't be written as a point cloud: give it the extension .las, .laz or .copc.laz."
         )
-    if not path.parent.is_dir():
-        raise ValueError(f"The folder {path.parent} does not exist; make it or choose another one.")
+    check_place(path, sources)
+
+
+def check_place(path: Path, sources: Iterable[Path] = ()) -> None:
+    """Refuse with a ValueError an output whose folder is missing, that is a folder, or one of ``sources``."""
+    folder = path.absolute().parent
+    if not folder.is_dir():
+        raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
     if path.is_dir():
         raise ValueError(f"{path} is a folder; give the name of a file.")
-    for source in sources:
-        if same_file(path, source):
-            raise ValueError(f"The output {path} is also an input; choose another name.")
+    if any(same_file(path, source) for source in sources):
+        raise ValueError(f"The output {path} is also an input; choose another name.")
 
 
 def same_file(one: Path, other: Path) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..cloud.cloud import Cloud, origin_before
 from ..cloud.files import check_compression, read_cloud, write_cloud
-from ..cloud.outputs import all_or_nothing, check_output, os_errors_as_messages, same_file
+from ..cloud.outputs import all_or_nothing, check_output, check_place, os_errors_as_messages
 from ..cloud.web_addresses import is_address
 from ..cloud.web_file import file_at
 from ..packages import absent
@@ -150,10 +150,7 @@ def _check(algorithm: Pipeline, targets: list[tuple[Output, Path]], sources: Seq
             ending = ".asc" if isinstance(declared, Raster) else ".html"
             if path.suffix.lower() != ending:
                 raise ValueError(f"{path.name} can't be written as {declared}: give it the extension {ending}.")
-        if not path.absolute().parent.is_dir():
-            raise ValueError(f"The folder {path.parent} does not exist; make it or choose another one.")
-        if any(same_file(path, source) for source in read):
-            raise ValueError(f"The output {path} is also an input; choose another name.")
+        check_place(path, read)
     if len({path.resolve() for _, path in targets}) < len(targets):
         raise ValueError("Two outputs are the same file; give each its own.")
 

@@ -52,6 +52,10 @@ _ALIKE = 0.8
 # Most squared distances of a block: with ten multiplications each, up to 2^18 in all, OpenBLAS uses one thread.
 _PRODUCT = 26_000
 
+# Returns how many candidates blocks need, for their middles (b, 3), how far (b,) their points are from these, and the
+# points of a block.
+_Candidates = Callable[[np.ndarray, np.ndarray, int], np.ndarray]
+
 
 @dataclass
 class Shapes:
@@ -175,15 +179,13 @@ def _shapes(
     tree: Any,
     rows: np.ndarray,
     size: int,
-    candidates: Callable[[np.ndarray, np.ndarray, int], np.ndarray],
+    candidates: _Candidates,
     weigh: Callable[[Batch], tuple[np.ndarray, np.ndarray]],
     extents: bool,
 ) -> Shapes:
     """Return the shapes of the neighborhoods of ``rows`` (m,), from blocks of at most ``size`` of them.
 
-    ``candidates`` returns how many candidates blocks need, and receives the middles (b, 3), how far their points are
-    from these, and the size. The result of ``weigh`` is the weight (b, s, c) of each in a neighborhood, and which (b,
-    s) have all.
+    The result of ``weigh`` is the weight (b, s, c) of each candidate in a neighborhood, and which (b, s) have all.
     """
     made = Shapes(np.empty((len(rows), 6)), np.empty(len(rows), np.int64), *np.empty((2, len(rows) * extents)))
     remaining, points = np.arange(len(rows)), columns[:, rows].T
@@ -204,13 +206,7 @@ def _shapes(
     return made
 
 
-def _batches(
-    columns: np.ndarray,
-    tree: Any,
-    points: np.ndarray,
-    size: int,
-    candidates: Callable[[np.ndarray, np.ndarray, int], np.ndarray],
-) -> Iterator[Batch]:
+def _batches(columns: np.ndarray, tree: Any, points: np.ndarray, size: int, candidates: _Candidates) -> Iterator[Batch]:
     """Yield ``points`` (m, 3) in blocks of at most ``size``, several with alike numbers of points and candidates."""
     order, starts = _leaves(points, size)
     points, sizes = points[order], np.diff(starts, append=len(points))

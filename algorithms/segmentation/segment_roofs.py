@@ -140,7 +140,10 @@ def segment_roofs(
 
     # 1. Smooth surfaces.
     is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
-    is_used &= kind.choose(_anywhere, _on_top)(xyz, height_above_ground, is_used, density, sampling)
+    if kind.is_surface:
+        # Roofs lie on the surface that is seen from above.
+        from_corner = sampling.from_corner(xyz)
+        is_used &= TopSurface(from_corner, height_above_ground, is_used, density).on_top(from_corner)
     used = np.flatnonzero(is_used)
     find_patches = kind.choose(_patches_of_scan, _patches_of_images)
     found = find_patches(xyz, used, sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
@@ -162,21 +165,6 @@ def segment_roofs(
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
-
-
-def _anywhere(
-    xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float, sampling: CloudSampling
-) -> np.ndarray:
-    """Return that any point (n,) of a laser scan may be of a roof."""
-    return np.ones(len(xyz), bool)
-
-
-def _on_top(
-    xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float, sampling: CloudSampling
-) -> np.ndarray:
-    """Return the mask of points (n,) of matched images that may be of a roof: on the surface seen from above."""
-    xyz = sampling.from_corner(xyz)
-    return TopSurface(xyz, height, is_used, density).on_top(xyz)
 
 
 @dataclass(frozen=True)
