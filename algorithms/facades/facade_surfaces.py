@@ -2,19 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..geometry.grid import shared_cells
 from ..geometry.groups import members
+from ..geometry.sparse_voxels import voxelize
+from ..packages import spatial
 from ..planes.least_squares_planes import Planes, planes_of
 from ..stage import LayerFeatures, Monitor
-from .facade_frame import Frame, frame_of
+from .facade_frame import Frame, frame_of, intersection_line
 from .facade_outline import Drawing, outline_of, ring_area
-from .facade_sides import facing_outside
 
 # Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't show which side was seen.
 _THICKNESS = 0.05
+
+# Side (m) of the cells in which a facade is compared with the points on both sides, and which two facades must share to
+# meet.
+_CELL = 0.5
+
+# Side (m) of the voxels whose points count as one around a facade: a cell holds a few of them.
+_THINNED = 0.1
+
+# Points farther from the plane than this (m) say nothing about the side from which a facade was seen.
+_FARTHEST = 10.0
+
+# Panes, frames, curtains and reveals lie within this distance (m) behind a wall; cars and trees are farther before it.
+_DEPTH = 0.5
+
+# The ends of a facade wider than this (cells) are left out of the comparison.
+_LEAST_COLUMNS = 3
+
+# Which side of a corner a facade lies on follows from its points within this distance (m) of the corner.
+_AT_CORNER = 1.5
+
+# Facades whose normals enclose less than this angle (cosine: 40°) are strips of one front, and face the same side.
+_ALIKE = np.cos(np.radians(40.0))
 
 
 @dataclass(frozen=True)
@@ -116,3 +141,119 @@ def facade_features(facades: list[Facade]) -> LayerFeatures:
         "neighbors": [facade.neighbors for facade in facades],
     }
     return LayerFeatures([facade.rings for facade in facades], columns)
+
+
+def facing_outside(
+    frames: Sequence[Frame], xyz: np.ndarray, rows: Sequence[np.ndarray], thickness: np.ndarray, monitor: Monitor
+) -> list[Frame]:
+    """Return frames turned so that their normals point to the side that the facades were seen from.
+
+    Parameters
+    ----------
+    frames : sequence of Frame
+        Of the facades, normals to either side.
+    xyz : ndarray of shape (n, 3)
+        The whole cloud (m).
+    rows : sequence of ndarray
+        The points of each facade.
+    thickness : ndarray of shape (m,)
+        Points nearer to the plane of a facade than this (m) belong to it.
+    monitor : Monitor
+        Receives the progress.
+
+    Notes
+    -----
+    An opaque wall hides everything behind it: points off a cell of wall are before it (streets, cars, trees). Close
+    behind the wall there are only points seen through openings. Points farther off next to a gap say nothing: a gap is
+    an opening with a room behind it, or the shadow of a tree before it.
+
+    A narrow wall hides little, and the side of a bay has the street on both sides. Two facades that meet at a corner
+    both have the other before them, or both behind them: a reentrant corner or a salient one. Facades are decided from
+    the one with most evidence to that with least, each with those next to it that were decided before.
+    """
+    start = xyz.min(axis=0)
+    _, voxel, count = voxelize(xyz - start, _THINNED)
+    around = start + np.column_stack([np.bincount(voxel, column) / count for column in (xyz - start).T])
+    tree = spatial.cKDTree(around)
+    evidence = []
+    for done, (frame, own, thick) in enumerate(zip(frames, rows, thickness), start=1):
+        points = xyz[own]
+        middle, reach = points.mean(axis=0), np.linalg.norm(np.ptp(points, axis=0)) / 2 + _FARTHEST
+        near = around[np.sort(tree.query_ball_point(middle, reach))]
+        evidence.append(_evidence(frame, points, near, thick))
+        monitor.progress(done / len(frames))
+    side = _decided(np.array(evidence).reshape(-1, 2), *_corners(frames, xyz, rows))
+    return [frame_of(frame.origin, sign * frame.normal) for frame, sign in zip(frames, side)]
+
+
+def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float) -> tuple[float, float]:
+    """Return what points (n, 3) of a facade and those around it (m, 3) say of its outside.
+
+    It is the evidence for the side to which the normal points, -1 to 1, and the area (m²) of the wall.
+    """
+    own, positions = frame.local(own), frame.local(near)
+    low = own[:, :2].min(axis=0)
+    cell, own_cell = (np.floor((some[:, :2] - low) / _CELL).astype(np.int64) for some in (positions, own))
+    count = own_cell.max(axis=0) + 1
+    # Ground lies at the foot of the facade or a little below.
+    cell[:, 1] += cell[:, 1] == -1
+    inside = ((cell >= 0) & (cell < count)).all(axis=1)
+    if count[0] > _LEAST_COLUMNS:
+        # Walls at a right angle lie behind the ends of the facade.
+        inside &= (positions[:, 0] > own[:, 0].min() + _CELL) & (positions[:, 0] < own[:, 0].max() - _CELL)
+    off = np.abs(positions[:, 2])
+    inside &= (off > thickness) & (off <= _FARTHEST)
+    points = np.bincount(own_cell @ [count[1], 1], minlength=int(count.prod()))
+    # A cell at the rim of an opening has fewer points than half of the usual.
+    is_wall = points >= 0.5 * np.median(points[points > 0])
+    cell, off, side = cell[inside], off[inside], np.sign(positions[inside, 2])
+    votes = np.where(off <= _DEPTH, -side, np.where(is_wall[cell @ [count[1], 1]], side, 0.0))
+    total = float(np.abs(votes).sum())
+    return float(votes.sum()) / total if total else 0.0, float(is_wall.sum()) * _CELL**2
+
+
+def _corners(
+    frames: Sequence[Frame], xyz: np.ndarray, rows: Sequence[np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return pairs of facades that meet (k,), (k,), and whether their normals agree: 1 if they do, -1 if not."""
+    if len(frames) < 2:
+        return np.zeros(0, int), np.zeros(0, int), np.zeros(0)
+    number = np.repeat(np.arange(len(rows)), [len(own) for own in rows])
+    one, other, _ = shared_cells(xyz[np.concatenate(rows)], number, len(rows), _CELL)
+    agree = [_agreement(frames[a], xyz[rows[a]], frames[b], xyz[rows[b]]) for a, b in zip(one, other)]
+    return one, other, np.array(agree)
+
+
+def _agreement(one: Frame, of_one: np.ndarray, other: Frame, of_other: np.ndarray) -> float:
+    """Return whether two normals point to the same side of a corner, -1 to 1; 0 where undecided."""
+    line = intersection_line(one, other)
+    cosine = float(one.normal @ other.normal)
+    if line is None or abs(cosine) >= _ALIKE:
+        return float(np.sign(cosine))
+    sides = []
+    for frame, points in ((one, of_other), (other, of_one)):
+        offset = points - line[0]
+        away = offset - np.outer(offset @ line[1], line[1])
+        at_corner = points[(away**2).sum(axis=1) <= _AT_CORNER**2]
+        sides.append(float(np.sign(frame.local(at_corner)[:, 2]).mean()) if len(at_corner) else 0.0)
+    return sides[0] * sides[1]
+
+
+def _decided(evidence: np.ndarray, one: np.ndarray, other: np.ndarray, agree: np.ndarray) -> np.ndarray:
+    """Return 1 for each normal (m,) that points outside, and -1 for the others.
+
+    A corner weighs as much as the smaller of its two facades.
+    """
+    area = evidence[:, 1]
+    support = area * evidence[:, 0]
+    side, is_open = np.ones(len(support)), np.ones(len(support), bool)
+    beside: list[list[tuple[int, float]]] = [[] for _ in support]
+    for a, b, sign in zip(one, other, agree * np.minimum(area[one], area[other])):
+        beside[a].append((int(b), float(sign)))
+        beside[b].append((int(a), float(sign)))
+    for _ in range(len(support)):
+        clearest = int(np.argmax(np.where(is_open, np.abs(support), -1.0)))
+        side[clearest], is_open[clearest] = (1.0 if support[clearest] >= 0 else -1.0), False
+        for neighbor, weight in beside[clearest]:
+            support[neighbor] += weight * side[clearest]
+    return side

@@ -10,8 +10,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
 from lidar_buildings.algorithms.features.greenness import greenness, greenness_between
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
-from lidar_buildings.algorithms.simulation.drone_site import build_site
-from lidar_buildings.algorithms.simulation.simulate_drone_site import simulate_drone_site
+from lidar_buildings.algorithms.simulation.simulate_drone_site import build_site, simulate_drone_site
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan
 from lidar_buildings.tests.builders import is_inside
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.facades.facade_sides import facing_outside
-from lidar_buildings.algorithms.facades.facade_surfaces import plane_of
+from lidar_buildings.algorithms.facades.facade_surfaces import facing_outside, plane_of
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.facades import street_floor, wall, without
