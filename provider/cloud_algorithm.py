@@ -69,7 +69,7 @@ from .inputs import (
 from .layer_outputs import write_layer, write_text
 from .memory_needs import warn_if_memory_is_short
 from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_clouds
-from .places import Place, place_of_cloud, place_of_layers
+from .places import Place, place_of_cloud, place_of_layer
 from .qgis_crs import WGS84
 from .rasters import write_raster
 from .run_log import RunLog, about_run, write_page
@@ -191,11 +191,11 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         tunables = self.tunables(given)
         wanted = [made for made in self.made if given.has(made.name)]
         layers = find_input_layers(given, self.layers)
-        compared = {one.name for one in layers} | ({REFERENCE.lower()} if given.has(REFERENCE) else set())
+        compared = {one.wanted.name for one in layers} | ({REFERENCE.lower()} if given.has(REFERENCE) else set())
         job = Job(tunables, [made for made in wanted if not made.only_with or compared & set(made.only_with)])
         job.unmade = [made for made in wanted if made not in job.wanted]
         # Others last as long as their layers.
-        job.systems = [layer.sourceCrs().authid() for one, layer in layers.items() if one.read]
+        job.systems = [one.source.sourceCrs().authid() for one in layers if one.wanted.read]
         if declared.reads_cloud and (self.needs_cloud or given.has(INPUT)):
             job.clouds = input_paths(given, declared.merges)
             job.layer = name_of_layer(given.parameters.get(INPUT))
@@ -216,7 +216,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             check_readable(path, box=job.box)
         check_sizes(job.paths, job.box, job.spacing)
         if job.clouds:
-            refuse_elsewhere(layers, job.clouds, job.box, given.context)
+            refuse_elsewhere(layers, job.clouds, job.box)
         return job
 
     def processAlgorithm(  # noqa: N802
@@ -261,8 +261,10 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         clouds = read_clouds(job.paths, monitor.parts(len(job.paths)), job.crs, job.box, job.spacing)
         reference = clouds.pop() if job.reference else None
         found = find_input_layers(given, self.layers)
-        place = place_of_cloud(clouds[0]) if clouds else place_of_layers(found, monitor)
-        layers = read_input_layers(found, place, given.context, monitor.part(1.0, 1.0)) if place is not None else {}
+        place = place_of_cloud(clouds[0]) if clouds else None
+        if not clouds and found:
+            place = place_of_layer(found[0].wanted.title, found[0].source, monitor)
+        layers = read_input_layers(found, place, monitor.part(1.0, 1.0)) if place is not None else {}
         return Read(clouds, reference, layers, place)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Callable, Optional
 
@@ -120,18 +120,18 @@ def _read_file(given: Given, input_layer: InputLayer, path: Path) -> QgsProcessi
     return source
 
 
-def find_input_layers(given: Given, wanted: Iterable[InputLayer]) -> dict[InputLayer, QgsProcessingFeatureSource]:
+def find_input_layers(given: Given, wanted: Iterable[InputLayer]) -> list[GivenLayer]:
     """Return the layers that are given, see :func:`find_input_layer`."""
-    found = {input_layer: find_input_layer(given, input_layer) for input_layer in wanted}
-    return {input_layer: layer for input_layer, layer in found.items() if layer is not None}
+    found = ((input_layer, find_input_layer(given, input_layer)) for input_layer in wanted)
+    return [GivenLayer(one, layer, given.context) for one, layer in found if layer is not None]
 
 
-def input_layer_files(given: Given, found: Iterable[InputLayer]) -> list[Path]:
+def input_layer_files(given: Given, found: Iterable[GivenLayer]) -> list[Path]:
     """Return the files of the layers that were found, if they have one."""
     files = []
-    for input_layer in found:
-        name = input_layer_name(input_layer)
-        if input_layer.read is not None:
+    for one in found:
+        name = input_layer_name(one.wanted)
+        if one.wanted.read is not None:
             files.append(Path(given.read("File", name)))
         elif (layer := given.read("VectorLayer", name)) is not None:
             uri = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
@@ -139,12 +139,7 @@ def input_layer_files(given: Given, found: Iterable[InputLayer]) -> list[Path]:
     return [path for path in files if path.is_file()]
 
 
-def refuse_elsewhere(
-    layers: dict[InputLayer, QgsProcessingFeatureSource],
-    clouds: Sequence[Path],
-    box: Optional[np.ndarray],
-    context: QgsProcessingContext,
-) -> None:
+def refuse_elsewhere(layers: list[GivenLayer], clouds: Sequence[Path], box: Optional[np.ndarray]) -> None:
     """Refuse layers that lie wholly outside of the clouds, before any work; of tiles on the web those in a box count.
 
     Raises
@@ -153,16 +148,16 @@ def refuse_elsewhere(
         If a layer doesn't touch the bounding box of a single cloud.
     """
     boxes = [_plan_box(cloud, box) for cloud in clouds] if layers else []
-    for input_layer, layer in layers.items():
-        extent = layer.sourceExtent()
-        cloud_boxes = [_brought_to(input_layer, layer, box, crs, context) for box, crs in boxes]
+    for one in layers:
+        extent = one.source.sourceExtent()
+        cloud_boxes = [one.brought_to(box, crs) for box, crs in boxes]
         if extent.isNull() or any(box is None or extent.intersects(box) for box in cloud_boxes):
             continue
         around = QgsRectangle()
-        for one in cloud_boxes:
-            around.combineExtentWith(one)
+        for cloud_box in cloud_boxes:
+            around.combineExtentWith(cloud_box)
         raise ValueError(
-            f"{input_layer.title} and the point cloud{'s' * (len(clouds) > 1)} don't overlap: {_range(extent)} against "
+            f"{one.wanted.title} and the point cloud{'s' * (len(clouds) > 1)} don't overlap: {_range(extent)} against "
             f"{_range(around)}; choose a layer of the same area, or check the coordinate reference systems of both."
         )
 
@@ -173,102 +168,87 @@ def _plan_box(cloud: Path, box: Optional[np.ndarray]) -> tuple[QgsRectangle, Qgs
     return QgsRectangle(low[0], low[1], high[0], high[1]), crs_of(crs.plane)
 
 
-def _brought_to(
-    input_layer: InputLayer,
-    layer: QgsProcessingFeatureSource,
-    box: QgsRectangle,
-    crs: QgsCoordinateReferenceSystem,
-    context: QgsProcessingContext,
-) -> Optional[QgsRectangle]:
-    """Return the box of a cloud in the CRS of a layer; None where the cloud has no area or can't be brought there."""
-    if box.isEmpty():
-        return None
-    try:
-        # The box of the cloud is transformed: a layer's may exceed the area that the cloud's system is made for.
-        transform = _transform(input_layer, layer, crs, context, Monitor())
-        return transform.transformBoundingBox(box, Qgis.TransformDirection.Reverse)
-    except QgsCsException:
-        return None
-
-
 def _range(box: QgsRectangle) -> str:
     """Return the coordinates of a box as text for users."""
     return f"x {box.xMinimum():.7g} to {box.xMaximum():.7g}, y {box.yMinimum():.7g} to {box.yMaximum():.7g}"
 
 
-def read_input_layers(
-    found: dict[InputLayer, QgsProcessingFeatureSource], place: Place, context: QgsProcessingContext, monitor: Monitor
-) -> dict[str, LayerFeatures]:
-    """Return layers by their names, see :func:`read_input_layer`."""
-    return {one.name: read_input_layer(one, layer, place, context, monitor) for one, layer in found.items()}
+def read_input_layers(found: Iterable[GivenLayer], place: Place, monitor: Monitor) -> dict[str, LayerFeatures]:
+    """Return layers by their names, see :meth:`GivenLayer.read`."""
+    return {one.wanted.name: one.read(place, monitor) for one in found}
 
 
-def read_input_layer(
-    input_layer: InputLayer,
-    layer: QgsProcessingFeatureSource,
-    place: Place,
-    context: QgsProcessingContext,
-    monitor: Monitor,
-) -> LayerFeatures:
-    """Return a layer as a stage is given it: parts of geometries in local meters, with all attributes.
+@dataclass(frozen=True)
+class GivenLayer:
+    """A layer that is given for an input, and the context in which it is transformed."""
 
-    Arcs become lines. Features without a sound geometry of the declared kind are left out, which a
-    warning counts. Heights are taken in the vertical unit of the cloud; geometries that lack some are flat.
+    wanted: InputLayer
+    source: QgsProcessingFeatureSource
+    context: QgsProcessingContext
 
-    Raises
-    ------
-    ValueError
-        If there are features and all are left out.
-    """
-    transform = _transform(input_layer, layer, place.crs, context, monitor)
-    geometries: list = []
-    sources: list = []
-    rows: list = []
-    count = left_out = 0
-    request = QgsFeatureRequest()
-    for feature in layer.getFeatures(request, Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks):
-        if count % _BETWEEN_CHECKS == 0:
-            monitor.progress(min(1.0, count / max(1, layer.featureCount())))
-        parts = _parts(feature.geometry(), input_layer, transform, place)
-        geometries += parts
-        sources += _as_read(feature.geometry(), transform, len(parts))
-        rows += [feature.attributes()] * len(parts)
-        count += 1
-        left_out += not parts
-    if left_out and not rows:
-        raise ValueError(
-            f"{input_layer.title} has no usable feature: none of {count} has a valid geometry of "
-            f"{input_layer.objects}; run 'Fix geometries' on the layer, or choose another."
-        )
-    if left_out:
-        monitor.warn(
-            f"{input_layer.title}: {left_out} of {count} features are left out; "
-            f"they have no valid geometry of {input_layer.objects}."
-        )
-    names = layer.fields().names()
-    columns = {name: as_column([_plain(row[i]) for row in rows]) for i, name in enumerate(names)}
-    return LayerFeatures(geometries, columns, sources)
+    def brought_to(self, box: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> Optional[QgsRectangle]:
+        """Return the box of a cloud in the layer's CRS; None where the cloud has no area or can't be brought there."""
+        if box.isEmpty():
+            return None
+        try:
+            # The box of the cloud is transformed: a layer's may exceed the area that the cloud's system is made for.
+            return self._transform(crs, Monitor()).transformBoundingBox(box, Qgis.TransformDirection.Reverse)
+        except QgsCsException:
+            return None
 
+    def read(self, place: Place, monitor: Monitor) -> LayerFeatures:
+        """Return a layer as a stage is given it: parts of geometries in local meters, with all attributes.
 
-def _transform(
-    input_layer: InputLayer,
-    layer: QgsProcessingFeatureSource,
-    crs: QgsCoordinateReferenceSystem,
-    context: QgsProcessingContext,
-    monitor: Monitor,
-) -> QgsCoordinateTransform:
-    """Return the transform of a layer to the CRS of the cloud; none is needed where one of the two names no CRS."""
-    own = crs_of_layer(layer)
-    if own.isValid() and crs.isValid():
-        return QgsCoordinateTransform(own, crs, context.transformContext())
-    if own.isValid():
-        refuse_degrees(input_layer.title, own)
-        monitor.warn(
-            f"{input_layer.title} is in {own.userFriendlyIdentifier()}; everything without a CRS is taken to be in it."
-        )
-    elif crs.isValid():
-        monitor.warn(f"{input_layer.title} names no CRS; it is taken to be in {crs.userFriendlyIdentifier()}.")
-    return QgsCoordinateTransform()
+        Arcs become lines. Features without a sound geometry of the declared kind are left out, which a
+        warning counts. Heights are taken in the vertical unit of the cloud; geometries that lack some are flat.
+
+        Raises
+        ------
+        ValueError
+            If there are features and all are left out.
+        """
+        wanted, layer, transform = self.wanted, self.source, self._transform(place.crs, monitor)
+        geometries: list = []
+        sources: list = []
+        rows: list = []
+        count = left_out = 0
+        request = QgsFeatureRequest()
+        for feature in layer.getFeatures(request, Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks):
+            if count % _BETWEEN_CHECKS == 0:
+                monitor.progress(min(1.0, count / max(1, layer.featureCount())))
+            parts = _parts(feature.geometry(), wanted, transform, place)
+            geometries += parts
+            sources += _as_read(feature.geometry(), transform, len(parts))
+            rows += [feature.attributes()] * len(parts)
+            count += 1
+            left_out += not parts
+        if left_out and not rows:
+            raise ValueError(
+                f"{wanted.title} has no usable feature: none of {count} has a valid geometry of "
+                f"{wanted.objects}; run 'Fix geometries' on the layer, or choose another."
+            )
+        if left_out:
+            monitor.warn(
+                f"{wanted.title}: {left_out} of {count} features are left out; "
+                f"they have no valid geometry of {wanted.objects}."
+            )
+        names = layer.fields().names()
+        columns = {name: as_column([_plain(row[i]) for row in rows]) for i, name in enumerate(names)}
+        return LayerFeatures(geometries, columns, sources)
+
+    def _transform(self, crs: QgsCoordinateReferenceSystem, monitor: Monitor) -> QgsCoordinateTransform:
+        """Return the transform of the layer to the CRS of the cloud; none is needed where one of the two has none."""
+        own, title = crs_of_layer(self.source), self.wanted.title
+        if own.isValid() and crs.isValid():
+            return QgsCoordinateTransform(own, crs, self.context.transformContext())
+        if own.isValid():
+            refuse_degrees(title, own)
+            monitor.warn(
+                f"{title} is in {own.userFriendlyIdentifier()}; everything without a CRS is taken to be in it."
+            )
+        elif crs.isValid():
+            monitor.warn(f"{title} names no CRS; it is taken to be in {crs.userFriendlyIdentifier()}.")
+        return QgsCoordinateTransform()
 
 
 def _parts(geometry: QgsGeometry, input_layer: InputLayer, transform: QgsCoordinateTransform, place: Place) -> list:

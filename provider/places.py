@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Optional
+from typing import Callable
 
 import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 
 from ..algorithms.cloud.cloud import Cloud, origin_before
 from ..algorithms.cloud.crs import NO_CRS
-from ..algorithms.stage import InputLayer, Monitor
+from ..algorithms.stage import Monitor
 from .qgis_crs import crs_of, crs_of_layer, meters_per_unit
 
 
@@ -30,21 +30,16 @@ def place_of_cloud(cloud: Cloud) -> Place:
     return Place(crs_of(cloud.crs.plane), cloud.to_map, cloud.from_map, cloud.crs.horizontal, cloud.crs.code)
 
 
-def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monitor: Monitor) -> Optional[Place]:
+def place_of_layer(title: str, layer: QgsProcessingFeatureSource, monitor: Monitor) -> Place:
     """Return the place of what a stage makes of layers alone: in the CRS of the first, from a round origin at its edge.
-
-    It is None where there are no layers.
 
     Raises
     ------
     ValueError
         If the coordinates of the first layer are degrees.
     """
-    if not layers:
-        return None
-    input_layer, layer = next(iter(layers.items()))
     crs = crs_of_layer(layer)
-    refuse_degrees(input_layer.title, crs)
+    refuse_degrees(title, crs)
     if not crs.isValid():
         monitor.warn(NO_CRS)
     plane, height = meters_per_unit(crs)

@@ -73,7 +73,7 @@ class StageAlgorithm(CloudAlgorithm):
         tell_sizes(job.paths, job.box, job.spacing, monitor)
         surveys = self._surveys(monitor)
         place = place_of_survey(surveys[0])
-        return Read([], None, read_input_layers(found, place, given.context, monitor), place, surveys)
+        return Read([], None, read_input_layers(found, place, monitor), place, surveys)
 
     def _surveys(self, monitor: Monitor) -> list[Survey]:
         """Return the cloud as a survey, and the reference, with the meters of the cloud, where one is given."""

@@ -10,7 +10,6 @@ from qgis.core import (
     Qgis,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProcessingFeatureSource,
     QgsProcessingFeedback,
     QgsProcessingOutputFile,
     QgsProcessingOutputNumber,
@@ -26,7 +25,7 @@ from ..algorithms.cloud.outputs import COPC, stem_of
 from ..algorithms.pipeline import CLOUD
 from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
-from ..algorithms.stage import FileContent, InputLayer, Layer, LayerFeatures, Raster, TextFile
+from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster, TextFile
 from ..algorithms.tiling.joined_files import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
@@ -43,7 +42,7 @@ from .destinations import Made
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .given import Given
-from .input_layers import find_input_layers, input_layer_files, input_layer_parameter, read_input_layers
+from .input_layers import GivenLayer, find_input_layers, input_layer_files, input_layer_parameter, read_input_layers
 from .inputs import (
     INPUT,
     OUTPUT,
@@ -136,7 +135,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         layers = input_layer_files(given, self._given_layers(given))
         check_targets(sinks, parameters, [*self.files, *layers])
 
-    def _given_layers(self, given: Given) -> dict[InputLayer, QgsProcessingFeatureSource]:
+    def _given_layers(self, given: Given) -> list[GivenLayer]:
         """Return the layers that the composite is given."""
         return find_input_layers(given, self.tiled.pipeline.input_layers.values())
 
@@ -204,7 +203,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
         def find_layers(survey: Survey) -> dict[str, LayerFeatures]:
             part, place = monitor.part(_DONE, _DONE), place_of_survey(survey)
-            return read_input_layers(self._given_layers(given), place, given.context, part)
+            return read_input_layers(self._given_layers(given), place, part)
 
         def take_raster(survey: Survey, mosaic: RasterMosaic) -> None:
             raster, name = declared.get(mosaic.name), mosaic.name.upper()

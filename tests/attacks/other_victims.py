@@ -64,7 +64,7 @@ def read_layer(path: Path, number: int) -> str:
     _qgis()
     from qgis.core import QgsProcessingContext, QgsProcessingFeatureSource, QgsVectorLayer
 
-    from lidar_buildings.provider.input_layers import read_input_layer
+    from lidar_buildings.provider.input_layers import GivenLayer
     from lidar_buildings.provider.places import place_of_cloud
 
     readers = [stage for stage in STAGES.values() if stage.input_layers]
@@ -76,7 +76,7 @@ def read_layer(path: Path, number: int) -> str:
     source = QgsProcessingFeatureSource(layer, context)
     try:
         layers = {
-            wanted.name: read_input_layer(wanted, source, place_of_cloud(cloud), context, Monitor())
+            wanted.name: GivenLayer(wanted, source, context).read(place_of_cloud(cloud), Monitor())
             for wanted in stage.input_layers
         }
         clouds = cloud if stage.reads else None

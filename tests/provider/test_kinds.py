@@ -28,7 +28,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import InputLayer, Monitor, Raster, RasterSurface
 from lidar_buildings.provider import cloud_algorithm, layer_outputs, rasters, stage_algorithm
 from lidar_buildings.provider.given import Given
-from lidar_buildings.provider.input_layers import find_input_layer, read_input_layer
+from lidar_buildings.provider.input_layers import GivenLayer, find_input_layer
 from lidar_buildings.provider.places import place_of_cloud
 from lidar_buildings.provider.styles import layer_style
 from lidar_buildings.provider.vectors import qgis_features
@@ -178,7 +178,7 @@ def read(provider, context, town_file):
         found = algorithm.parameterAsSource({"AREAS": layer}, "AREAS", context)
         monitor = Monitor()
         place = place_of_cloud(cloud or read_cloud(town_file))
-        return read_input_layer(input_layer, found, place, context, monitor), monitor.warnings
+        return GivenLayer(input_layer, found, context).read(place, monitor), monitor.warnings
 
     return read
 
