@@ -74,7 +74,7 @@ from .qgis_crs import WGS84
 from .rasters import write_raster
 from .run_log import RunLog, about_run, write_page
 from .run_outputs import all_in_place, check_targets, write_for_qgis
-from .styles import cloud_style, layer_style, show_on_load
+from .styles import Styler, cloud_style, layer_style, show_on_load
 from .web import check_sizes, tell_sizes
 
 
@@ -300,13 +300,14 @@ class _Writer:
     def _write_cloud(self, made: Made, cloud: Cloud, monitor: Monitor) -> dict[str, str]:
         target = self.given.read("OutputLayer", made.name)
         shown = write_for_qgis(cloud, target, self.given.context, monitor)
-        show_on_load(self.given.context, shown, "Cloud", cloud_style(made.stage, cloud), crs=cloud.crs.plane)
+        styler = Styler(cloud_style(made.stage, cloud), crs=cloud.crs.plane)
+        show_on_load(self.given.context, shown, "Cloud", styler)
         return {made.name: target}
 
     def _write_raster(self, name: str, raster: Raster, surface: RasterSurface, monitor: Monitor) -> dict[str, str]:
         target = self.given.read("OutputLayer", name)
         write_raster(raster, surface, self.place, Path(target), monitor)
-        show_on_load(self.given.context, target, "Raster", layer_style(raster))
+        show_on_load(self.given.context, target, "Raster", Styler(layer_style(raster)))
         return {name: target}
 
     def write_pages(self, job: Job, results: Results, log: RunLog) -> dict[str, str]:

@@ -13,7 +13,7 @@ from .given import Given
 from .places import Place
 from .qgis_crs import crs_of, to_degrees
 from .run_outputs import target_path, through_memory
-from .styles import layer_style, show_on_load, store_styles, switch_off
+from .styles import Styler, layer_style, show_on_load, store_styles, switch_off
 from .vectors import fields_of, qgis_features, wkb_type
 
 # Formats that name systems by a code only.
@@ -48,7 +48,8 @@ def write_layer(given: Given, name: str, layer: Layer, features: LayerFeatures, 
         if Path(target.split("|")[0]).suffix.lower() == GPKG:
             store_styles(target, layer_style(layer), layer.fields)
     target = final(target)
-    show_on_load(given.context, target, layer.geometry, layer_style(layer), layer.fields, run=given.as_text())
+    styler = Styler(layer_style(layer), layer.fields, run=given.as_text())
+    show_on_load(given.context, target, layer.geometry, styler)
     if not len(features):
         switch_off(given.context, [target])
         if layer.on_demand:

@@ -203,26 +203,17 @@ def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:
     return stem if (STYLES / f"{stem}.qml").is_file() else None
 
 
-def show_on_load(
-    context: QgsProcessingContext,
-    target: str,
-    kind: str,
-    stem: Optional[str],
-    fields: Sequence[Field] = (),
-    crs: str = "",
-    run: str = "",
-) -> None:
+def show_on_load(context: QgsProcessingContext, target: str, kind: str, styler: Styler) -> None:
     """Have the result ``target`` styled, and put at its place among the others, when and if it is loaded.
 
-    ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer. ``crs`` and
-    ``run`` are as for :class:`Styler`.
+    ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer.
     """
     if not context.willLoadLayerOnCompletion(target):
         return
     details = context.layerToLoadOnCompletionDetails(target)
     details.layerSortKey = _DRAWN.index(kind)
-    if stem is not None or fields or crs:
-        details.setPostProcessor(_kept(Styler(stem, fields, crs=crs, run=run)))
+    if styler.stem is not None or styler.fields or styler.crs:
+        details.setPostProcessor(_kept(styler))
 
 
 def switch_off(context: QgsProcessingContext, targets: Iterable[str]) -> None:

@@ -66,7 +66,7 @@ from .rasters import write_mosaic
 from .run_log import about_run, parameter_rows, write_page
 from .run_outputs import all_in_place, check_targets, target_path
 from .schedulers import check_scheduler
-from .styles import layer_style, show_on_load, style_of
+from .styles import Styler, layer_style, show_on_load, style_of
 from .surveys import VPC, check_vpc, place_of_survey, write_survey
 from .web import check_sizes, tell_sizes
 
@@ -182,7 +182,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         hint = QgsProcessingUtils.LayerHint.PointCloud
         details = QgsProcessingContext.LayerDetails(title, context.project(), VPC, hint)
         context.addLayerToLoadOnCompletion(shown, details)
-        show_on_load(context, shown, "Cloud", self._cloud_style(), crs=self.plane)
+        show_on_load(context, shown, "Cloud", Styler(self._cloud_style(), crs=self.plane))
 
     def _subject(self, folder: Path) -> str:
         """Return what the layers are of: the folder of the tiles, or the input where that is temporary."""
@@ -210,7 +210,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             if isinstance(raster, Raster):
                 target = given.read("OutputLayer", name)
                 write_mosaic(raster, mosaic, place_of_survey(survey), Path(target), monitor.part(_DONE, _DONE))
-                show_on_load(given.context, target, "Raster", layer_style(raster))
+                show_on_load(given.context, target, "Raster", Styler(layer_style(raster)))
                 results[name] = target
 
         def take_file(survey: Survey, name: str, content: FileContent) -> None:

@@ -79,7 +79,7 @@ def test_results_are_stacked_by_kind(context):
     for path in ("a.gpkg", "b.laz", "c.tif", "d.gpkg"):
         context.addLayerToLoadOnCompletion(path, QgsProcessingContext.LayerDetails(path, context.project()))
     for path, kind in (("a.gpkg", "Polygon"), ("b.laz", "Cloud"), ("c.tif", "Raster"), ("d.gpkg", "LineString")):
-        show_on_load(context, path, kind, None)
+        show_on_load(context, path, kind, Styler(None))
     load_from(context, lambda path: f"moved_{path}")
     keys = {path: details.layerSortKey for path, details in context.layersToLoadOnCompletion().items()}
     assert sorted(keys, key=keys.get) == ["moved_c.tif", "moved_b.laz", "moved_a.gpkg", "moved_d.gpkg"]
@@ -97,7 +97,7 @@ def test_results_are_stacked_by_kind_among_other_layers_too(context, order):
         context.project().layerTreeRoot().addLayer(layer)
     for layer, kind in zip(layers, ("Cloud", "Polygon", "LineString")):
         context.addLayerToLoadOnCompletion(layer.id(), QgsProcessingContext.LayerDetails("", context.project()))
-        show_on_load(context, layer.id(), kind, None)
+        show_on_load(context, layer.id(), kind, Styler(None))
     stack_results(context)
     QCoreApplication.processEvents()
     drawn = [layer.name() for layer in context.project().layerTreeRoot().layerOrder()]
@@ -298,7 +298,7 @@ def test_a_layer_that_another_step_has_taken_further_is_loaded_switched_off(cont
         QgsProject.instance().addMapLayer(layer)
         details = QgsProcessingContext.LayerDetails(layer.name(), QgsProject.instance(), "OUTPUT")
         context.addLayerToLoadOnCompletion(layer.id(), details)
-        show_on_load(context, layer.id(), "Polygon", "footprints")
+        show_on_load(context, layer.id(), "Polygon", Styler("footprints"))
     switch_off(context, [layers[0].id(), "not loaded"])
     for layer in layers:
         context.layerToLoadOnCompletionDetails(layer.id()).postProcessor().postProcessLayer(
