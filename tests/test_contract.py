@@ -35,14 +35,15 @@ from lidar_buildings.algorithms.stage import (
     StageResults,
     Tunable,
 )
+from lidar_buildings.algorithms.tiling.settings import SETTINGS
 from lidar_buildings.tests.monitors import Listening
 
 SOURCES = [path for room in ("algorithms", "provider") for path in (Path(__file__).parent.parent / room).rglob("*.py")]
 # Algorithms of QGIS itself that sentences name.
 TITLES_OF_QGIS = {"Fix geometries", "Open in Model Designer"}
 # Options in QGIS's settings, without what is said in brackets.
-SETTINGS = Path(__file__).parent.parent / "provider" / "options.py"
-OPTIONS = set(re.findall(r'Option\("\w+", "([^"(]+?)(?: \(|")', SETTINGS.read_text(encoding="utf-8")))
+QGIS_OPTIONS = Path(__file__).parent.parent / "provider" / "options.py"
+OPTIONS = set(re.findall(r'Option\("\w+", "([^"(]+?)(?: \(|")', QGIS_OPTIONS.read_text(encoding="utf-8")))
 
 CLASSIFYING = {"classify", "complete", "refine", "recode", "restore"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
@@ -452,6 +453,7 @@ def test_titles_that_sentences_name_exist(path):
     """A sentence names a title as the toolbox shows it; stages cannot import each other to derive it."""
     ours = {one.title for one in (*STAGES.values(), *PIPELINES.values())}
     ours |= {tunable.label for stage in STAGES.values() for tunable in stage.tunables.values()}
+    ours |= {setting.title.partition(" (")[0] for setting in SETTINGS.values()}
     assert not set(quoted(path)) - ours - TITLES_OF_QGIS - OPTIONS
 
 
