@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.groups import placed
 from ..geometry.scattered import scattered
-from ..neighborhoods.covariance import Nearest, neighborhood_eigenvalues, shannon_entropy_lps
-from ..neighborhoods.wide_in_plan import Wide
+from ..neighborhoods.covariance import Neighborhood, neighborhood_eigenvalues, shannon_entropy_lps
 from ..packages import spatial
 from ..stage import Monitor
 
@@ -38,11 +37,7 @@ class ClusterEntropies:
 
 
 def cluster_entropies(
-    xyz: np.ndarray,
-    cluster_id: np.ndarray,
-    around: Union[Nearest, Wide],
-    monitor: Monitor,
-    measured: Optional[int] = None,
+    xyz: np.ndarray, cluster_id: np.ndarray, around: Neighborhood, monitor: Monitor, measured: Optional[int] = None
 ) -> ClusterEntropies:
     """Measure the entropy of each clustered point among the clustered points, and its mean in each cluster.
 
