@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from functools import lru_cache
 from threading import Event
 from typing import Any, Callable, Optional
 
@@ -57,12 +59,17 @@ def one_blas_thread() -> Iterator[None]:
     Without the package threadpoolctl, which scikit-learn brings, nothing is changed.
     """
     try:
-        limits = threadpoolctl.threadpool_limits(1, user_api="blas")
+        limits = _blas(len(sys.modules)).limit(limits=1, user_api="blas")
     except ImportError:
-        yield
-        return
+        limits = nullcontext()
     with limits:
         yield
+
+
+@lru_cache(maxsize=1)
+def _blas(n_modules: int) -> Any:
+    """Return the libraries of linear algebra, which are looked for anew when modules were imported since."""
+    return threadpoolctl.ThreadpoolController()
 
 
 def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:

@@ -158,7 +158,7 @@ class CloudSampling:
     @cached_property
     def surface_density(self) -> float:
         """Points per square meter of the surfaces that they lie on, however steep these are."""
-        return self._surfaces.density()
+        return self._surfaces.density
 
     @cached_property
     def noise(self) -> float:

@@ -75,7 +75,7 @@ def surface_density(xyz: np.ndarray) -> float:
     It is that around the median point, counted in the circle of its 12 nearest; infinite where all points lie at
     one position.
     """
-    return SurfaceSample(xyz).density()
+    return SurfaceSample(xyz).density
 
 
 @dataclass(frozen=True)
@@ -140,15 +140,16 @@ class SurfaceSample:
         degrees = count - PLANE_POINTS
         if degrees < 1:
             return resolution
-        across = np.sqrt(self._variances(count)[:, 2] * count / degrees)
+        across = np.sqrt(self._of_nearest[:, 2] * count / degrees)
         smooth, smoothest = (
             max(float(np.quantile(across, share)) / _expected_quantile(share, degrees), resolution)
             for share in (SURFACES.smooth_share, SURFACES.smoothest_share)
         )
         return min(smooth, SURFACES.most_rougher * smoothest)
 
+    @cached_property
     def density(self) -> float:
-        """Return the points per square meter of the surfaces, see :func:`surface_density`."""
+        """Points per square meter of the surfaces, see :func:`surface_density`."""
         count = min(SURFACES.neighbors, len(self))
         own = self.columns[:, self.rows].T
         reach = float(np.median(self.tree.query(own, k=[count], workers=n_threads())[0]))
@@ -174,16 +175,24 @@ class SurfaceSample:
             all. Where less than four fifths of the smooth neighborhoods of that number are wide in plan, those that are
             not get more points.
         """
-        return _neighborhood(len(self), self.density(), self._on_lines, density, deviation)
+        return _neighborhood(len(self), self.density, self._on_lines, density, deviation)
 
     def measured(self) -> MeasuredSurfaces:
         """Return the settings of neighborhoods, without the points: for the parts of a cloud that is worked on so."""
-        return MeasuredSurfaces(len(self), self.density(), self._narrow_below)
+        return MeasuredSurfaces(len(self), self.density, self._narrow_below)
+
+    @cached_property
+    def _of_nearest(self) -> np.ndarray:
+        """Variances (s, 3) of the nearest points that show the noise, m²."""
+        return self._variances(min(SURFACES.neighbors, len(self)))
 
     @cached_property
     def _narrow_below(self) -> int:
         """Least number of points from which on smooth neighborhoods are not narrow: they widen with their number."""
         low, high = LEAST_NEIGHBORS, min(MOST_ACROSS_LINES, len(self))
+        # In most clouds the fewest points do, and show it soonest.
+        if low < high and not self._on_lines(low):
+            return low
         while low < high:
             middle = (low + high) // 2
             low, high = (middle + 1, high) if self._on_lines(middle) else (low, middle)

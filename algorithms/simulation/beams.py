@@ -132,10 +132,12 @@ class World:
         margin = 3.0 * (self.relief.spread + 1.0)
         found, active = np.zeros(len(beams)), np.arange(len(beams))
         near, far = middle - margin, middle + margin
-        above, below = self._clearance(beams, active, near), self._clearance(beams, active, far)
+        # Columns lie together in memory.
+        start, way = np.ascontiguousarray(beams.origin.T), np.ascontiguousarray(beams.direction.T)
+        above, below = self._clearance(start, way, near), self._clearance(start, way, far)
         while len(active):
             t = (near * below - far * above) / (below - above)
-            value = self._clearance(beams, active, t)
+            value = self._clearance(start, way, t)
             is_above = value > 0
             above = np.where(is_above, value, above / 2)
             below = np.where(is_above, below / 2, value)
@@ -144,10 +146,11 @@ class World:
             go_on = (np.abs(value) > _PRECISION) & (far - near > _PRECISION)
             active, near, far = active[go_on], near[go_on], far[go_on]
             above, below = above[go_on], below[go_on]
+            start, way = start.compress(go_on, axis=1), way.compress(go_on, axis=1)
         return found
 
-    def _clearance(self, beams: Beams, which: np.ndarray, ranges: np.ndarray) -> np.ndarray:
-        x, y, z = beams.at(which, ranges).T
+    def _clearance(self, start: np.ndarray, way: np.ndarray, ranges: np.ndarray) -> np.ndarray:
+        x, y, z = start + ranges * way
         return z - self.relief.surface(x, y)
 
     def leaves(self, beams: Beams, beam: np.ndarray, crown: np.ndarray, rng: np.random.Generator) -> Echoes:

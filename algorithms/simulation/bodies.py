@@ -134,10 +134,12 @@ class SolidArrays:
         """Return the ranges (n,) (m) at which beams enter the solids ``which``, inf where they miss or have passed."""
         near = np.full(len(which), -np.inf)
         far = np.full(len(which), np.inf)
-        for face in range(_FACES):
-            normal, offset = self.faces[which, face, :3], self.faces[which, face, 3]
-            speed = dot(normal, direction)
-            remaining = offset - dot(normal, origin)
+        # Columns lie together in memory.
+        start, way = np.ascontiguousarray(origin.T), np.ascontiguousarray(direction.T)
+        for face in self.faces.transpose(1, 2, 0):
+            a, b, c, offset = (values.take(which) for values in face)
+            speed = a * way[0] + b * way[1] + c * way[2]
+            remaining = offset - (a * start[0] + b * start[1] + c * start[2])
             with np.errstate(divide="ignore", invalid="ignore"):
                 crossing = remaining / speed
             near = np.where(speed < 0, np.maximum(near, crossing), near)

@@ -16,8 +16,8 @@ def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.
     # Cells of eight points: a column of cells within a box is one run of the sorted points.
     cell = max(float(np.sqrt(np.prod(last - first + 0.1) * 8 / len(points))), 1e-3)
     shape = ((last - first) // cell).astype(np.int64) + 1
-    at = ((points - first) // cell).astype(np.int64)
-    key = at[:, 0] * shape[1] + at[:, 1]
+    row, column = (((at - start) // cell).astype(np.int64) for at, start in zip(points.T, first))
+    key = row * shape[1] + column
     order = np.argsort(key, kind="stable")
     starts = np.searchsorted(key[order], np.arange(shape[0] * shape[1] + 1))
     start = np.clip((low[box] - first) // cell, 0, shape - 1).astype(np.int64)
@@ -27,7 +27,10 @@ def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.
     begin, stop = starts[run + start[which, 1]], starts[run + end[which, 1] + 1]
     column_of_point, offset = items(stop - begin)
     point, box = order[begin[column_of_point] + offset], box[which[column_of_point]]
-    inside = ((points[point] >= low[box]) & (points[point] <= high[box])).all(axis=1)
+    inside = np.ones(len(point), bool)
+    for at, least, most in zip(points.T, low.T, high.T):
+        own = at.take(point)
+        inside &= (own >= least.take(box)) & (own <= most.take(box))
     return point[inside], box[inside]
 
 

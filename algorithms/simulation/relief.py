@@ -74,7 +74,9 @@ class Relief:
 
     def ground(self, x, y) -> np.ndarray:
         """Elevation (m) of the ground, under water of the river bed."""
-        across, along = self.frame.local(x, y)
+        return self._ground(*self.frame.local(x, y))
+
+    def _ground(self, across, along) -> np.ndarray:
         distance = across if self.river is None else across - self.river
         rise = distance
         if self.river is not None:
@@ -84,15 +86,17 @@ class Relief:
 
     def surface(self, x, y) -> np.ndarray:
         """Elevation (m) of ground or water, whichever is higher."""
-        z = self.ground(x, y)
-        return z if self.river is None else np.where(self.is_water(x, y), self.water_level, z)
+        across, along = self.frame.local(x, y)
+        z = self._ground(across, along)
+        return z if self.river is None else np.where(self._is_water(across), self.water_level, z)
 
     def is_water(self, x, y) -> np.ndarray:
         """Whether positions are in the river."""
-        if self.river is None:
-            return np.zeros(np.shape(x), bool)
+        return np.zeros(np.shape(x), bool) if self.river is None else self._is_water(self.frame.local(x, y)[0])
+
+    def _is_water(self, across) -> np.ndarray:
         # The channel's profile decides: over level ground it is below the water this far from the axis.
-        return np.abs(self.frame.local(x, y)[0] - self.river) < CHANNEL - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
+        return np.abs(across - self.river) < CHANNEL - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
 
     def tangent(self, x: float, y: float) -> np.ndarray:
         """Return (a, b, c) of the plane z = a x + b y + c that touches the ground at a point (m)."""

@@ -124,7 +124,7 @@ def test_a_sample_is_enough(rng, small_sample, monkeypatch):
     whole = SurfaceSample(xyz)
     assert len(sample) < len(xyz) / 4 < len(whole)
     assert sample.noise(0.01) == pytest.approx(whole.noise(0.01), rel=0.05)
-    assert sample.density() == pytest.approx(whole.density(), rel=0.05)
+    assert sample.density == pytest.approx(whole.density, rel=0.05)
     assert sample.neighborhood(4.2, 0.15) == whole.neighborhood(4.2, 0.15)
 
 
