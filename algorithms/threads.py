@@ -26,8 +26,14 @@ _SEARCHED = 5_000
 # Rows that a thread works on at once: their values stay in the processor's caches.
 ROWS_AT_ONCE = 20_000
 
+# Neighbors that a thread works on at once: at most 60 bytes each, 12 MB.
+NEIGHBORS_AT_ONCE = 200_000
+
+# Pairs of rows that a thread compares at once: at most 150 bytes each, 150 MB.
+PAIRS_AT_ONCE = 1_000_000
+
 # Seconds between two checks for a cancellation by the user.
-_BETWEEN_LOOKS = 0.2
+BETWEEN_LOOKS = 0.2
 
 # Number of threads assigned to a process that shares the machine with others of its kind; empty without one.
 _ASSIGNED: list[int] = []
@@ -131,7 +137,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
     try:
         futures = [pool.submit(work, item, monitors[item]) for item in range(min(ahead, count))]
         for item in range(count):
-            while not wait(futures[:1], _BETWEEN_LOOKS).done:
+            while not wait(futures[:1], BETWEEN_LOOKS).done:
                 monitor.progress((item + share * monitors[item].reached) / count)
             made = futures.pop(0).result()
             monitors[item].pass_on(monitor)

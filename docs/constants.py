@@ -77,7 +77,8 @@ def _behind(name: str, seen: set[str]) -> Iterator[ModuleType]:
     while waiting:
         name = waiting.pop(0)
         parts = name[len(_PACKAGE) :].split(".")
-        if name in seen or not name.startswith(_PACKAGE) or len(parts) < 2 or parts[0] in _OTHER_ROOMS:
+        is_elsewhere = parts[0] in _OTHER_ROOMS or (len(parts) < 2 and parts[0] != "criteria")
+        if name in seen or not name.startswith(_PACKAGE) or is_elsewhere:
             continue
         seen.add(name)
         module = importlib.import_module(name)

@@ -50,7 +50,7 @@ ROOMS = (
     "tiling",
     "command",
 )
-HELPERS = {"packages", "package_versions", "memory", "threads", "params", "rules"}
+HELPERS = {"packages", "package_versions", "memory", "threads", "params", "rules", "criteria"}
 # Share of the lines of core and provider that one room may hold: a larger one holds more than one idea.
 LARGEST_ROOM = 0.12
 # Statements that import.

@@ -8,6 +8,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..criteria import MAJORITY
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import least_of, placed
 from ..params import BRIDGE_AREA, BRIDGE_HEIGHT, BRIDGE_WIDTH, POINT_DENSITY, SURFACE_NOISE
@@ -16,9 +17,6 @@ from ..sampling.kinds import LASER
 from ..stage import stage, tunable
 from ..terrain.on_decks import on_decks
 from .bridge_decks import DECK, Decks, cell_size
-
-# A segment is an object if it is raised along at least this share of its border, the cloud's edge included.
-_RAISED_BORDER = 0.5
 
 # Steepest terrain (degrees) within a cell: about the angle of repose of soil.
 _STEEPEST = 30.0
@@ -155,7 +153,7 @@ def _bare_earth(
     n = len(segments)
     n_border = np.bincount(number, border, n)
     area = np.bincount(number, minlength=n) * cell**2
-    is_object = np.bincount(number, raised, n) >= _RAISED_BORDER * np.maximum(n_border, 1)
+    is_object = np.bincount(number, raised, n) >= MAJORITY * np.maximum(n_border, 1)
     is_object &= area <= max_object_area
     is_large = area >= min_area
     return placed((~is_object & is_large)[of], member, len(points))

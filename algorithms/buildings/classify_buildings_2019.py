@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..neighborhoods.covariance import Nearest
+from ..neighborhoods.covariance import MIN_NEIGHBORS, Nearest
 from ..packages import cluster
 from ..params import MIN_BUILDING_AREA, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS, nearest_points
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
@@ -16,9 +16,6 @@ from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, Split, split_of_whole
 from .weakest_evidence import weakest_evidence
-
-# Three points are the fewest with eigenvalues to compare; a covariance of full rank takes more.
-_MIN_NEIGHBORS = 3
 
 # Reach of neighborhoods (m): 1.1 m for 4 m², more in sparse clouds.
 _REACH = 5.0
@@ -50,7 +47,7 @@ def classify_buildings_2019(
     thresholds: str = THRESHOLDS,
     min_area: float = MIN_BUILDING_AREA,
     n_neighbors: Optional[int] = nearest_points(
-        f"the points of the minimum building area (Ar_min d), at least {_MIN_NEIGHBORS}."
+        f"the points of the minimum building area (Ar_min d), at least {MIN_NEIGHBORS}."
     ),
     two_classes: str = tunable(
         "k-means",
@@ -128,7 +125,7 @@ def classify_buildings_2019(
     if density is None:
         density = PAPER_THRESHOLDS[thresholds].density if thresholds in PAPER_THRESHOLDS else sampling.density
     if n_neighbors is None:
-        n_neighbors = max(_MIN_NEIGHBORS, round(min_area * density))
+        n_neighbors = max(MIN_NEIGHBORS, round(min_area * density))
     monitor.resolved(density=density, n_neighbors=n_neighbors)
     if not (cluster_id > 0).any():
         return no_clusters(classification, reason, monitor)

@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import ROUNDING
 from ..geometry.polygons import area_vector
 from ..models3d.set_openings import DOOR, WINDOW
 from ..models3d.solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL
@@ -18,9 +19,6 @@ from ..stage import LayerFeatures, feature_names
 # terrain or soffit; and the patch that a triangle of terrain is part of.
 BUILDING, LEVEL, KIND, PATCH = "building", "lod", "kind", "patch"
 KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR, TERRAIN, SOFFIT)
-
-# Faces below this area (m²) are lines; without them the surface is still closed.
-_LEAST_AREA = 1e-9
 
 # Levels of detail, of which files get their names.
 _LEVELS = re.compile(r"\d(\.\d)?")
@@ -118,7 +116,7 @@ def _faces(kind: str, features: LayerFeatures) -> Iterator[tuple[str, str, Optio
         # Maps have attributes of that name, too.
         own = facts.pop(KIND) if facts.get(KIND) in KINDS else kind
         has_heights = all(ring.shape[1] == 3 and len(ring) > 3 for ring in rings)
-        if has_heights and np.linalg.norm(area_vector(rings[0])) < _LEAST_AREA:
+        if has_heights and np.linalg.norm(area_vector(rings[0])) < ROUNDING:
             continue
         if not own and has_heights:
             own = kind_by_slope(rings[0])

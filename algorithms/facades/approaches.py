@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.groups import least_of
 from ..rules import rules
 
@@ -26,8 +27,6 @@ class _RULES:
     step: float = 0.4
     # The wall below a sill is looked for down to this depth (m) below the step: one row of stones.
     below: float = 0.4
-    # The majority of the columns of an opening decides.
-    most: float = 0.5
     # The approach counts as seen if this share of the columns has points before the wall; stairs and cars cast shadows
     # on the rest.
     least_seen: float = 0.25
@@ -66,7 +65,7 @@ class Approach:
             return bool(is_high and low - np.quantile(self.wall[:, 1], _RULES.foot) <= _RULES.step)
         seen_wall = _highest(_between(self.wall, box), box, low - _RULES.step) > low - _RULES.step - _RULES.below
         is_reached = top[is_seen] >= low - _RULES.step
-        return bool(is_reached.mean() >= _RULES.most > seen_wall.mean())
+        return bool(is_reached.mean() >= MAJORITY > seen_wall.mean())
 
 
 def _between(positions: np.ndarray, box: np.ndarray) -> np.ndarray:

@@ -9,15 +9,13 @@ import numpy as np
 from ..geometry.grid import distinct, grid_over, shared_cells
 from ..geometry.groups import components
 from ..planes.least_squares_planes import planes_of
+from .facade_surfaces import CELL
 
 # Least angle (sine: 3°) between strips of one curved front; planes at smaller angles are one wall.
 _LEAST_SINE = np.sin(np.radians(3.0))
 
 # Largest angle (sine: 40°) between strips of one curved front; planes at larger angles meet at a corner.
 _MOST_SINE = np.sin(np.radians(40.0))
-
-# Two planes belong to one front if they share cells of this side (m): some spacings of a sparse scan.
-_TOUCH_CELL = 0.5
 
 # Least number of these cells: one may be of a pole or a sign at a corner.
 _TOUCHES = 2
@@ -54,7 +52,7 @@ def _fronts(xyz: np.ndarray, wall: np.ndarray, count: int) -> list[np.ndarray]:
         return []
     start = xyz.min(axis=0)
     normal = planes_of(xyz[rows] - start, wall[rows] - 1, count).normal
-    one, other, shared = shared_cells(xyz[rows], wall[rows] - 1, count, _TOUCH_CELL)
+    one, other, shared = shared_cells(xyz[rows], wall[rows] - 1, count, CELL)
     sine = np.linalg.norm(np.cross(normal[one], normal[other]), axis=1)
     touch = (shared >= _TOUCHES) & (sine >= _LEAST_SINE) & (sine <= _MOST_SINE)
     _, group = components(one[touch], other[touch], count)

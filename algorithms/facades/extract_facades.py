@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import DEVIATIONS
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import least_of, members
 from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT, SEED
@@ -17,17 +18,11 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, ProgressOnly, stage, t
 from .common_borders import with_common_borders
 from .curved_fronts import as_strips
 from .facade_outline import Drawing
-from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
+from .facade_surfaces import CELL, Facade, facade_features, plane_of, surfaces_of
 from .segment_facade_lines import are_of_facade_lines
 
 # Standard deviation (m) of plaster, joints and cladding about the plane of a wall, in addition to the noise.
 _RELIEF = 0.01
-
-# Side (m) of the cells in plan in which a facade has points above one another.
-_PLAN_CELL = 0.5
-
-# A point lies on a facade within this many standard deviations; one of 400 is farther off.
-_ON_PLANE = 3.0
 
 # The choice that searches walls among all points.
 ALL_POINTS = "all points"
@@ -92,7 +87,7 @@ def extract_facades(
         "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
         "strips and separates shallower recesses.",
         within="(0, 1] m",
-        automatic=f"{_ON_PLANE:g} times the root of the sum of the squares of the surface noise and of "
+        automatic=f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and of "
         f"{_RELIEF:g} m, the relief of walls.",
     ),
     max_tilt: float = FACADE_TILT,
@@ -177,7 +172,7 @@ def extract_facades(
     >>> len(facades)
     1
     """
-    tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance
+    tolerance = DEVIATIONS * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance
     monitor.resolved(tolerance=tolerance)
     searched = _is_stacked(xyz, min_height)
     if search_in == FACADE_LINES:
@@ -213,7 +208,7 @@ def extract_facades(
 
 def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:
     """Return the mask of points (n,) that share a cell in plan with points far above or below, as walls have them."""
-    cells, cell = distinct(grid_over(xyz, _PLAN_CELL).number(xyz))
+    cells, cell = distinct(grid_over(xyz, CELL).number(xyz))
     low, high = least_of(xyz[:, 2], cell, len(cells)), -least_of(-xyz[:, 2], cell, len(cells))
     return (high - low >= min_height / 2)[cell]
 

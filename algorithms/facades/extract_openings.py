@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..criteria import DEVIATIONS, MAJORITY
 from ..geometry.line_segments import is_valid
 from ..packages import spatial
 from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT
@@ -15,10 +16,7 @@ from .common_borders import with_common_borders
 from .extract_facades import FACADES
 from .facade_outline import Drawing, ring_area
 from .facade_surfaces import Facade, facade_features, surfaces_of
-from .opening_search import OFF_WALL, Opening, find_openings
-
-# A segment with this share of its points in the openings of others fills these: panes, curtains, shop fronts.
-_FILLING = 0.5
+from .opening_search import Opening, find_openings
 
 # Openings whose middles differ in height by less than this share of their height are in one row.
 _SAME_ROW = 0.5
@@ -46,10 +44,6 @@ PIERCED = (
     replace(FACADES, title="Facades with openings"),
     Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
 )
-
-# Drop an opening if this share of its points belongs to others: it is one of those, seen through a second wall. Drop
-# it, too, if a wall lies in front of more than this share of it. Half is the greater part of both.
-_SHARED = 0.5
 
 # Walls whose normals enclose less than this angle (cosine: 20°) face the same way.
 _SAME_WAY = np.cos(np.radians(20.0))
@@ -161,7 +155,7 @@ def _searched(
     found: list[tuple[Facade, list[Opening]]] = []
     for done, facade in enumerate(sorted(facades, key=lambda facade: -facade.area), start=1):
         monitor.progress((done - 1) / len(facades))
-        if is_filling[facade.points].mean() >= _FILLING:
+        if is_filling[facade.points].mean() >= MAJORITY:
             continue
         openings = find_openings(facade, xyz, _near(facade, xyz, max(max_depth, BEFORE)), max_depth, min_size)
         for opening in openings:
@@ -238,7 +232,7 @@ def drawn_once(found: Found, xyz: np.ndarray, max_depth: float) -> Found:
         frame = found[own][0].frame
         ring, faces_as = frame.space(opening.ring), normals @ frame.normal >= _SAME_WAY
         others = [wall for k, wall in enumerate(walls) if k != own and faces_as[k]]
-        is_drawn = taken[opening.points].mean() >= _SHARED
+        is_drawn = taken[opening.points].mean() >= MAJORITY
         if not is_drawn and not any(wall.hides(ring, max_depth) for wall in others):
             kept[own].append(opening)
             taken[opening.points] = True
@@ -258,10 +252,10 @@ class _Wall:
     def hides(self, ring: np.ndarray, max_depth: float) -> bool:
         """Return whether the wall lies before most of an opening (m, 3) of another one."""
         local = self.facade.frame.local(ring)
-        if not OFF_WALL * self.facade.rms <= -local[:, 2].mean() <= max_depth:
+        if not DEVIATIONS * self.facade.rms <= -local[:, 2].mean() <= max_depth:
             return False
         low, size = local[:, :2].min(axis=0), np.ptp(local[:, :2], axis=0)
         share = (np.arange(_STEPS) + 0.5) / _STEPS
         along, up = np.meshgrid(*(low + share[:, None] * size).T)
         off = self.tree.query(np.column_stack([along.ravel(), up.ravel()]))[0]
-        return bool(np.mean(off <= _ON_WALL * self.facade.spacing) > _SHARED)
+        return bool(np.mean(off <= _ON_WALL * self.facade.spacing) > MAJORITY)

@@ -7,6 +7,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import PARALLEL, ROUNDING
 from ..footprints.outline_pieces import sampled
 from ..geometry.groups import least_of
 from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
@@ -65,12 +66,6 @@ _PUSHES = 4
 
 # A corner may move this many times as far as the edges next to it: a corner of less than 39° would become spikes.
 _MITER = 3.0
-
-# Sine of the angle below which two edges count as parallel: their lines meet too far away for an accurate position.
-_PARALLEL = 0.05
-
-# Distances (m) up to this are zero: above rounding, below the resolution of files.
-_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -254,13 +249,13 @@ def pushed_out(ring: np.ndarray, positions: np.ndarray, limit: float) -> np.ndar
         # How far positions lie outside the lines of the edges.
         out = outside @ outward.T - np.einsum("ij,ij->i", starts, outward)
         # At a corner two edges are equally near; move the one that is farther behind.
-        nearest = np.argmax(np.where(distance <= distance.min(axis=1, keepdims=True) + _ROUNDING, out, -np.inf), axis=1)
+        nearest = np.argmax(np.where(distance <= distance.min(axis=1, keepdims=True) + ROUNDING, out, -np.inf), axis=1)
         rows = np.flatnonzero(distance.min(axis=1) <= limit)
         shift = np.zeros(len(starts))
         np.maximum.at(shift, nearest[rows], out[rows, nearest[rows]])
         moved = ring_of_lines(starts + shift[:, None] * outward, ends - starts, starts)
         is_spike = np.isfinite(limit) and np.linalg.norm(moved - ring, axis=1).max() > _MITER * shift.max()
-        if shift.max() < _ROUNDING or is_spike or not is_valid([moved]):
+        if shift.max() < ROUNDING or is_spike or not is_valid([moved]):
             break
         ring = moved
     return ring
@@ -276,7 +271,7 @@ def inside_ring(positions: np.ndarray, ring: np.ndarray) -> np.ndarray:
     inside = are_inside(positions, ring)
     rest = np.flatnonzero(~inside)
     if len(rest):
-        inside[rest] = nearest_edge_distances(positions[rest], ring[:-1], ring[1:]) < _ROUNDING
+        inside[rest] = nearest_edge_distances(positions[rest], ring[:-1], ring[1:]) < ROUNDING
     return inside
 
 
@@ -294,7 +289,7 @@ def ring_of_lines(points: np.ndarray, directions: np.ndarray, corners: np.ndarra
     before, other = np.roll(points, 1, axis=0), np.roll(unit, 1, axis=0)
     cross = other[:, 0] * unit[:, 1] - other[:, 1] * unit[:, 0]
     gap = points - before
-    is_parallel = np.abs(cross) < _PARALLEL
+    is_parallel = np.abs(cross) < PARALLEL
     share = (gap[:, 0] * unit[:, 1] - gap[:, 1] * unit[:, 0]) / np.where(is_parallel, 1.0, cross)
     meet = before + share[:, None] * other
     own = points + np.einsum("ij,ij->i", corners - points, unit)[:, None] * unit

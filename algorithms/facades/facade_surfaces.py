@@ -21,7 +21,7 @@ _THICKNESS = 0.05
 
 # Side (m) of the cells in which a facade is compared with the points on both sides, and which two facades must share to
 # meet.
-_CELL = 0.5
+CELL = 0.5
 
 # Side (m) of the voxels whose points count as one around a facade: a cell holds a few of them.
 _THINNED = 0.1
@@ -193,14 +193,14 @@ def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float)
     """
     own, positions = frame.local(own), frame.local(near)
     low = own[:, :2].min(axis=0)
-    cell, own_cell = (np.floor((some[:, :2] - low) / _CELL).astype(np.int64) for some in (positions, own))
+    cell, own_cell = (np.floor((some[:, :2] - low) / CELL).astype(np.int64) for some in (positions, own))
     count = own_cell.max(axis=0) + 1
     # Ground lies at the foot of the facade or a little below.
     cell[:, 1] += cell[:, 1] == -1
     inside = ((cell >= 0) & (cell < count)).all(axis=1)
     if count[0] > _LEAST_COLUMNS:
         # Walls at a right angle lie behind the ends of the facade.
-        inside &= (positions[:, 0] > own[:, 0].min() + _CELL) & (positions[:, 0] < own[:, 0].max() - _CELL)
+        inside &= (positions[:, 0] > own[:, 0].min() + CELL) & (positions[:, 0] < own[:, 0].max() - CELL)
     off = np.abs(positions[:, 2])
     inside &= (off > thickness) & (off <= _FARTHEST)
     points = np.bincount(own_cell @ [count[1], 1], minlength=int(count.prod()))
@@ -209,7 +209,7 @@ def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float)
     cell, off, side = cell[inside], off[inside], np.sign(positions[inside, 2])
     votes = np.where(off <= _DEPTH, -side, np.where(is_wall[cell @ [count[1], 1]], side, 0.0))
     total = float(np.abs(votes).sum())
-    return float(votes.sum()) / total if total else 0.0, float(is_wall.sum()) * _CELL**2
+    return float(votes.sum()) / total if total else 0.0, float(is_wall.sum()) * CELL**2
 
 
 def _corners(
@@ -219,7 +219,7 @@ def _corners(
     if len(frames) < 2:
         return np.zeros(0, int), np.zeros(0, int), np.zeros(0)
     number = np.repeat(np.arange(len(rows)), [len(own) for own in rows])
-    one, other, _ = shared_cells(xyz[np.concatenate(rows)], number, len(rows), _CELL)
+    one, other, _ = shared_cells(xyz[np.concatenate(rows)], number, len(rows), CELL)
     agree = [_agreement(frames[a], xyz[rows[a]], frames[b], xyz[rows[b]]) for a, b in zip(one, other)]
     return one, other, np.array(agree)
 

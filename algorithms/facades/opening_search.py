@@ -7,15 +7,13 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import DEVIATIONS, MAJORITY
 from ..geometry.groups import components, least_of, mask_of, members
 from ..geometry.polylines import simplify_ring
 from ..packages import ndimage, spatial
 from .approaches import BEFORE, FROM_WALL, Approach
 from .facade_outline import grown
 from .facade_surfaces import Facade
-
-# Points farther than this (standard deviations of the wall) from the plane are not on the wall.
-OFF_WALL = 3.0
 
 # Least distance (m) from the plane of points that are not of the wall.
 _LEAST_OFF = 0.03
@@ -32,14 +30,8 @@ _LINK = 0.3
 # Least value of half the gap ``_LINK``, in cells.
 _LINK_CELLS = 1.5
 
-# Distance (m) from the points behind the wall within which the edge of the wall is a side of their opening.
-_REACH = 0.3
-
-# Share of the outline of an opening, its sill left out where it is a door, that must have wall next to it.
-_ENCLOSED = 0.5
-
 # Mean share of the four sides of an opening along which the wall has an edge. A surplus makes up for a lack of
-# ``_ENCLOSED`` and the reverse: leaves and people past the end of a wall have little of both.
+# ``MAJORITY`` and the reverse: leaves and people past the end of a wall have little of both.
 _EDGED = 0.33
 
 # Share of the cells of an opening in which points behind the wall must be seen.
@@ -96,7 +88,7 @@ class WallRaster:
     """Cells of a ``size`` (m) on a facade, and which hold positions (n, 2), m, of points of the wall and behind it."""
 
     def __init__(self, wall: np.ndarray, behind: np.ndarray, size: float) -> None:
-        self.size, self.margin = size, int(np.ceil(_REACH / size)) + 2
+        self.size, self.margin = size, int(np.ceil(_LINK / size)) + 2
         both = np.concatenate([wall, behind])
         self.low = both.min(axis=0) - self.margin * size
         self.shape = tuple(np.floor((both.max(axis=0) - self.low) / size).astype(np.int64) + self.margin + 1)
@@ -144,7 +136,7 @@ def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: 
         Least width and height (m).
     """
     local = facade.frame.local(xyz[rows])
-    off_wall = max(OFF_WALL * facade.rms, _LEAST_OFF)
+    off_wall = max(DEVIATIONS * facade.rms, _LEAST_OFF)
     # Outward from the wall is positive.
     distance = local[:, 2]
     is_wall = np.abs(distance) <= off_wall
@@ -199,13 +191,13 @@ def _opening(
     box, beside = _bounded(box, wall, raster.size, spacing)
     if (box[1] - box[0] < min_size).any():
         return None
-    is_door = approach.leads_to(box, bool(beside[3] >= _ENCLOSED))
+    is_door = approach.leads_to(box, bool(beside[3] >= MAJORITY))
     ring, share = _shape(box, behind[:, :2], spacing)
     enclosed = _enclosure(raster, ring, box[0, 1] if is_door else None)
     cells = len(np.unique(np.column_stack(raster.cell(behind[:, :2])), axis=0)) * raster.size**2
     seen = min(1.0, cells / (share * float(np.prod(box[1] - box[0]))))
-    is_tall = box[1, 1] - box[0, 1] > _TALL and beside[3] < _ENCLOSED
-    is_open = enclosed < _ENCLOSED or enclosed + beside.mean() < _ENCLOSED + _EDGED
+    is_tall = box[1, 1] - box[0, 1] > _TALL and beside[3] < MAJORITY
+    is_open = enclosed < MAJORITY or enclosed + beside.mean() < MAJORITY + _EDGED
     if is_open or seen < _SEEN or is_tall:
         return None
     depth = -float(np.median(behind[:, 2]))
@@ -222,18 +214,18 @@ def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> 
         sign, other = (-1, 1)[end], 1 - axis
         # Positions outward of the side: the wall next to the opening is the first beyond its middle.
         outward = sign * (wall[:, axis] - box[end, axis])
-        near = (outward > -np.ptp(box[:, axis]) / 2) & (outward <= _REACH)
+        near = (outward > -np.ptp(box[:, axis]) / 2) & (outward <= _LINK)
         near &= (wall[:, other] >= box[0, other]) & (wall[:, other] <= box[1, other])
         lines = max(1, int(np.ceil((box[1, other] - box[0, other]) / cell)))
         line = np.minimum(((wall[near, other] - box[0, other]) / cell).astype(np.int64), lines - 1)
         nearest = least_of(outward[near], line, lines)
-        has_wall = np.abs(nearest) <= _REACH
+        has_wall = np.abs(nearest) <= _LINK
         shares[2 * axis + end] = has_wall.mean()
         if has_wall.any():
             edge = float(np.median(nearest[has_wall]))
             is_straight = np.abs(nearest - edge) <= max(_STRAIGHT_SPACINGS * spacing, _LEAST_STRAIGHT)
             # A slanting edge bounds the opening by its shape, not by its box.
-            if is_straight.mean() >= _ENCLOSED:
+            if is_straight.mean() >= MAJORITY:
                 bounded[end, axis] = box[end, axis] + sign * (edge - spacing / 2)
     return bounded, shares
 
@@ -277,4 +269,4 @@ def _enclosure(raster: WallRaster, ring: np.ndarray, sill: Optional[float]) -> f
         return 0.0
     distance = ndimage.distance_transform_edt(~raster.wall) * raster.size
     along, up = (np.clip(cell, 0, size - 1) for cell, size in zip(raster.cell(np.concatenate(positions)), raster.shape))
-    return float(np.mean(distance[along, up] <= _REACH / 2 + raster.size))
+    return float(np.mean(distance[along, up] <= _LINK / 2 + raster.size))

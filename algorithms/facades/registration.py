@@ -10,6 +10,7 @@ import numpy as np
 from ..geometry.grid import distinct, grid_over
 from ..packages import spatial
 from ..rules import rules
+from .facade_surfaces import CELL
 from .plan_segments import PlanSegments
 
 
@@ -38,8 +39,6 @@ class _RULES:
     reweighted: int = 9
     # Walls shorter than this (m) are sides of recesses, which outlines from the air don't show.
     shortest: float = 2.0
-    # Side (m) of the cells of which the lowest points are taken for the ground of the street: wider than a spacing.
-    cell: float = 0.5
     # Least number of these cells: fewer may all be below cars.
     least_cells: int = 20
     # Half of the range of height differences (m) that count as common ground: the range that holds most of them.
@@ -233,12 +232,12 @@ def _solved(common: _Common) -> np.ndarray:
 
 def _shift_in_height(street: np.ndarray, ground: np.ndarray, shift: np.ndarray) -> tuple[float, int]:
     """Return the shift in height (m) of a street scan that is moved in plan, and on how many cells it was measured."""
-    cells, cell = distinct(grid_over(street, _RULES.cell).number(street))
+    cells, cell = distinct(grid_over(street, CELL).number(street))
     order = np.lexsort((street[:, 2], cell))
     lowest = street[order[np.searchsorted(cell[order], np.arange(len(cells)))]]
     distance, nearest = spatial.cKDTree(ground[:, :2]).query(lowest[:, :2] + shift, k=min(3, len(ground)))
     distance, nearest = distance.reshape(len(lowest), -1), nearest.reshape(len(lowest), -1)
-    beside = distance[:, -1] <= 2 * _RULES.cell + _RULES.near
+    beside = distance[:, -1] <= 2 * CELL + _RULES.near
     difference = ground[nearest[beside], 2].mean(axis=1) - lowest[beside, 2]
     if len(difference) < _RULES.least_cells:
         return 0.0, 0

@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.reasons import ADDED, Reason, evidence_text
+from ..criteria import PLANE_NEIGHBORS
 from ..geometry.grid import find_cells
 from ..geometry.groups import split_groups
 from ..geometry.rings import along_sides, perimeter, sides_of_rings, signed_area
@@ -44,9 +45,6 @@ EAVE = 25
 
 # The ridge height is this percentile of the heights of a roof's points, as chimneys rise above the ridge.
 RIDGE = 98
-
-# Number of nearest roof points to which a plane is fitted at each position on the outline.
-_PLANE = 12
 
 # Points closer than this (spacings) to the outline may lie on the wall; roof planes are fitted without them.
 _INNER = 2.0
@@ -248,7 +246,7 @@ def _eave_heights(
     if not len(plan):
         return at_border
     tree = spatial.cKDTree(plan, balanced_tree=False)
-    distance, beside = tree.query(border, min(_PLANE, len(plan)), workers=workers)
+    distance, beside = tree.query(border, min(PLANE_NEIGHBORS, len(plan)), workers=workers)
     distance, beside = distance.reshape(len(border), -1), beside.reshape(len(border), -1)
     weight = (distance <= APART * spacing).astype(float)
     factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)
@@ -257,7 +255,7 @@ def _eave_heights(
     right = np.einsum("ni,nij,ni->nj", weight, factors, height[beside])
     planes = np.linalg.solve(matrix, right[..., None])
     off = ((factors @ planes)[..., 0] - height[beside]) ** 2
-    is_roof = (weight.sum(axis=1) >= _PLANE / 2) & (np.hypot(*planes[:, 1:, 0].T) <= _STEEPEST)
+    is_roof = (weight.sum(axis=1) >= PLANE_NEIGHBORS / 2) & (np.hypot(*planes[:, 1:, 0].T) <= _STEEPEST)
     is_plane = is_roof & ((weight * off).sum(axis=1) <= _FLAT**2 * weight.sum(axis=1))
     return np.where(is_plane, planes[:, 0, 0], at_border)
 

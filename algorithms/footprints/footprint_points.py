@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..criteria import DEVIATIONS
 from ..geometry.points_in_polygons import are_within
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import polygon_area, sampled_rings, sides_of_rings, signed_area
@@ -31,21 +32,16 @@ GROUND_PERCENTILE = 5.0
 # Distance between these positions (m).
 _GROUND_STEP = 2.0
 
-# A point lies on a plane within this many times the roughness of surfaces: 99.7 % do if errors are normal.
-_TOLERANCE_ROUGHNESS = 3.0
-
 # Least and greatest tolerance (m): above the courses of tiles, below the steps between parts of a roof.
 _TOLERANCES = 0.08, 0.35
 
 # Text about the automatic tolerance in the help of stages.
-TOLERANCE_TEXT = (
-    f"{_TOLERANCE_ROUGHNESS:g} times the roughness of the cloud's surfaces, {_TOLERANCES[0]} to {_TOLERANCES[1]} m."
-)
+TOLERANCE_TEXT = f"{DEVIATIONS:g} times the roughness of the cloud's surfaces, {_TOLERANCES[0]} to {_TOLERANCES[1]} m."
 
 
 def plane_tolerance(roughness: float) -> float:
     """Return the distance (m) at which a point lies on a plane of a roof, from the roughness (m) of surfaces."""
-    return float(np.clip(_TOLERANCE_ROUGHNESS * roughness, *_TOLERANCES))
+    return float(np.clip(DEVIATIONS * roughness, *_TOLERANCES))
 
 
 def require_buildings(classification: np.ndarray) -> None:

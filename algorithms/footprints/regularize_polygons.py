@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MICROMETER
 from ..geometry.grid import plan_box
 from ..geometry.kept_areas import welded, with_areas
 from ..geometry.line_segments import distances_to_rings
@@ -53,9 +54,6 @@ _KEPT = 0.01
 # Two polygons are drawn separately if this share of the smaller one overlaps the other: it is a part or a storey, not a
 # neighbor.
 _OVERLAPPING = 0.2
-
-# Area (m²) that drawn polygons may share by rounding.
-_NO_AREA = 1e-6
 
 _FIELDS = (
     Field("regularized", int, "1 drawn anew; 0 as it was, since it could not be drawn without losing area or a hole"),
@@ -248,7 +246,7 @@ def _tried(
     edges = as_polygons(moved)
     one, other, shared = overlaps(edges, edges, Monitor())
     is_bad = (turned > 0) | (np.abs(edges.area - wanted) > _KEPT * wanted)
-    is_bad[one[np.abs(shared - np.where(one == other, edges.area[one], 0.0)) > _NO_AREA]] = True
+    is_bad[one[np.abs(shared - np.where(one == other, edges.area[one], 0.0)) > MICROMETER]] = True
     return moved, [own[row][0] for row in np.flatnonzero(is_bad)]
 
 

@@ -6,13 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..criteria import MICROMETER
 from .cheapest_labels import cheapest_cut
-
-# If three lines meet in one point within rounding, move them by up to this distance (m).
-NUDGE = 1e-6
-
-# Ends of lines lie on a side of the rectangle within this share of its coordinate (m) plus 1.
-_ON_SIDE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -66,7 +61,7 @@ class Arrangement:
         low, high, rng = np.asarray(low, float), np.asarray(high, float), np.random.default_rng(0)
         self._build(low, high)
         while not self._fits():
-            self.points = self.points + rng.uniform(-NUDGE, NUDGE, self.points.shape)
+            self.points = self.points + rng.uniform(-MICROMETER, MICROMETER, self.points.shape)
             self._build(low, high)
 
     def _build(self, low: np.ndarray, high: np.ndarray) -> None:
@@ -118,7 +113,7 @@ class Arrangement:
         on_sides = np.concatenate([ends, corners])
         for axis in (0, 1):
             for limit in (low[axis], high[axis]):
-                own = np.sort(on_sides[np.abs(on_sides[:, axis] - limit) < _ON_SIDE * (1 + abs(limit)), 1 - axis])
+                own = np.sort(on_sides[np.abs(on_sides[:, axis] - limit) < MICROMETER * (1 + abs(limit)), 1 - axis])
                 middles = np.empty((max(len(own) - 1, 0), 2))
                 middles[:, axis], middles[:, 1 - axis] = limit, (own[1:] + own[:-1]) / 2
                 cells = self.cells_at(sides_of(middles, self.points, self.directions))

@@ -9,10 +9,8 @@ from typing import Callable
 import numpy as np
 
 from ..stage import Monitor
+from ..threads import PAIRS_AT_ONCE
 from .groups import components, placed, run_starts
-
-# Point pairs compared at once: 130 bytes each, so 130 MB.
-_PAIRS_AT_ONCE = 1_000_000
 
 # A near point lies at most this many boxes away.
 _REACH = 2
@@ -133,8 +131,8 @@ class Boxes:
         own, others = self.size[here], other.size[there]
         ends = np.cumsum(own * others)
         total = int(ends[-1]) if len(ends) else 0
-        for first in range(0, total, _PAIRS_AT_ONCE):
-            number = np.arange(first, min(first + _PAIRS_AT_ONCE, total))
+        for first in range(0, total, PAIRS_AT_ONCE):
+            number = np.arange(first, min(first + PAIRS_AT_ONCE, total))
             pair = np.searchsorted(ends, number, side="right")
             a, b = np.divmod(number - (ends[pair] - own[pair] * others[pair]), others[pair])
             yield pair, self.start[here[pair]] + a, other.start[there[pair]] + b

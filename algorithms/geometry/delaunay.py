@@ -15,6 +15,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import ROUNDING
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
@@ -25,16 +26,13 @@ from .groups import components, mask_of
 _TILE_POSITIONS = 3000
 
 # Tiles that a thread triangulates between two reports of progress.
-_TILES_AT_ONCE = 4
+TILES_AT_ONCE = 4
 
 # Up to this number of positions, one triangulation takes less time than tiles.
 _FEW = 12_000
 
 # Surroundings of a tile, in distances between positions: nearly all circles on its border end there.
 _MARGIN = 3.0
-
-# Positions on a circle, as in regular grids, count as inside: triangles with one circle stay or go together.
-_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -68,7 +66,7 @@ class Triangulation:
             center, radius = circles(self.plan, self.facets[facet])
             distance = np.linalg.norm(plan[position] - center, axis=1)
             # If a facet has no circle, as its corners are collinear, a new position in it lies on its edge.
-            inside = ~(distance > radius * (1 + _ROUNDING))
+            inside = ~(distance > radius * (1 + ROUNDING))
             spoilt[facet[inside]] = True
             around = self.neighbors[facet[inside]].ravel()
             beside = (np.repeat(position[inside], 3) * len(spoilt) + around)[around >= 0]
@@ -93,7 +91,7 @@ def _by_tiles(plan: np.ndarray, monitor: Monitor) -> Optional[Triangulation]:
         for tile in some:
             parts[tile] = _part(plan, *tiles[tile])
 
-    in_chunks(fill, np.arange(len(tiles)), _TILES_AT_ONCE, monitor)
+    in_chunks(fill, np.arange(len(tiles)), TILES_AT_ONCE, monitor)
     part = _joined(parts)
     is_done = np.zeros(len(plan), bool)
     is_done[part.facets] = True

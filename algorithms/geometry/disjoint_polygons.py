@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arrangement import NUDGE, Arrangement, sides_of
+from ..criteria import MICROMETER
+from .arrangement import Arrangement, sides_of
 from .groups import components
 from .line_segments import are_inside
 from .rings import sides_of_rings
@@ -80,7 +81,7 @@ def _rings(cells: Arrangement, inside: np.ndarray) -> Rings:
     rings = []
     for ring in cells.outline(inside):
         corners = cells.positions[[corner for _, corner in ring]]
-        corners = corners[np.hypot(*(corners - np.roll(corners, 1, axis=0)).T) > NUDGE]
+        corners = corners[np.hypot(*(corners - np.roll(corners, 1, axis=0)).T) > MICROMETER]
         if len(corners) >= 3:
             rings.append(np.concatenate([corners, corners[:1]]))
     return rings

@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ..criteria import PARALLEL
 from .groups import components, split_groups
 
 # Rounds of moving at most, and the share of an area that may be left: areas are quadratic in the shifts.
@@ -13,10 +14,6 @@ _ROUNDS, _LEFT = 20, 1e-6
 
 # Sine of the angle up to which two edges that meet lie on one line.
 _STRAIGHT = 1e-3
-
-# Where the lines that meet in a vertex are nearly parallel, it stays along them: directions with a smaller share of the
-# greatest singular value.
-_PARALLEL = 0.05
 
 
 def with_areas(polygons: list, wanted: np.ndarray) -> list:
@@ -95,5 +92,5 @@ def _on_lines(
     moved = vertices.copy()
     for number, rows in enumerate(split_groups(vertex, len(vertices))):
         across = normal[lines[rows]]
-        moved[number] += np.linalg.lstsq(across, offset[lines[rows]] - across @ vertices[number], rcond=_PARALLEL)[0]
+        moved[number] += np.linalg.lstsq(across, offset[lines[rows]] - across @ vertices[number], rcond=PARALLEL)[0]
     return moved

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..threads import PAIRS_AT_ONCE
 from .rings import sides_of_rings, signed_area
-
-# Pairs of segments or of points and segments that are compared at once.
-_PAIRS_AT_ONCE = 1_000_000
 
 
 def is_valid(rings: list) -> bool:
@@ -22,7 +20,7 @@ def is_valid(rings: list) -> bool:
     first = np.cumsum([0, *(len(ring) - 1 for ring in rings)])
     following = np.arange(1, len(starts) + 1)
     following[first[1:] - 1] = first[:-1]
-    step = max(1, _PAIRS_AT_ONCE // len(starts))
+    step = max(1, PAIRS_AT_ONCE // len(starts))
     for low in range(0, len(starts), step):
         rows = np.arange(low, min(low + step, len(starts)))
         meet = _meet(starts[rows], ends[rows], starts, ends)
@@ -42,7 +40,7 @@ def are_inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
     """Return the mask of points (n, 2) that lie inside a ring, by the parity of the edges to their east."""
     (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
     slope = np.divide(x1 - x0, y1 - y0, out=np.zeros_like(x0), where=y0 != y1)
-    inside, step = np.empty(len(points), bool), max(1, _PAIRS_AT_ONCE // len(x0))
+    inside, step = np.empty(len(points), bool), max(1, PAIRS_AT_ONCE // len(x0))
     for low in range(0, len(points), step):
         x, y = points[low : low + step, :, None].transpose(1, 0, 2)
         crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * slope)
@@ -76,7 +74,7 @@ def farthest(points: np.ndarray, line: np.ndarray) -> float:
 
 def nearest_edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """Return the distances (n,) (m) of points (n, 2) to the nearest of segments (m, 2), at least one."""
-    nearest, step = np.empty(len(points)), max(1, _PAIRS_AT_ONCE // len(starts))
+    nearest, step = np.empty(len(points)), max(1, PAIRS_AT_ONCE // len(starts))
     for low in range(0, len(points), step):
         nearest[low : low + step] = edge_distances(points[low : low + step], starts, ends).min(axis=1)
     return nearest

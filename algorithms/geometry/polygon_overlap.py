@@ -8,11 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..stage import Monitor
+from ..threads import PAIRS_AT_ONCE
 from .groups import items, split_groups
 from .rings import signed_area
-
-# Pairs of edges, or of boxes, that are compared at a time (150 bytes each).
-_PAIRS_AT_ONCE = 1_000_000
 
 # Side (m) of the squares whose polygons are worked on at once, where nothing but memory depends on it.
 SQUARE = 500.0
@@ -103,7 +101,7 @@ def shared_areas(first: Polygons, second: Polygons, one: np.ndarray, other: np.n
     start = 0
     while start < len(pair):
         done = work[start - 1] if start else 0
-        end = max(start + 1, int(np.searchsorted(work, done + _PAIRS_AT_ONCE)))
+        end = max(start + 1, int(np.searchsorted(work, done + PAIRS_AT_ONCE)))
         low, high = pair[start], pair[end - 1] + 1
         rows = pair[start:end] - low, edge[start:end]
         area[low:high] += _shared(first, second, one[low:high], other[low:high], *rows)
@@ -123,7 +121,7 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
     low = np.searchsorted(west, first[:, 0, 0] - widest)
     count = np.searchsorted(west, first[:, 1, 0], side="right") - low
     # Each strip from south to north has many: those of a country do not fit in memory at once.
-    part, found = np.cumsum(count) // _PAIRS_AT_ONCE, []
+    part, found = np.cumsum(count) // PAIRS_AT_ONCE, []
     for rows in np.split(np.arange(len(first)), np.flatnonzero(np.diff(part)) + 1):
         near, step = items(count[rows])
         one, other = rows[near], order[low[rows[near]] + step]

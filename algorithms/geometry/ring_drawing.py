@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..criteria import PARALLEL
 from .principal_axes import principal_axes
 
 # Shortest run, in samples: shorter edges are drawn as steps between two runs.
@@ -39,9 +40,6 @@ _TRIAL = 64
 
 # Cosine of the angle between edges of one line, at least: 10°.
 _NEARLY = 0.985
-
-# Lines with a smaller sine between them count as parallel, as their intersection is ill-defined.
-_PARALLEL = 0.05
 
 # Greatest distance (steps) of a corner from where the runs part: the corner of a sharp angle lies that far off.
 _FARTHEST = 6.0
@@ -336,7 +334,7 @@ def _corner(before: tuple, after: tuple, at: np.ndarray, step: float) -> tuple[n
     (p, u, _), (q, v, _) = before, after
     sine = float(u[0] * v[1] - u[1] * v[0])
     offset = q - p
-    if abs(sine) > _PARALLEL:
+    if abs(sine) > PARALLEL:
         position = p + u * float(offset[0] * v[1] - offset[1] * v[0]) / sine
         if np.hypot(*(position - at)) <= _FARTHEST * step:
             return position, position

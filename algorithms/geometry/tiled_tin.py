@@ -15,10 +15,11 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import ROUNDING
 from ..packages import spatial
 from ..stage import Monitor
-from ..threads import in_chunks, n_threads
-from .delaunay import circles
+from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
+from .delaunay import TILES_AT_ONCE, circles
 from .grid import grid_over, plan_box
 from .tin import CORNERS, Tin
 
@@ -26,23 +27,11 @@ from .tin import CORNERS, Tin
 # smaller ones the overlap of tiles takes more.
 _TILE_NODES = 5_000
 
-# Most positions of a tile.
-_TILE_POSITIONS = 20_000
-
-# Tiles that a thread works on between two reports.
-_TILES_AT_ONCE = 4
-
 # Cells around positions, in distances between nodes: most triangles have their corners in such a cell or the next.
 _CELL = 1.5
 
 # Nodes inside a circle that are added at once.
 _INTRUDERS = 8
-
-# Nodes whose width in plan is a smaller share of their length than this lie on a line, and no point lies between them.
-_LEAST_WIDTH = 1e-9
-
-# Nodes on a circle, as in regular grids, lie inside it by rounding.
-_ROUNDING = 1e-9
 
 
 class TiledTin:
@@ -75,7 +64,7 @@ class TiledTin:
                 close = _close(self.nodes, rows, positions[left])
                 gaps[tile] = self._fill(close, left, positions, found, is_start=True)
 
-        in_chunks(fill, np.arange(len(tiles)), _TILES_AT_ONCE, monitor.part(0, 0.7))
+        in_chunks(fill, np.arange(len(tiles)), TILES_AT_ONCE, monitor.part(0, 0.7))
         # The few positions that are left, in gaps of the ground, need the nodes around the gaps only.
         if tiles:
             around, within = (np.unique(np.concatenate(parts)) for parts in zip(*gaps))
@@ -156,7 +145,7 @@ class TiledTin:
 
         Circles have a ``center`` (c, 2), from the shift, and a ``radius`` (c,), m, both NaN for nodes on a line.
         """
-        limit = radius * (1 - _ROUNDING)
+        limit = radius * (1 - ROUNDING)
         # Nodes on a line have no circle, and no position lies between them.
         center[~np.isfinite(radius)], limit[~np.isfinite(radius)] = 0.0, 0.0
         is_wrong = self._tree.query(center)[0] < limit
@@ -174,7 +163,7 @@ class TiledTin:
 def _has_area(plan: np.ndarray) -> bool:
     """Return whether nodes in plan (m, 2) do not all lie on one line."""
     extents = np.linalg.svd(plan - plan.mean(axis=0), compute_uv=False)
-    return len(plan) > 2 and bool(extents[1] > _LEAST_WIDTH * extents[0])
+    return len(plan) > 2 and bool(extents[1] > ROUNDING * extents[0])
 
 
 def _tiles(nodes: np.ndarray, positions: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -190,7 +179,7 @@ def _tiles(nodes: np.ndarray, positions: np.ndarray) -> Iterator[tuple[np.ndarra
         low, high = plan_box(nodes[rows] if len(rows) > _TILE_NODES else positions[own])
         axis = int(np.argmax(high - low))
         middle = (low[axis] + high[axis]) / 2
-        if (len(rows) <= _TILE_NODES and len(own) <= _TILE_POSITIONS) or not low[axis] < middle:
+        if (len(rows) <= _TILE_NODES and len(own) <= ROWS_AT_ONCE) or not low[axis] < middle:
             yield rows, own
             continue
         margin = 2 * _cell_size(nodes, rows)

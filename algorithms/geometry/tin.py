@@ -6,27 +6,19 @@ from typing import Callable, Optional
 
 import numpy as np
 
+from ..criteria import ROUNDING
 from ..packages import ndimage, spatial
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import ROWS_AT_ONCE, in_chunks
 from .delaunay import Triangulation, circles, triangulate
 from .grid import plan_box
 from .scattered import scattered
-
-# Points located at once on each core: their arrays stay small compared with the cloud.
-_CHUNK = 100_000
-
-# Planes fitted at once on each core: their arrays, of nine neighbors each, stay small compared with the cloud.
-_FIT_CHUNK = 20_000
 
 # Points that a plane needs.
 PLANE_POINTS = 3
 
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
-
-# On a side of a facet weights are 0 but for rounding: a point with less negative weights lies inside.
-_ROUNDING = 1e-9
 
 # Side of the cells of starts for walks, in mean distances of nodes: two cells for each node.
 _START_CELL = 0.7
@@ -142,7 +134,7 @@ class Tin:
             plan = np.clip(xyz[rows, :2] - self.shift[:2], -0.99 * self.reach, 0.99 * self.reach)
             found[rows] = self._walk(plan, self._at_node[node(rows, plan)])
 
-        in_chunks(walk, np.arange(len(xyz)), _CHUNK, monitor)
+        in_chunks(walk, np.arange(len(xyz)), ROWS_AT_ONCE, monitor)
         return found
 
     def _walk(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
@@ -167,7 +159,7 @@ class Tin:
         weights = self._weights_of(plan, facet)
         side = np.argmin(weights, axis=0)
         least = np.take_along_axis(weights, side[None], axis=0)[0]
-        return np.where(least < -_ROUNDING, side, -1)
+        return np.where(least < -ROUNDING, side, -1)
 
     def _weights_of(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the weights (3, n) of the corners of facets at positions, negative beyond the side across from one."""
@@ -289,7 +281,7 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
         right = np.swapaxes(design, 1, 2) @ heights[..., None]
         residuals[sample] = -np.linalg.solve(normal, right)[:, 2, 0]
 
-    in_chunks(fit, np.arange(len(residuals)), _FIT_CHUNK, Monitor())
+    in_chunks(fit, np.arange(len(residuals)), ROWS_AT_ONCE, Monitor())
     return residuals
 
 

@@ -7,10 +7,8 @@ from typing import Callable
 import numpy as np
 
 from ..stage import Monitor
+from ..threads import ROWS_AT_ONCE
 from .sparse_voxels import Keys, dilate, find_keys, neighbor_offsets
-
-# Voxels that are filtered at once: 27 numbers of 8 bytes each make 54 MB.
-_AT_ONCE = 250_000
 
 # A voxel and its neighbors, sorted; the voxel itself is in the middle.
 _STEPS = np.insert(neighbor_offsets(26), 13, 0, axis=0)
@@ -53,9 +51,9 @@ def filter_counts(cells: np.ndarray, count: np.ndarray, name: str, monitor: Moni
     known, keys = box.of(cells), box.of(reached)
     steps, padded = box.step(_STEPS), np.append(count, 0).astype(float)
     value = np.zeros(len(reached))
-    for start in range(0, len(reached), _AT_ONCE):
+    for start in range(0, len(reached), ROWS_AT_ONCE):
         monitor.progress(start / len(reached))
-        part = slice(start, start + _AT_ONCE)
+        part = slice(start, start + ROWS_AT_ONCE)
         around = keys[part, None] + steps
         value[part] = FILTERS[name](padded[find_keys(known, around.ravel()).reshape(around.shape)])
     return reached[value > 0], value[value > 0]

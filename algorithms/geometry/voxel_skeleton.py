@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..stage import Monitor
+from ..threads import ROWS_AT_ONCE
 from .sparse_voxels import Keys, find_keys, neighbor_offsets
 
 # The 26 neighbors of a voxel are the bits of a number, in the order of these steps.
@@ -21,9 +22,6 @@ _EDGE_BITS = np.bitwise_or.reduce(_BIT[_N_AXES <= 2])
 # so that the skeleton stays in the middle.
 _POSITIVE_SIDES = [int(np.flatnonzero((side == _STEPS).all(axis=1))[0]) for side in np.eye(3, dtype=int)[::-1]]
 _SIDES = [bit for side in _POSITIVE_SIDES for bit in (side, 25 - side)]
-
-# Voxels whose neighborhoods are examined at once: 1 MB for each array, which fits caches.
-_CHUNK = 250_000
 
 
 def _adjacency(connectivity: int, among: np.ndarray) -> list[np.uint32]:
@@ -142,8 +140,8 @@ class _Thinning:
 def _removable(around: np.ndarray) -> np.ndarray:
     """Return the mask of voxels (m,) with these neighbors (bits) that are simple and no ends of lines."""
     removable = np.zeros(len(around), bool)
-    for start in range(0, len(around), _CHUNK):
-        part = slice(start, start + _CHUNK)
+    for start in range(0, len(around), ROWS_AT_ONCE):
+        part = slice(start, start + ROWS_AT_ONCE)
         is_end = around[part] & (around[part] - np.uint32(1)) == 0
         rows = np.flatnonzero(~is_end)
         removable[start + rows] = is_simple(around[part][rows])

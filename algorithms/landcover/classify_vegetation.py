@@ -8,13 +8,15 @@ import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
 from ..cloud.reasons import Reason
+from ..criteria import MAJORITY
 from ..geometry.components import connect
 from ..geometry.groups import least_of
 from ..neighborhoods.covariance import Nearest, reduce_neighborhoods, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import Shapes
 from ..rules import rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE
+from ..sampling.density import link_distance
+from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE, SURFACES
 from ..stage import Monitor, stage, tunable
 
 # Points of these classes may be vegetation; all others stay.
@@ -44,10 +46,6 @@ _REACH = 2.5
 class _RULES:
     """Rules by which solid objects are recognized."""
 
-    #: gap_spacings, least_gap: Points of one object are closer in plan: 2 point spacings, as clusters of the building
-    #: chain, at least 0.5 m
-    gap_spacings: float = 2.0
-    least_gap: float = 0.5
     #: Points of one object are closer in height (m): the distance between the bonnet of a car and its roof is less
     step: float = 1.0
     #: Highest smooth object (m): vans, containers and garden walls are lower, the smooth sides of crowns higher
@@ -55,9 +53,6 @@ class _RULES:
     #: Largest share of points whose pulse had several returns. Edges of cars give 0.1; crowns and bushes of the clouds
     #: with truth 0.3 to 0.9.
     most_passed: float = 0.2
-    radius: float = 0.5  #: Surfaces are planes over at least this (m), leaves and twigs over less
-    most_neighbors: int = 100  #: Most points of a neighborhood: more only take time
-    smooth_share: float = 0.5  #: Least share of points on smooth surfaces: most points
     #: Least ratio of the height of poles to their extent in plan: lamps with an arm have 4, trees 1 to 2
     slenderness: float = 4.0
 
@@ -209,7 +204,7 @@ def find_solid_objects(
     is_smooth = _on_surfaces(xyz[candidates], sampling, monitor.part(0.6, 1))
     smooth = np.bincount(group[candidates], is_smooth, len(size))
     # Points of objects that are no candidates are not counted, so that these are never solid.
-    is_solid = smooth >= np.maximum(_RULES.smooth_share * size, 1)
+    is_solid = smooth >= np.maximum(MAJORITY * size, 1)
     rise = top - low
     is_pole = has_enough & (rise >= _RULES.slenderness * _extent(group, xyz, size))
     return (is_solid | is_pole)[group]
@@ -237,7 +232,7 @@ def _groups(
     xyz: np.ndarray, has_passed: np.ndarray, sampling: CloudSampling, monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the object of each point (n,), the points of each object (m,), and the mask of opaque objects (m,)."""
-    gap = max(_RULES.gap_spacings * sampling.spacing, _RULES.least_gap)
+    gap = link_distance(sampling.spacing)
     group = connect(xyz, gap, _RULES.step, monitor)
     size = np.bincount(group, minlength=1)
     return group, size, np.bincount(group, has_passed, len(size)) < _RULES.most_passed * size
@@ -264,7 +259,7 @@ def _on_surfaces(xyz: np.ndarray, sampling: CloudSampling, monitor: Monitor) -> 
         variance = symmetric_eigenvalues(shapes.covariances)[:, 2] * shapes.counts / np.maximum(shapes.counts - 3, 1)
         is_smooth[rows] = (variance <= most**2) & (shapes.counts >= LEAST_NEIGHBORS)
 
-    count = round(float(np.pi * _RULES.radius**2 * sampling.density))
-    neighborhood = Nearest(min(max(count, LEAST_NEIGHBORS), _RULES.most_neighbors))
+    count = round(float(np.pi * SURFACES.least_reach**2 * sampling.density))
+    neighborhood = Nearest(min(max(count, LEAST_NEIGHBORS), SURFACES.most_neighbors))
     reduce_neighborhoods(xyz, neighborhood, keep, monitor=monitor)
     return is_smooth

@@ -7,6 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..criteria import DEVIATIONS, MAJORITY
 from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
 from ..geometry.groups import least_of
 from ..packages import ndimage
@@ -17,9 +18,6 @@ from ..stage import Monitor, stage, tunable
 
 # Points of these classes may be water, by their height.
 _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, PointClass.GROUND, PointClass.WATER)
-
-# Points on a level surface lie within this many standard deviations of its level, all but one of 370 points.
-_DEVIATIONS = 3.0
 
 # Distance (m) within which other points decide whether the surface at a point is level. Gaps of the cloud up to twice
 # as wide are filled.
@@ -34,7 +32,6 @@ class _RULES:
     cell_spacings: float = 1.5  #: Least side of the cells in point spacings, so that cells of land hold a point
     window: float = 5.0  #: Side (m) of the square in which pulses are counted: the least width of a ditch that is seen
     most_pulses: float = 0.5  #: Most pulses, as a share of land's: canals and simulated rivers give 0.1 to 0.4
-    most: float = 0.5  #: Least share of a body's ground that has its level, and of the ground around it that is higher
     #: Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water
     land: float = 0.25
     #: Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents
@@ -127,7 +124,7 @@ def classify_water(
     if return_number is not None and return_number.any():
         is_pulse = return_number[used] == 1
     level = water_levels(points, is_ground, is_pulse, sampling.spacing, min_area, monitor)
-    is_water = np.abs(points[:, 2] - level) <= _DEVIATIONS * noise
+    is_water = np.abs(points[:, 2] - level) <= DEVIATIONS * noise
     classes[used[is_water & np.isin(classification[used], _OPEN)]] = PointClass.WATER
     return classes
 
@@ -221,6 +218,6 @@ def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Opt
     level = float(np.median(lowest[seen]))
     on_level = seen & (np.abs(lowest - level) <= _RULES.level)
     banks = ndimage.binary_dilation(inside, EIGHT, iterations=_RULES.ring) & ~inside & np.isfinite(lowest)
-    if on_level.sum() < _RULES.most * seen.sum() or not banks.any():
+    if on_level.sum() < MAJORITY * seen.sum() or not banks.any():
         return None
-    return on_level if (lowest[banks] > level + _RULES.level).mean() >= _RULES.most else None
+    return on_level if (lowest[banks] > level + _RULES.level).mean() >= MAJORITY else None

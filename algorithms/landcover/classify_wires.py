@@ -7,6 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..criteria import DEVIATIONS
 from ..params import SEED, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, stage, tunable
@@ -113,7 +114,7 @@ def classify_wires(
     rows = rows[np.lexsort(xyz[rows].T)]
     points, height = sampling.from_corner(xyz[rows]), height_above_ground[rows]
     solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
-    around = SpanSurroundings(points, solid, max(RULES.least_off, RULES.noises * noise))
+    around = SpanSurroundings(points, solid, max(RULES.least_off, DEVIATIONS * noise))
     spans = _spans(points, height, around, min_height, sampling.spacing, seed, monitor)
     # Wires next to these are seen in part only, so that their ends show no masts.
     for span in (*spans, *parallels_of(spans, around)):

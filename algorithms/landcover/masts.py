@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.groups import components, run_starts, split_groups
 from ..packages import spatial
 from ..rules import rules
@@ -23,9 +24,6 @@ class _RULES:
     spread: float = 0.08  #: Radius of towers, as a share of their height
     above: float = 2.0  #: Height (m) over the highest wire up to which a mast reaches: insulators and the tip
     part: float = 1.5  #: Height (m) of the parts in which points are counted
-    #: Least share of the parts with points, in the upper and in the lower half of a mast; and largest share of the
-    #: parts of its trunk with more points around it than in it
-    filled: float = 0.5
     #: Shares of the height between which a mast has no arms and a tree has its crown: around it there are fewer points
     #: than in it
     trunk: tuple[float, float] = (0.25, 0.65)
@@ -83,7 +81,7 @@ def _mast(plan: np.ndarray, height: np.ndarray, top: float, reach: float) -> np.
     part = (height[in_trunk] / _RULES.part).astype(np.int64)
     inner_minus_outer = np.bincount(part, np.where(out[in_trunk] <= radius, 1, -1))
     # A crown next to a mast surrounds some parts of its trunk, a tree's crown most of them.
-    if (inner_minus_outer < 0).sum() > _RULES.filled * (np.bincount(part) > 0).sum():
+    if (inner_minus_outer < 0).sum() > MAJORITY * (np.bincount(part) > 0).sum():
         return nothing
     return inside & ((out <= radius) | ((height > _RULES.trunk[1] * top) & (out <= _RULES.arms * top)))
 
@@ -103,4 +101,4 @@ def _axis(plan: np.ndarray, height: np.ndarray, radius: float, top: float) -> Op
     # A tower has many such positions: those with the most points around them count, by their middle.
     best = int((filled.sum(axis=1) + near.mean(axis=1)).argmax())
     shares = [float(half.mean()) for half in np.array_split(filled[best], 2)]
-    return plan[near[best]].mean(axis=0) if min(shares) >= _RULES.filled else None
+    return plan[near[best]].mean(axis=0) if min(shares) >= MAJORITY else None

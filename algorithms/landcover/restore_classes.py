@@ -7,7 +7,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..geometry.components import connect
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..sampling.density import DENSITY
+from ..sampling.density import link_distance
 from ..stage import stage
 
 # Where a cloud came with points of one of these classes, no others are called so.
@@ -68,7 +68,7 @@ def restore_classes(
     is_building = earlier_class == PointClass.BUILDING
     if cluster_id is None or not is_building.any():
         return classes, None
-    gap = max(DENSITY.link * sampling.spacing, DENSITY.least_link)
+    gap = link_distance(sampling.spacing)
     points = xyz[is_building]
     number = np.zeros(len(xyz), np.int32)
     # Points above one another are of one building, whatever the difference in height.

@@ -38,11 +38,8 @@ class _RULES:
     bend: float = 0.02  #: Height over the tangent of a wire that farther points may have, as a share of their distance
 
 
-# Lines whose points are counted at once.
+# Points whose neighbors are found, and lines whose points are counted at once: some hundred neighbors each.
 _CHUNK = 1000
-
-# Points whose neighbors are found at once: some hundred neighbors each take tens of megabytes.
-_POINTS_AT_ONCE = 2000
 
 
 def over_free_space(xyz: np.ndarray, spacing: float) -> np.ndarray:
@@ -91,7 +88,7 @@ def strands(xyz: np.ndarray, reach: float, monitor: Monitor) -> tuple[np.ndarray
         count[rows], direction[rows] = _best_lines(one, offset, len(rows), reach)
 
     # Neighbors in plan together: their own neighbors are the same.
-    in_chunks(look, np.lexsort(xyz[:, :2].T), _POINTS_AT_ONCE, monitor)
+    in_chunks(look, np.lexsort(xyz[:, :2].T), _CHUNK, monitor)
     is_linear = count >= SPAN.least_points - 1
     linear = np.flatnonzero(is_linear)
     one, other = linear[spatial.cKDTree(stretched[linear]).query_pairs(reach, output_type="ndarray")].T

@@ -28,10 +28,8 @@ class RULES:
     #: Points within this distance (m) of the plane of the wire are on it: the radius of the beam's footprint and the
     #: swing of the wire. Points of a trial are at least as far apart along it.
     aside: float = 0.3
-    #: least_off, noises: Points on the wire are within the larger of this height (m) and this many standard deviations
-    #: of the noise from its parabola
+    #: Points on the wire are within this height (m) from its parabola, or within ``DEVIATIONS`` times the noise
     least_off: float = 0.1
-    noises: float = 3.0
     #: Curvature (1/m), half of the second derivative, of the deepest parabola: a sag of a tenth over a span of 20 m
     most_bent: float = 0.02
     #: A fitted curvature exceeds zero by this many standard errors: beams, rails and edges are straight, wires sag

@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..footprints.footprint_attributes import EAVE
 from ..geometry.groups import split_groups
 from ..rules import rules
@@ -46,8 +47,6 @@ class CHECKS:
     poor: float = 0.25
     #: Share of the area with points: walls hide a strip of narrow courts, water and glass all of a roof
     covered: float = 0.75
-    #: Share of the points of a large face that lie on it: below a half, the face is not the one that was seen
-    weakest: float = 0.5
 
 
 BUILDING_FIELDS = (
@@ -78,13 +77,13 @@ BUILDING_FIELDS = (
         int,
         f"2: a level under 2.2 and under the one asked for, or over {CHECKS.poor:.0%} of the roof points off. "
         f"1: over {CHECKS.doubtful:.0%} off, or "
-        f"points on less than {CHECKS.covered:.0%} of the area, or less than {CHECKS.weakest:.0%} of the points of a "
+        f"points on less than {CHECKS.covered:.0%} of the area, or less than {MAJORITY:.0%} of the points of a "
         "large face on it. 0: sound",
     ),
     Field(
         "confidence",
         float,
-        f"confidence in the model: explained times covered, less if weakest_face is under {CHECKS.weakest:g}, 0 to 1",
+        f"confidence in the model: explained times covered, less if weakest_face is under {MAJORITY:g}, 0 to 1",
     ),
     Field("points", int, "points over its footprint"),
 )
@@ -223,7 +222,7 @@ def building_attributes(one: NamedModel) -> dict[str, Any]:
         "covered": model.covered,
         "gap_area": (1 - model.covered) * area,
         "check": _check(model),
-        "confidence": model.explained * model.covered * min(1.0, model.weakest / CHECKS.weakest),
+        "confidence": model.explained * model.covered * min(1.0, model.weakest / MAJORITY),
         "points": model.n_points,
     }
 
@@ -232,7 +231,7 @@ def _check(model: BuildingModel) -> int:
     """Return 0 for a sound model, 1 for a doubtful and 2 for a poor one."""
     if (model.reason and model.level < FINE) or not model.off <= CHECKS.poor:
         return 2
-    return int(model.off > CHECKS.doubtful or model.covered < CHECKS.covered or model.weakest < CHECKS.weakest)
+    return int(model.off > CHECKS.doubtful or model.covered < CHECKS.covered or model.weakest < MAJORITY)
 
 
 def _eave(solids: Sequence[Solid]) -> float:

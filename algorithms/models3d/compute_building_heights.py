@@ -9,6 +9,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
+from ..criteria import MAJORITY
 from ..footprints.footprint_attributes import roof_heights, surface_heights
 from ..footprints.footprint_points import (
     GROUND_PERCENTILE,
@@ -27,6 +28,7 @@ from ..geometry.rings import along_sides, polygon_area, sides_of_rings
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
+from ..sampling.kinds import LASER
 from ..sampling.points_on_top import RULES
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage
 from .building_facts import CHECKS, type_of_faces
@@ -35,23 +37,14 @@ from .roof_planes import STEEPEST, RoofPlanes, find_roof_planes
 
 SEEN, PARTLY, TREES, ABSENT, EMPTY = "seen", "partly seen", "under trees", "no building", "no points"
 
-# Share of what was not seen of a footprint that vegetation covers where this is the reason.
-_HIDDEN = 0.5
-
 # Unclassified points farther than this (spacings) in plan from those on planes are of plants next to a roof.
 _APART = 2.0
 
 # Points nearest to a position in plan that show whether it lies under something, itself among them.
 _BESIDE = 4
 
-# Points that no class calls building are of roofs and crowns from this height (m) above the ground on: cars are lower.
-_LEAST_HEIGHT = 2.0
-
 # Area (m²) of the smallest plane of a roof, as in 'Reconstruct roofs'.
 _MIN_AREA = 1.5
-
-# Least share of the points of a building that lie on planes where only these are its roof: less is a dome or a wreck.
-_ON_PLANES = 0.5
 
 # Distance (m) from an outline within which its ground and its neighbors are: a wide building has none nearer.
 _REACH = 100.0
@@ -151,7 +144,7 @@ def compute_building_heights(
     The ground is the ``GROUND_PERCENTILE``th percentile of the ground points nearest to the outline; heights are above
     the median of these. Eaves are looked for where no other footprint adjoins.
 
-    Where no point has class 6, roofs are the planes among the unclassified points ``_LEAST_HEIGHT`` m or more above the
+    Where no point has class 6, roofs are the planes among the unclassified points 2 m or more above the
     ground, and those clearly above them or next to them are vegetation.
 
     References
@@ -269,7 +262,7 @@ def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], 
     base, terrain = np.percentile(ground_beside(points.ground, points.tree, rings), (GROUND_PERCENTILE, 50)).tolist()
     building, plants = within[np.isin(kind, points.roofs)], within[np.isin(kind, VEGETATION)]
     if not are_classified:
-        building = building[points.xyz[building, 2] >= base + _LEAST_HEIGHT]
+        building = building[points.xyz[building, 2] >= base + LASER.lowest_roof]
     least = max(5, round(_MIN_AREA / points.spacing**2))
     planes = find_roof_planes(points.xyz[building] - points.xyz[building[:1]], tolerance, STEEPEST, least)
     if not are_classified:
@@ -296,7 +289,7 @@ def _state(n_points: int, has_roof: bool, covered: float, trees: float) -> str:
         return EMPTY
     if has_roof and covered >= CHECKS.covered:
         return SEEN
-    return TREES if trees >= _HIDDEN * (1 - covered) else PARTLY if has_roof else ABSENT
+    return TREES if trees >= MAJORITY * (1 - covered) else PARTLY if has_roof else ABSENT
 
 
 def _are_plants(xyz: np.ndarray, is_on: np.ndarray, spacing: float) -> np.ndarray:
@@ -338,7 +331,7 @@ def _are_roof(xyz: np.ndarray, planes: RoofPlanes, spacing: float) -> np.ndarray
     """Return the mask of the roof's points (n, 3), m: on planes with most of their points on top."""
     near = spatial.cKDTree(xyz[:, :2]).query(xyz[:, :2], min(_BESIDE, len(xyz)))[1]
     is_under, is_on = xyz[near, 2].max(axis=1) > xyz[:, 2] + RULES.below, planes.label >= 0
-    if is_on.mean() < _ON_PLANES:
+    if is_on.mean() < MAJORITY:
         return ~is_under
     count, under = (np.bincount(planes.label[one], minlength=len(planes)) for one in (is_on, is_on & is_under))
     # A steep plane rises as much from point to point as a floor lies below a roof.

@@ -7,10 +7,8 @@ from collections import deque
 
 import numpy as np
 
+from ..criteria import ROUNDING
 from ..geometry.polygons import area_vector, axes_across
-
-# Corners whose triangle has less than half of this area (m²) are in line by rounding.
-_FLAT = 1e-9
 
 
 def triangulate_face(vertices: np.ndarray, rings: list[list[int]]) -> list[list[int]]:
@@ -65,12 +63,12 @@ def _turned(triangles: list[list[int]], rings: list[list[int]], positions: dict)
 
 def _is_better(a, b, c, d) -> bool:
     """Return whether Delaunay triangles have the side from c to d where a to b is now, c to the left of it."""
-    if _turn(c, a, d) <= _FLAT or _turn(d, b, c) <= _FLAT:
+    if _turn(c, a, d) <= ROUNDING or _turn(d, b, c) <= ROUNDING:
         return False
     (ax, ay), (bx, by), (cx, cy) = ((x - d[0], y - d[1]) for x, y in (a, b, c))
     a2, b2, c2 = ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy
     inside = a2 * (bx * cy - cx * by) - b2 * (ax * cy - cx * ay) + c2 * (ax * by - bx * ay)
-    return inside > _FLAT * (a2 + b2 + c2)
+    return inside > ROUNDING * (a2 + b2 + c2)
 
 
 def _in_plane(vertices: np.ndarray, rings: list[list[int]], used: list[int]) -> np.ndarray:
@@ -92,7 +90,7 @@ def _turn(a, b, c) -> float:
 def _is_ear(ring: list[int], i: int, positions: dict) -> bool:
     names = _corner(ring, i)
     a, b, c = (positions[v] for v in names)
-    if _turn(a, b, c) <= _FLAT:
+    if _turn(a, b, c) <= ROUNDING:
         return False
     return not any(
         _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..criteria import MICROMETER
 from ..geometry.groups import components, items, split_groups, topmost
 from ..geometry.line_segments import nearest_edge_distances
 from ..geometry.points_in_polygons import are_in_polygons
@@ -34,17 +35,11 @@ _SAME = 0.002
 # Ground points nearer to an outline than this (m) are no nodes: the positions on the outline have their height.
 _BESIDE = 0.3
 
-# Rounding (m) of positions in line.
-_EXACT = 1e-6
-
 # Pieces of outlines that are shorter (m) are not divided: outlines of footprints that overlap cross without a node.
 _SHORTEST = 0.05
 
 # Triangulations of a patch, at most; 10 to 20 are enough for nearly all.
 _ROUNDS = 40
-
-# Triangles of less area (m²) lie between nodes in one line.
-_LEAST_AREA = 1e-6
 
 TERRAIN_FIELDS = (
     Field("id", int, "number of the triangle, from 1"),
@@ -148,7 +143,7 @@ def _base_lines(models: list[NamedModel]) -> Iterator[np.ndarray]:
                 shares += ((sides - start[axis]) / (end - start)[axis]).tolist()
             line = start + np.sort(shares)[:, None] * (end - start)
             sides = np.round(line / PATCH) * PATCH
-            line = np.where(np.abs(line - sides) < _EXACT, sides, line)
+            line = np.where(np.abs(line - sides) < MICROMETER, sides, line)
             line[[0, -1]] = start, end
             yield line
 
@@ -200,7 +195,7 @@ def _patch(
             break
     facets = mesh.simplices
     u, v = (nodes[facets[:, k], :2] - nodes[facets[:, 0], :2] for k in (1, 2))
-    return nodes, facets[u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > _LEAST_AREA]
+    return nodes, facets[u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > MICROMETER]
 
 
 def _worst(mesh, nodes: np.ndarray, points: np.ndarray, tolerance: float) -> np.ndarray:

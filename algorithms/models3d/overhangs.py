@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.line_segments import edge_distances
 from ..geometry.rings import sides_of_rings, signed_area
 from ..geometry.subdivision import SNAP
+from ..sampling.density import DENSITY, link_distance
 from .mending import connected
 from .roof_partition import Partition, are_inside
 from .solid_faces import build_solid
@@ -24,10 +26,6 @@ _STEP, _OFF = 0.05, 0.1
 # gutters are higher, plants at its foot lower.
 _CLEAR = 0.5
 
-# A side is examined in pieces of this length (m, and point spacings; the larger one counts). Its wall is seen if half
-# of the pieces have points of it, as in 'Map footprints'. Half of all points under the eave must lie on it, too, as
-# points of floors and lower roofs lie at all distances.
-_PIECE, _PIECE_SPACINGS, _SEEN = 0.5, 2.0, 0.5
 
 # A side has a common wall with the next house if this share of its pieces has points of buildings outside, farther from
 # it than this (m). Nearer ones are the edge of its own roof.
@@ -64,7 +62,7 @@ def wall_rings(xyz: np.ndarray, rings: list, solids: list[Solid], base: float, s
     corners = np.concatenate([solid.vertices for solid in solids])
     corners, high = (xyz[xyz[:, 2] > base + _CLEAR] for xyz in (corners, xyz))
     overhangs, walls = [0.0], []
-    step = max(_PIECE, _PIECE_SPACINGS * spacing)
+    step = link_distance(spacing)
     for number, ring in enumerate(rings):
         is_left = (signed_area(ring) > 0) == (number == 0)
         turned = ring if is_left else ring[::-1]
@@ -88,13 +86,14 @@ def _overhang(xyz: np.ndarray, side: np.ndarray, corners: np.ndarray, step: floa
     piece, across, z = (along[is_near] / step).astype(int), across[is_near], xyz[is_near, 2]
     n_pieces = int(length / step) + 1
     is_party = len(np.unique(piece[across < -_BESIDE])) >= _PARTY * n_pieces
-    if length < 2 * _PIECE or not len(eave) or is_party:
+    if length < 2 * DENSITY.least_link or not len(eave) or is_party:
         return 0.0
     is_under = (across >= -_OFF) & (z < eave.min() - _CLEAR)
     piece, across = piece[is_under], across[is_under]
     on_walls = np.abs(across - np.arange(0.0, _MOST + _STEP / 2, _STEP)[:, None]) <= _OFF
     on_wall = on_walls[np.argmax(on_walls.sum(axis=1))]
-    if not on_wall.any() or min(on_wall.mean(), len(np.unique(piece[on_wall])) / n_pieces) < _SEEN:
+    # Floors and lower roofs lie at all distances: half of all points under the eave are on its wall, too.
+    if not on_wall.any() or min(on_wall.mean(), len(np.unique(piece[on_wall])) / n_pieces) < MAJORITY:
         return 0.0
     overhang = float(np.median(across[on_wall]))
     return overhang if overhang >= _LEAST else 0.0

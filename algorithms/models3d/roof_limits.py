@@ -9,10 +9,8 @@ from ..packages import spatial
 # Points within this distance (m) in plan limit the height of a corner: ridges and eaves are sampled that closely.
 RADIUS = 1.5
 
-# A corner lies at most this much (m) above the highest of these points: noise is less.
-_ABOVE = 0.5
-
-# A roof point farther from the model than this (m) is off it: more than any noise, less than half a storey.
+# A roof point farther from the model than this (m), or a corner that is as much higher than the points around, is off:
+# more than any noise, less than half a storey.
 OFF = 0.5
 
 
@@ -31,4 +29,4 @@ class HeightsAround:
     def highest(self, xy: np.ndarray) -> np.ndarray:
         """Return the height (k,), m, that a roof may have at positions (k, 2), infinite far from points."""
         found = self._tree.query_ball_point(xy, RADIUS)
-        return np.array([self._z[rows].max() if rows else np.inf for rows in found]) + _ABOVE
+        return np.array([self._z[rows].max() if rows else np.inf for rows in found]) + OFF

@@ -6,36 +6,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..criteria import PARALLEL
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import members, split_groups
+from ..sampling.density import DENSITY, link_distance
 from .roof_planes import RoofPlanes
 
 # Points of two planes are adjacent if a side of a triangle of at most this length joins them (spacings, or m if that is
 # more).
 _BESIDE_SPACINGS, _BESIDE = 6.0, 2.0
 
-# Below this difference of slopes (rise per meter), the points don't locate the intersection of two planes. Planes less
-# steep than this give no direction for steps.
-_LEAST_TURN = 0.05
-
-# A contact of two planes lies at their intersection within this distance (spacings, or m if that is more).
-_AT_LINE_SPACINGS, _AT_LINE = 2.0, 0.5
-
 # Least number of contacts of a line.
 _LEAST_CONTACTS = 3
-
-# Lines extend beyond their contacts by this much (spacings, or m if that is more); a cell is cut from side to side
-# anyway.
-_BEYOND_SPACINGS, _BEYOND = 2.0, 0.5
 
 # Lines that turn by less than this (rad) and lie no farther apart (m) are the same.
 _SAME_TURN, _SAME_OFFSET = 0.04, 0.10
 
-# Points no farther than this from a step (spacings, or m if that is more) locate it.
-_NEAR, _NEAR_SPACINGS = 0.6, 2.0
-
 # Walls of at least this share of the length of the longest one give main directions.
 _LONG = 0.5
+
+# A step is located by points no farther from it than this (m), or than points of one object are apart.
+_NEAR = 0.6
 
 # Factor by which contacts count more along the main directions, and along and across the slopes of the two planes.
 _PREFERENCE = 1.15
@@ -124,8 +115,8 @@ class _Border:
         self.positions, self.spacing = positions, spacing
         self.turn = float(np.hypot(*self.difference[:2]))
         step = np.abs(positions @ self.difference[:2] + self.difference[2])
-        limit = max(_AT_LINE, _AT_LINE_SPACINGS * spacing)
-        self.at_line = step <= limit * self.turn if self.turn > _LEAST_TURN else np.zeros(len(positions), bool)
+        limit = link_distance(spacing)
+        self.at_line = step <= limit * self.turn if self.turn > PARALLEL else np.zeros(len(positions), bool)
 
     def intersection(self) -> list[LinePiece]:
         """Return the piece of the line in which the planes intersect, if they meet there."""
@@ -165,7 +156,7 @@ class _Border:
         """Return the offset (m) of the line that separates the points of both planes along contacts best."""
         middle = float(np.median(contacts @ normal))
         low, high = (contacts @ direction).min(), (contacts @ direction).max()
-        near = max(_NEAR, _NEAR_SPACINGS * self.spacing)
+        near = max(_NEAR, DENSITY.link * self.spacing)
         offsets = []
         for xy in self.points:
             along, offset = xy @ direction, xy @ normal
@@ -183,7 +174,7 @@ class _Border:
 
     def _directions(self, main: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return directions (k, 2) that steps may have, and how much they are preferred (k,)."""
-        slopes = self.slopes[np.hypot(*self.slopes.T) > _LEAST_TURN]
+        slopes = self.slopes[np.hypot(*self.slopes.T) > PARALLEL]
         slopes = slopes / np.hypot(*slopes.T)[:, None]
         preferred = np.concatenate([main, slopes, np.column_stack([-slopes[:, 1], slopes[:, 0]])])
         fan = np.deg2rad(np.arange(0, 180, 15))
@@ -192,7 +183,8 @@ class _Border:
 
     def _piece(self, position: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> LinePiece:
         along = (contacts - position) @ direction
-        beyond = max(_BEYOND, _BEYOND_SPACINGS * self.spacing)
+        # As far as the next contact might lie: a cell is cut from side to side anyway.
+        beyond = link_distance(self.spacing)
         low, high = along.min() - beyond, along.max() + beyond
         return LinePiece(position + low * direction, position + high * direction, float(len(contacts)))
 
@@ -213,7 +205,9 @@ def _without_doubles(pieces: list[LinePiece]) -> list[LinePiece]:
             offset = position - start[kept]
             along = np.einsum("ij,ij->i", offset, u)
             across = np.abs(u[:, 0] * offset[:, 1] - u[:, 1] * offset[:, 0])
-            covers &= (across <= _SAME_OFFSET) & (along >= -_BEYOND) & (along <= length[kept] + _BEYOND)
+            covers &= (
+                (across <= _SAME_OFFSET) & (along >= -DENSITY.least_link) & (along <= length[kept] + DENSITY.least_link)
+            )
         if not covers.any():
             kept.append(i)
     return [pieces[i] for i in kept]

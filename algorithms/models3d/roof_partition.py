@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.groups import placed
 from ..geometry.points_in_polygons import are_within
@@ -14,11 +15,10 @@ from ..geometry.rings import sides_of_rings
 from ..geometry.subdivision import SNAP, Subdivision
 from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
-from .solid_faults import RULES
 from .solid_levels import ON_OUTLINE
 
 # A tip of a cell narrower than this (m) is closed: twice the distance that edges of a face keep from each other.
-_TIP = 2 * RULES.apart
+_TIP = 2 * MILLIMETER
 
 # Cells with a mean width below this (m) are wedges between lines that are nearly the same.
 _WEDGE = 0.02

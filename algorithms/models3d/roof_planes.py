@@ -6,14 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..criteria import PLANE_NEIGHBORS
 from ..geometry.groups import components, placed
 from ..geometry.principal_axes import principal_axes
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..packages import spatial
 from ..planes.least_squares_planes import planes_of
-
-# Number of neighbors for the normal at a point of a roof: two rings around it.
-_NEIGHBORS = 12
 
 # Slope (°) of the steepest plane of a roof; steeper ones are walls.
 STEEPEST = 75.0
@@ -75,7 +73,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     if len(xyz) < max(min_points, 4):
         return RoofPlanes(np.zeros((0, 3)), np.full(len(xyz), -1))
     rows = np.arange(len(xyz))
-    neighbors, _, covariance = Nearest(_NEIGHBORS).moments(spatial.cKDTree(xyz), rows)
+    neighbors, _, covariance = Nearest(PLANE_NEIGHBORS).moments(spatial.cKDTree(xyz), rows)
     eigenvalues = symmetric_eigenvalues(covariance)
     normal = np.nan_to_num(smallest_eigenvectors(covariance, eigenvalues))
     growth = _Growth(xyz, neighbors, normal, tolerance, float(np.cos(np.deg2rad(max_slope))))

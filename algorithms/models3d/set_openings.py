@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..facades.facade_frame import frame_of
 from ..geometry.line_segments import are_inside, is_valid
 from ..geometry.polygons import area_vector
@@ -21,9 +22,6 @@ _OFF = 0.5
 
 # Least distance (m) between an opening and the edge of its wall: thinner strips make no sound triangles.
 _MARGIN = 0.03
-
-# An opening is cut to its wall if at least this share of its area remains: most of it lies in that wall.
-_KEPT = 0.5
 
 
 @dataclass(frozen=True)
@@ -98,7 +96,7 @@ def _cut_back(rings: list[np.ndarray], flat: np.ndarray):
     low, high = outer.min(axis=0) + _MARGIN, outer.max(axis=0) - _MARGIN
     inner = np.clip(flat, low, high)
     kept = np.ptp(inner, axis=0).prod() / max(np.ptp(flat, axis=0).prod(), 1e-9)
-    if kept < _KEPT or not are_inside(inner, outer).all():
+    if kept < MAJORITY or not are_inside(inner, outer).all():
         return None
     closed = np.concatenate([inner[::-1], inner[-1:]])
     return inner if is_valid([outer, *rings[1:], closed]) else None

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..geometry.line_segments import edge_distances, nearest_edge_distances
 from ..geometry.points_in_polygons import are_within
 from ..geometry.polygons import axes_across
@@ -26,9 +27,6 @@ class RULES:
     #: Triangles of a face turn by no more than this (°): ten times less than val3dity's default of 20°. A corner off
     #: the plane turns a triangle by its distance over the height of the triangle.
     turn: float = 2.0
-    #: Corners, and corners and edges of a face, are no nearer to each other than this (m): programs join vertices
-    #: within a millimeter
-    apart: float = 0.001
     folded: float = 0.1  #: Faces that share an edge are at least this far (°) from lying on each other
 
 
@@ -99,7 +97,7 @@ def _shell_faults(solid: Solid) -> Iterator[tuple[int, str]]:
 
 def _corner_faults(solid: Solid) -> Iterator[tuple[int, str]]:
     """Yield the faces at corners that are nearer to each other than programs resolve."""
-    close = spatial.cKDTree(solid.vertices).query_pairs(RULES.apart, output_type="ndarray")
+    close = spatial.cKDTree(solid.vertices).query_pairs(MILLIMETER, output_type="ndarray")
     if len(close):
         corners = set(close.ravel().tolist())
         for face, rings in enumerate(solid.faces):
@@ -130,12 +128,12 @@ class _Face:
 
     def fault(self) -> str:
         """Return a fault of the face by itself, "" without one."""
-        if self.area < RULES.apart**2:
+        if self.area < MILLIMETER**2:
             return "a face has no area"
         if self.off > RULES.off_plane:
             return "a face is not plane"
         width = self._least_width()
-        if width < RULES.apart:
+        if width < MILLIMETER:
             return "edges of a face touch"
         if len(self.edge) == 3:
             return ""
@@ -205,7 +203,7 @@ class _Face:
         """Return the mask of positions (n,) of the plane in the face, farther from its edges than corners may be."""
         plan = self.in_plane(xyz)
         inside = are_within(plan, np.stack([self.start, self.end], axis=1))
-        return inside & (nearest_edge_distances(plan, self.start, self.end) > RULES.apart)
+        return inside & (nearest_edge_distances(plan, self.start, self.end) > MILLIMETER)
 
 
 def _fan_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
@@ -281,9 +279,9 @@ def _meeting_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
 def _is_crossed(face: _Face, one: np.ndarray, two: np.ndarray) -> bool:
     """Return whether edges, by their ends (n, 3), run through a face or lie in it."""
     off_one, off_two = (one - face.center) @ face.normal, (two - face.center) @ face.normal
-    far = np.minimum(np.abs(off_one), np.abs(off_two)) > RULES.apart
+    far = np.minimum(np.abs(off_one), np.abs(off_two)) > MILLIMETER
     through = far & (off_one * off_two < 0)
-    lies = np.maximum(np.abs(off_one), np.abs(off_two)) <= RULES.apart
+    lies = np.maximum(np.abs(off_one), np.abs(off_two)) <= MILLIMETER
     share = np.where(through, off_one / np.where(through, off_one - off_two, 1.0), 0.5)
     rows = np.flatnonzero(through | lies)
     crossings = one[rows] + share[rows, None] * (two[rows] - one[rows])

@@ -7,8 +7,8 @@ from collections import defaultdict
 
 import numpy as np
 
+from ..criteria import MILLIMETER, PARALLEL
 from ..geometry.subdivision import OUTSIDE, SNAP, Subdivision, loop_area
-from .solid_faults import RULES
 from .solids import DECIMALS, edges_around
 
 # Planes that intersect within this distance (m) of a vertex, in plan, meet in it: the snapping distance of cuts.
@@ -24,10 +24,6 @@ _EXACT = 0.0001
 # The outline of a footprint is kept within this distance (m): a vertex that close to the line between its neighbors is
 # no corner.
 ON_OUTLINE = 0.005
-
-# If the directions of lines spread by less than this share of the greatest spread, they have no well-defined
-# intersection.
-_LEAST_TURN = 0.05
 
 # Number beyond the outline, in place of a plane: the ground.
 BASE = -1
@@ -109,7 +105,7 @@ class Levels:
         ways = np.eye(2)
         for neighbor in self._outline.get(vertex, ())[:1]:
             ways = np.subtract(self.plan[neighbor], (x, y))[:, None] / math.dist(self.plan[neighbor], (x, y))
-        step = ways @ np.linalg.lstsq(difference[is_near, :2] @ ways, -apart[is_near], _LEAST_TURN)[0]
+        step = ways @ np.linalg.lstsq(difference[is_near, :2] @ ways, -apart[is_near], PARALLEL)[0]
         if np.hypot(*step) <= _MEET:
             self._move(vertex, tuple(step.tolist()))
 
@@ -234,7 +230,7 @@ class Levels:
                 continue
             at_u = self.height(u, one) - self.height(u, other) - rise
             at_v = self.height(v, one) - self.height(v, other) - rise
-            if at_u * at_v >= 0 or min(abs(at_u), abs(at_v)) < RULES.apart:
+            if at_u * at_v >= 0 or min(abs(at_u), abs(at_v)) < MILLIMETER:
                 continue
             share = at_u / (at_u - at_v)
             (x0, y0), (x1, y1) = self.plan[u], self.plan[v]
@@ -258,7 +254,7 @@ class Levels:
             for vertex in self.cells.loops[cell]:
                 x, y, z = self.positions[self.number[vertex, plane]]
                 z = round(z - _THICKNESS, DECIMALS) if is_eave[cell] else self.base
-                same = [number for number in at[vertex] if abs(self.positions[number][2] - z) < RULES.apart]
+                same = [number for number in at[vertex] if abs(self.positions[number][2] - z) < MILLIMETER]
                 self.number[vertex, self.bottom[cell]] = new = same[0] if same else len(self.positions)
                 if not same:
                     self.positions.append((x, y, z))

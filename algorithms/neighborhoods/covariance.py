@@ -14,14 +14,8 @@ import numpy as np
 
 from ..packages import spatial
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import NEIGHBORS_AT_ONCE, ROWS_AT_ONCE, in_chunks
 from .nearest_blocks import PAIRS, Shapes, nearest_shapes, shapes_within
-
-# Neighbors that a thread works on between two reports: where they are gathered, 56 bytes each, they take 11 MB.
-_CHUNK_NEIGHBORS = 200_000
-
-# Points that a thread works on between two reports where radii hold an unknown number of neighbors.
-_CHUNK_POINTS = 20_000
 
 # Least number of points of a covariance: fewer lie on a line or at one position.
 MIN_NEIGHBORS = 3
@@ -62,7 +56,7 @@ class Nearest:
 
     def rows_per_chunk(self, n_points: int) -> int:
         """Return how many points are worked on at once."""
-        return max(1, _CHUNK_NEIGHBORS // min(self.count, n_points))
+        return max(1, NEIGHBORS_AT_ONCE // min(self.count, n_points))
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the neighborhoods of the points ``rows``."""
@@ -119,7 +113,7 @@ class Within:
 
     def rows_per_chunk(self, n_points: int) -> int:
         """Return how many points are worked on at once."""
-        return _CHUNK_POINTS
+        return ROWS_AT_ONCE
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the neighborhoods of the points ``rows``."""

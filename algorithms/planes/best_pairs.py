@@ -9,11 +9,8 @@ import numpy as np
 from ..geometry.groups import mask_of, placed
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import ROWS_AT_ONCE, in_chunks
 from .least_squares_planes import Planes, off_planes
-
-# Pairs of a chunk: with 700 bytes each for numbers derived from their planes, it stays in the caches.
-_CHUNK = 20_000
 
 # An odd number whose bits are spread evenly (2^64 over the golden ratio): a product with it, of 64 bits, is a shuffle.
 _MIX = np.uint64(0x9E3779B97F4A7C15)
@@ -115,7 +112,7 @@ def common_deviation(planes: Planes, one: np.ndarray, other: np.ndarray) -> np.n
         off = (off_planes(part.center - common.center, part.covariance, common.normal) for part in parts)
         deviation[rows] = np.maximum(*off)
 
-    in_chunks(work, np.arange(len(one)), _CHUNK, Monitor())
+    in_chunks(work, np.arange(len(one)), ROWS_AT_ONCE, Monitor())
     return deviation
 
 

@@ -10,9 +10,7 @@ import numpy as np
 
 from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
-
-# Points whose moments are added up at once: 45 MB of workspace.
-_CHUNK = 500_000
+from ..threads import NEIGHBORS_AT_ONCE
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int, rows: Optional[
         Points that count.
     """
     # Each chunk makes sums of all groups: with fewer points than groups it would take longer than the points.
-    size = max(_CHUNK, n_groups)
+    size = max(NEIGHBORS_AT_ONCE, n_groups)
     parts = [slice(start, start + size) for start in range(0, len(group), size)]
     count, center, covariance = np.zeros(n_groups, np.int64), np.zeros((n_groups, 3)), np.zeros((n_groups, 6))
     for part in parts:

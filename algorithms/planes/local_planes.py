@@ -7,17 +7,15 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..packages import spatial
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import NEIGHBORS_AT_ONCE, in_chunks
 
 # Fewest points of a plane with a deviation.
 LEAST_POINTS = 5
-
-# Robust planes hold at least this share of their neighborhood; with less, the other side of an edge could be the plane.
-_LEAST_SHARE = 0.5
 
 # Fits of a robust plane, each to the points near the one before.
 _REFITS = 3
@@ -25,12 +23,6 @@ _REFITS = 3
 # Directions of the local Hough transform, even on the half sphere: 13° apart, so that a plane between two of them
 # leaves most of its points within the bins of one.
 _DIRECTIONS = 128
-
-# Neighbors of a chunk, 60 bytes each and 15 MB in all.
-CHUNK_NEIGHBORS = 240_000
-
-# Neighbors of a chunk of the Hough transform, which takes 10 times as much memory for each of them.
-_HOUGH_NEIGHBORS = 24_000
 
 # Points of a leaf of the tree, at most: searched in as much time as the usual 16, in a third less memory.
 _LEAF = 24
@@ -139,11 +131,12 @@ def local_planes(
         planes.neighbors[rows] = neighbors[:, 1:]
         offsets = (xyz[neighbors] - own[:, None]).astype(np.float32)
         chosen = inliers(offsets, near, tolerance)
-        enough = chosen.sum(axis=1) >= np.maximum(LEAST_POINTS, _LEAST_SHARE * near.sum(axis=1))
+        enough = chosen.sum(axis=1) >= np.maximum(LEAST_POINTS, MAJORITY * near.sum(axis=1))
         store_planes(planes, rows[enough], *fit_planes(offsets[enough], chosen[enough]))
 
     # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
-    chunk = (_HOUGH_NEIGHBORS if method == "hough" else CHUNK_NEIGHBORS) // max(count, 1)
+    # The Hough transform takes ten times as much memory for each neighbor.
+    chunk = (NEIGHBORS_AT_ONCE // 10 if method == "hough" else NEIGHBORS_AT_ONCE) // max(count, 1)
     in_chunks(work, tree.indices, max(chunk, 1), monitor)
     return planes
 
@@ -189,7 +182,7 @@ def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -
     """Return the mask of points on a least-squares plane, fitted repeatedly without the outliers of the last fit."""
     chosen = near
     # Leave out few at first, while the plane still follows the outliers.
-    for share in (0.8, 0.65, _LEAST_SHARE, _LEAST_SHARE):
+    for share in (0.8, 0.65, MAJORITY, MAJORITY):
         distance = _distances(offsets, *fit_planes(offsets, chosen)[:2])
         distance[~near] = np.inf
         rank = np.ceil(share * near.sum(axis=1)).astype(int) - 1

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.boxes import Boxes, around
 from ..geometry.groups import items
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import ROWS_AT_ONCE, in_chunks
 from .best_pairs import merge_best_pairs
 from .least_squares_planes import Planes, planes_of
 
@@ -23,12 +24,6 @@ _HELD = 2 / 3
 
 # Least number of points of a voxel that a plane holds which goes on into it.
 _LEAST_POINTS = 4
-
-# A plane must keep this share of its points when each goes to the nearest plane; one across others keeps less.
-_LEAST_KEPT = 0.5
-
-# Points that a thread works on between two reports.
-_CHUNK = 200_000
 
 # Boxes of the first array of a pair with boxes of the second.
 _Pairs = list[tuple[np.ndarray, np.ndarray]]
@@ -73,7 +68,7 @@ def joined_planes(
     # A plane across a ridge loses most of its points to the roofs on both sides.
     kept = np.bincount(nearest[nearest >= 0], minlength=len(planes)) / planes.count
     area = np.bincount(group, pieces.area, len(planes)) * np.minimum(kept, 1)
-    large = (area >= min_area) & (kept >= _LEAST_KEPT)
+    large = (area >= min_area) & (kept >= MAJORITY)
     is_large = large[group]
     group = (np.cumsum(large) - 1)[group[is_large]]
     planes = planes.chosen(large)
@@ -235,7 +230,7 @@ def _take_nearer(
             is_nearer = (off < distance[some]) | ((off == distance[some]) & (candidate > nearest[some]))
             distance[some[is_nearer]], nearest[some[is_nearer]] = off[is_nearer], candidate[is_nearer]
 
-    in_chunks(work, np.flatnonzero(count[box]), _CHUNK, monitor)
+    in_chunks(work, np.flatnonzero(count[box]), ROWS_AT_ONCE, monitor)
 
 
 def _around_each(boxes: Boxes) -> _Pairs:

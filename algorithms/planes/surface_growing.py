@@ -10,13 +10,10 @@ import numpy as np
 from ..geometry.disjoint_sets import DisjointSets
 from ..geometry.groups import components
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import NEIGHBORS_AT_ONCE, ROWS_AT_ONCE, in_chunks
 from .best_pairs import common_deviation, merge_best_pairs
 from .least_squares_planes import Planes, planes_of
-from .local_planes import CHUNK_NEIGHBORS, LEAST_POINTS, Criteria, LocalPlanes, fit_planes, store_planes
-
-# Points that are worked on at once, between two reports of progress.
-_CHUNK = 20_000
+from .local_planes import LEAST_POINTS, Criteria, LocalPlanes, fit_planes, store_planes
 
 # Connect seeds by this many neighbors first: most of the others then belong to the same surface already.
 _FIRST_NEIGHBORS = 3
@@ -76,7 +73,7 @@ def _beside(planes: LocalPlanes, rows: np.ndarray, others: np.ndarray) -> np.nda
     def work(some: np.ndarray) -> None:
         is_beside[some] = is_other[planes.neighbors[rows[some]]].any(axis=1)
 
-    in_chunks(work, np.arange(len(rows)), _CHUNK, Monitor())
+    in_chunks(work, np.arange(len(rows)), ROWS_AT_ONCE, Monitor())
     return rows[is_beside]
 
 
@@ -106,7 +103,7 @@ def _adjacent(
         low, high = np.sort([surface[one], surface[other]], axis=0).astype(np.int64)
         keys.append(np.unique(low << 32 | high))
 
-    in_chunks(work, rows, _CHUNK, Monitor())
+    in_chunks(work, rows, ROWS_AT_ONCE, Monitor())
     return np.divmod(np.unique(np.concatenate(keys)), 2**32)
 
 
@@ -138,7 +135,7 @@ def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria
             sets.join(one[held], other[held])
 
     seeds = np.flatnonzero(is_seed).astype(np.int32)
-    in_chunks(work, seeds, _CHUNK, monitor)
+    in_chunks(work, seeds, ROWS_AT_ONCE, monitor)
     first = sets.first(seeds)
     surface = np.full(len(is_seed), -1, np.int32)
     firsts = seeds[first == seeds]
@@ -161,7 +158,7 @@ def _nearest_that_holds(
             parent[left[held]] = neighbor[held]
             left = np.delete(left, held)
 
-    in_chunks(work, np.arange(len(rows), dtype=np.int32), _CHUNK, monitor)
+    in_chunks(work, np.arange(len(rows), dtype=np.int32), ROWS_AT_ONCE, monitor)
     return parent
 
 
@@ -181,7 +178,7 @@ def _refit(planes: LocalPlanes, rows: np.ndarray, parent: np.ndarray, surface: n
         offsets = (planes.xyz[around] - planes.xyz[some, None]).astype(np.float32)
         store_planes(planes, some, *fit_planes(offsets, same))
 
-    in_chunks(work, np.arange(len(rows)), max(CHUNK_NEIGHBORS // (planes.neighbors.shape[1] + 1), 1), Monitor())
+    in_chunks(work, np.arange(len(rows)), max(NEIGHBORS_AT_ONCE // (planes.neighbors.shape[1] + 1), 1), Monitor())
 
 
 def grow_planes(
@@ -241,7 +238,7 @@ def _smoothest(planes: LocalPlanes, is_seed: np.ndarray) -> np.ndarray:
     def work(rows: np.ndarray) -> None:
         best[rows] = rank[rows] <= rank[planes.neighbors[rows]].min(axis=1, initial=len(seeds))
 
-    in_chunks(work, seeds, _CHUNK, Monitor())
+    in_chunks(work, seeds, ROWS_AT_ONCE, Monitor())
     return best
 
 

@@ -8,10 +8,7 @@ from ..geometry.boxes import Boxes
 from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
-from ..threads import in_chunks
-
-# Distances from trial planes that one thread holds at once: 5 bytes each, which fits caches.
-_DISTANCES_AT_ONCE = 1_000_000
+from ..threads import PAIRS_AT_ONCE, in_chunks
 
 # Fits to the points of a trial plane, each to those that lie on the fit before.
 _REFINEMENTS = 2
@@ -50,7 +47,7 @@ class VoxelPlanes:
         voxels = np.flatnonzero(self.boxes.size > 3)
         # Voxels with about as many points go together, so that hardly any position is left empty.
         voxels = voxels[np.argsort(self.boxes.size[voxels], kind="stable")]
-        most = np.maximum(1, _DISTANCES_AT_ONCE // (self.boxes.size[voxels] * self.shares.shape[1]))
+        most = np.maximum(1, PAIRS_AT_ONCE // (self.boxes.size[voxels] * self.shares.shape[1]))
         chunks = _chunks(most)
 
         def work(numbers: np.ndarray) -> None:

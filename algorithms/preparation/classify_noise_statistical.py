@@ -9,12 +9,9 @@ from ..geometry.grid import distinct, plan_box
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, stage, tunable
-from ..threads import n_threads
+from ..threads import ROWS_AT_ONCE, n_threads
 from .points_in_the_air import in_the_air, link_length
 from .points_under_ground import under_ground
-
-# Points of a chunk: progress is shown after each, and only its neighbors are held in memory.
-_CHUNK = 100_000
 
 # A sample of about this many points in dense neighborhoods gives mean and standard deviation of the distances to some
 # thousandths.
@@ -172,13 +169,13 @@ def _neighbor_distances(
     position[rows] = np.arange(len(rows))
     order = position[tree.indices]
     order = order[order >= 0]
-    for start in range(0, len(order), _CHUNK):
-        chunk = order[start : start + _CHUNK]
+    for start in range(0, len(order), ROWS_AT_ONCE):
+        chunk = order[start : start + ROWS_AT_ONCE]
         own = points[rows[chunk]]
         # The nearest point is the point itself.
         found, neighbors = tree.query(own, n_neighbors + 1, workers=n_threads())
         nearest[chunk] = found[:, 1]
         distance[chunk] = found[:, 1:].mean(axis=1)
         rise[chunk] = own[:, 2] - np.median(points[neighbors[:, 1:], 2], axis=1)
-        monitor.progress(min(1.0, (start + _CHUNK) / len(order)))
+        monitor.progress(min(1.0, (start + ROWS_AT_ONCE) / len(order)))
     return nearest, distance, rise

@@ -12,10 +12,7 @@ import numpy as np
 from ..geometry.groups import items, run_starts
 from ..geometry.sparse_voxels import MOST_KEYS, TOUCH, refuse_fine, voxel_index
 from ..stage import Monitor, stage, tunable
-from ..threads import in_chunks
-
-# Points of a chunk: values gathered for them stay in the processor's cache.
-_CHUNK = 50_000
+from ..threads import ROWS_AT_ONCE, in_chunks
 
 # Steps on the side of a voxel: positions in it are whole numbers of steps, so that sums don't depend on the order.
 _STEPS = 2.0**32
@@ -40,7 +37,7 @@ class _Sorted:
     def chunks(self, voxels: np.ndarray) -> list[np.ndarray]:
         """Cut a list of voxels into some that have about as many points as are worked on at once."""
         ends = np.cumsum(self.count[voxels])
-        cuts = np.searchsorted(ends, np.arange(0, len(self.order), _CHUNK))
+        cuts = np.searchsorted(ends, np.arange(0, len(self.order), ROWS_AT_ONCE))
         return [chunk for chunk in np.split(voxels, np.unique(cuts)) if len(chunk)]
 
 
@@ -167,11 +164,11 @@ def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
     key = np.empty(len(xyz), np.int64)
 
     def work(start: np.ndarray) -> None:
-        rows = slice(start[0], start[0] + _CHUNK)
+        rows = slice(start[0], start[0] + ROWS_AT_ONCE)
         x, y, z = (voxel_index(xyz[rows] / size, size).astype(np.int64) - low).T
         key[rows] = (x * n_y + y) * n_z + z
 
-    in_chunks(work, np.arange(0, len(xyz), _CHUNK), 1, monitor)
+    in_chunks(work, np.arange(0, len(xyz), ROWS_AT_ONCE), 1, monitor)
     return key
 
 

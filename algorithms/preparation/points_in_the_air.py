@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.grid import distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import components, least_of, mask_of
 from ..packages import spatial
@@ -45,10 +46,6 @@ _THIN = 0.3
 
 # Largest standard deviation across a plane or a line, as a share of that along it.
 _THIN_RATIO = 0.1
-
-# Least share of points whose neighbors lie along a line, for bundles of wires, which are lines in small neighborhoods
-# only.
-_BUNDLE_SHARE = 0.5
 
 # Points of the neighborhoods that show the wires of a bundle.
 _BUNDLE_NEIGHBORS = 8
@@ -151,7 +148,7 @@ def _has_form(points: np.ndarray, compact: float) -> bool:
     deviation = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(points.T)), 0))
     is_line = deviation[1] <= _THIN_RATIO * deviation[2]
     is_plane = len(points) >= 2 * _LINE_POINTS and deviation[0] <= min(_THIN, _THIN_RATIO * deviation[1])
-    return bool(is_line or is_plane or _share_of_lines(points) > _BUNDLE_SHARE)
+    return bool(is_line or is_plane or _share_of_lines(points) > MAJORITY)
 
 
 def _share_of_lines(points: np.ndarray) -> float:

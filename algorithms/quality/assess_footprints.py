@@ -7,6 +7,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import build_page, decimal, draw_table, rows_of
 from ..report.polygon_map import draw_polygons
@@ -22,7 +23,7 @@ from .building_maps import (
     rounded_down,
     within,
 )
-from .corner_matching import NO_LENGTH, MatchedCorners, corners_of, match_corners
+from .corner_matching import MatchedCorners, corners_of, match_corners
 from .polygon_comparison import hausdorff, polis, squareness
 
 FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "invented"
@@ -338,7 +339,8 @@ def _values(table: dict, match: _Match, corners: MatchedCorners) -> dict[str, fl
         "matched": len(moved),
         "corner_distance": _median(np.hypot(*moved.T)),
         **{
-            f"within_{100 * most:.0f}_cm": int((table["farthest_corner"] <= most + NO_LENGTH).sum()) for most in _WITHIN
+            f"within_{100 * most:.0f}_cm": int((table["farthest_corner"] <= most + MILLIMETER).sum())
+            for most in _WITHIN
         },
         "shift_east": _median(moved[:, 0]),
         "shift_north": _median(moved[:, 1]),

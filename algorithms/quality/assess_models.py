@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..criteria import MAJORITY
 from ..footprints.footprint_points import (
     TOLERANCE_TEXT,
     by_easting,
@@ -26,9 +27,6 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.points_on_top import RULES, are_low, are_on_roof, distances, root_mean_square
 from ..segmentation.segment_surfaces import segment_surfaces
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
-
-# A face with a smaller share of its points on it is invented; a plane with a smaller share on the model is missing.
-_ON_FACE = 0.5
 
 # Faces with less than this area in plan (m²) are upright: walls.
 _UPRIGHT = 1e-3
@@ -222,7 +220,7 @@ class _Face:
         """Whether its points lie on it."""
         if not len(self.off):
             return UNSEEN
-        return MATCHED if np.mean(self.is_on) >= _ON_FACE else INVENTED
+        return MATCHED if np.mean(self.is_on) >= MAJORITY else INVENTED
 
 
 @dataclass
@@ -317,7 +315,7 @@ class _Search:
             sampling=self.sampling,
         )
         found = [np.flatnonzero(plane == number) for number in range(1, plane.max() + 1)]
-        return [xyz[rows] for rows in found if on_model[rows].mean() < _ON_FACE and not _is_wall(xyz[rows])]
+        return [xyz[rows] for rows in found if on_model[rows].mean() < MAJORITY and not _is_wall(xyz[rows])]
 
 
 def _is_wall(xyz: np.ndarray) -> bool:

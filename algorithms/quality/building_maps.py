@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..criteria import MICROMETER
 from ..geometry.grid import plan_box
 from ..geometry.polygon_overlap import Polygons, as_polygons, overlaps, shared_areas
 from ..geometry.rings import sampled_rings, signed_area
@@ -19,9 +20,6 @@ _ELSEWHERE = 1000.0
 
 # Share of its area by which a polygon that winds twice, or the wrong way, differs from its overlap with itself.
 _CROSSING = 0.01
-
-# Area (m²) below which a polygon is left out.
-_NO_AREA = 1e-6
 
 # A map covers an area within this distance (m) of its buildings: a wide street or a small park.
 _AROUND = 50.0
@@ -46,7 +44,7 @@ class BuildingMap:
     @cached_property
     def area(self) -> np.ndarray:
         """Area (n,) of each, m²."""
-        return np.maximum(self.polygons.area, _NO_AREA)
+        return np.maximum(self.polygons.area, MICROMETER)
 
     def only(self, kept: np.ndarray) -> BuildingMap:
         """Return the map of some of the polygons (n,), bool."""
@@ -113,7 +111,7 @@ def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str
 def _proper(rings: list) -> list:
     """Return the rings in plan that have an area, none without an exterior."""
     plan = [np.asarray(ring, float)[:, :2] for ring in rings]
-    sound = [len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > _NO_AREA for ring in plan]
+    sound = [len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > MICROMETER for ring in plan]
     return [ring for ring, is_sound in zip(plan, sound) if is_sound] if sound and sound[0] else []
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..footprints.footprint_points import rows_near
 from ..footprints.soft_shares import Lattice
 from ..geometry.grid import plan_box
@@ -93,8 +94,8 @@ class ChangedBlock:
         has_new, low, seen = (one[window][mask] for one in (self.new >= 0, self.is_low, self.is_seen))
         covered = float(has_new.mean())
         update.confidence[row] = covered
-        is_empty = float((low & ~has_new).mean()) >= RULES.shown
-        if covered < RULES.there and seen.mean() < RULES.shown:
+        is_empty = float((low & ~has_new).mean()) >= MAJORITY
+        if covered < MAJORITY and seen.mean() < MAJORITY:
             update.status[row], update.confidence[row] = map_changes.UNSEEN, 0.0
         elif covered <= RULES.gone:
             update.status[row] = map_changes.GONE if is_empty else map_changes.DOUBTFUL
@@ -104,7 +105,7 @@ class ChangedBlock:
             if removed.any():
                 self._label((OLD, row), window, mask & ~removed)
                 update.removed[row] = removed.sum() * RULES.step**2
-            elif covered < RULES.there:
+            elif covered < MAJORITY:
                 update.status[row] = map_changes.DOUBTFUL
 
     def _removed(self, window: tuple, mask: np.ndarray) -> np.ndarray:
@@ -113,7 +114,7 @@ class ChangedBlock:
         part, count = ndimage.label(_opened(lost, self.radius)[1:-1, 1:-1])
         size = np.bincount(part.ravel(), minlength=count + 1) * RULES.step**2
         low = np.bincount(part.ravel(), self.is_low[window].ravel(), count + 1) * RULES.step**2
-        is_gone = (size >= self.min_area) & (low >= RULES.shown * size)
+        is_gone = (size >= self.min_area) & (low >= MAJORITY * size)
         is_gone[0] = False
         gone = is_gone[part]
         # No strip is left along the parts cut off.

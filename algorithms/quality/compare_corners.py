@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..report.charts import BLUE, Mark, Series, draw_histogram, draw_scatter
 from ..report.page import Row, build_page, meters
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
@@ -19,10 +20,7 @@ from .building_maps import (
     refuse_elsewhere,
     rounded_down,
 )
-from .corner_matching import FARTHEST, NO_LENGTH, Corners, MatchedCorners, corners_of, match_corners, nearest_corners
-
-# Change (m) of the shift between two maps in one round, below which it is known.
-_STILL = 1e-3
+from .corner_matching import FARTHEST, Corners, MatchedCorners, corners_of, match_corners, nearest_corners
 
 # Most rounds in which the shift is searched for.
 _MOST_ROUNDS = 10
@@ -208,7 +206,7 @@ def _shift(old: Corners, new: Corners, same: tuple, reach: float) -> np.ndarray:
         one, other, _ = nearest_corners(old, new, same, shift, reach)
         before = shift
         shift = np.median(new.xy[other] - old.xy[one], axis=0) if len(one) else shift
-        if np.hypot(*(shift - before)) < _STILL:
+        if np.hypot(*(shift - before)) < MILLIMETER:
             break
     return shift
 
@@ -240,7 +238,7 @@ def _displacements(old: BuildingMap, new: BuildingMap, corners: MatchedCorners) 
         start, end = corners.old.xy[i], corners.new.xy[j]
         dx, dy = (end - start).tolist()
         facts = {"length": float(np.hypot(dx, dy)), "dx": dx, "dy": dy}
-        if facts["length"] > NO_LENGTH:
+        if facts["length"] > MILLIMETER:
             names = old.names[corners.old.building[i]], new.names[corners.new.building[j]]
             facts |= {"old_building": names[0], "footprint": names[1]}
             features.append((np.stack([start, end]), facts))

@@ -23,6 +23,7 @@ from .building_maps import (
     refuse_elsewhere,
     rounded_down,
 )
+from .corner_matching import LEAST_TOLERANCE, MEDIANS, MOST_TOLERANCE
 from .polygon_comparison import positions_along
 
 UNCHANGED, HEIGHT, OUTLINE, BOTH = "unchanged", "height changed", "outline changed", "height and outline changed"
@@ -41,21 +42,13 @@ class RULES:
 
     Attributes
     ----------
-    deviations : float
-        Changes are larger than this multiple of the median of all differences: 3 times the median of normal errors
-        is two standard deviations.
-    least_outline, least_height : float
-        Least automatic tolerances, m: smaller changes are not built.
-    most_outline, most_height : float
-        Greatest automatic tolerances, m, a room and the height of a storey: larger differences are changes even where
-        most buildings have changed.
+    least_height, most_height : float
+        Least and greatest automatic tolerance, m: smaller changes are not built, and differences of more than a storey
+        are changes even where most buildings have changed.
     wall : float
         Outlines nearer to a neighbor of the same group are walls between these, m: the width of a double wall.
     """
 
-    deviations: float = 3.0
-    least_outline: float = 1.0
-    most_outline: float = 4.0
     least_height: float = 0.5
     most_height: float = 3.0
     wall: float = 0.5
@@ -123,14 +116,14 @@ def compare_surveys(
         None,
         "An outline has changed if it is farther than this from the earlier one somewhere.",
         within="[0, 100] m",
-        automatic=f"{RULES.deviations:g} times the median distance between the outlines of both surveys, "
-        f"{RULES.least_outline:g} to {RULES.most_outline:g} m.",
+        automatic=f"{MEDIANS:g} times the median distance between the outlines of both surveys, "
+        f"{LEAST_TOLERANCE:g} to {MOST_TOLERANCE:g} m.",
     ),
     height_tolerance: Optional[float] = tunable(
         None,
         "A height has changed if it differs by more.",
         within="[0, 100] m",
-        automatic=f"{RULES.deviations:g} times the median difference between the heights of both surveys, "
+        automatic=f"{MEDIANS:g} times the median difference between the heights of both surveys, "
         f"{RULES.least_height:g} to {RULES.most_height:g} m.",
     ),
     monitor=None,
@@ -188,7 +181,7 @@ def compare_surveys(
     height = _height_changes((footprints, earlier), (new, old), groups, monitor)
     outline = _outline_changes(old, new, groups, monitor.part(0.3, 0.95))
     tolerances = {
-        "outline_tolerance": _tolerance(outline_tolerance, outline, RULES.least_outline, RULES.most_outline),
+        "outline_tolerance": _tolerance(outline_tolerance, outline, LEAST_TOLERANCE, MOST_TOLERANCE),
         "height_tolerance": _tolerance(height_tolerance, height, RULES.least_height, RULES.most_height),
     }
     monitor.resolved(**tolerances)
@@ -289,7 +282,7 @@ def _tolerance(given: Optional[float], differences: np.ndarray, least: float, mo
     if given is not None:
         return given
     known = np.abs(differences[np.isfinite(differences)])
-    return float(np.clip(RULES.deviations * np.median(known), least, most)) if len(known) else least
+    return float(np.clip(MEDIANS * np.median(known), least, most)) if len(known) else least
 
 
 def _status(groups: _Groups, outline: np.ndarray, height: np.ndarray) -> np.ndarray:

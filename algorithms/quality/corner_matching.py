@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..geometry.grid import find_cells
 from ..packages import spatial
 from ..stage import Monitor
@@ -20,17 +21,17 @@ _FACING = 60.0
 # Search radius (m) for corners before the tolerance is known; most walls are longer.
 FARTHEST = 3.0
 
-# Automatic tolerance (medians of the distances): where errors are normal, 99.8 % of the distances are less.
-_MEDIANS = 3.0
+# Automatic tolerances (medians of the differences): where errors are normal, 99.8 % of distances in plan are less, and
+# 96 % of differences in height.
+MEDIANS = 3.0
 
-# Least automatic tolerance (m), half of a short wall: corners that have moved since the map was made are still matched.
-_LEAST_TOLERANCE = 1.0
+# Least and greatest automatic tolerance (m): half of a short wall, and a room. Smaller changes are not built, and
+# corners that have moved since the map was made are still matched. Larger differences are changes even where most
+# buildings have changed.
+LEAST_TOLERANCE, MOST_TOLERANCE = 1.0, 4.0
 
 # Pairs farther apart than this share of the farthest are by chance.
 _FAR_OFF = 2 / 3
-
-# Length (m) up to which a line has no direction: coordinates are rounded to a millimeter.
-NO_LENGTH = 1e-3
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def corners_of(polygons: list) -> Corners:
 def _turns(ring: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the corners of a closed ring, and the way each faces."""
     step = np.diff(ring, axis=0)
-    is_long = np.hypot(*step.T) > NO_LENGTH
+    is_long = np.hypot(*step.T) > MILLIMETER
     xy, step = ring[:-1][is_long], step[is_long]
     after = step / np.hypot(*step.T)[:, None]
     before = np.roll(after, 1, axis=0)
@@ -119,7 +120,7 @@ def match_corners(
     """
     one, other, distance = nearest_corners(old, new, same, shift, max(FARTHEST, tolerance or 0.0))
     if tolerance is None:
-        tolerance = float(np.clip(_MEDIANS * typical_distance(distance), _LEAST_TOLERANCE, FARTHEST))
+        tolerance = float(np.clip(MEDIANS * typical_distance(distance), LEAST_TOLERANCE, FARTHEST))
         monitor.resolved(tolerance=tolerance)
     near = distance <= tolerance
     return MatchedCorners(old, new, one[near], other[near])

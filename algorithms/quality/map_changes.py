@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..criteria import MAJORITY
 from ..footprints.footprint_points import by_easting
 from ..geometry.groups import components, split_groups
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes
@@ -51,13 +52,7 @@ class RULES:
     """How changes are distinguished from errors of the map and of the survey."""
 
     step: float = 0.25  #: Step of the lattice on which both maps are compared, m: finer than any change
-    #: Least and greatest automatic width of a change, m, and the multiple of the median distance of walls that it is
-    least_width: float = 1.0
-    most_width: float = 4.0
-    deviations: float = 3.0
     gone: float = 0.15  #: Share of a building up to which the new outlines may cover one that is gone
-    there: float = 0.5  #: Share that these cover of one that is still there
-    shown: float = 0.5  #: Share of an area where points must lie, or ground, for it to be seen, or to be empty
     new: float = 0.4  #: Share of new outlines up to which the map may have them for a building to be new
     strip: float = 1.5  #: Depth of a strip along the wall of a row, in widths of a change
     side: float = 0.5  #: Share of the longest border of a part from which another building may own it
@@ -92,7 +87,7 @@ class MapUpdate:
         shifted, framed = (BuildingMap(one, [], np.arange(len(one))) for one in (rings, outlines))
         overlap = measure_overlap(shifted, framed, np.zeros(2), Monitor())
         touching = split_groups(np.where(overlap.shared > 0, overlap.other, -1), k)
-        is_other = np.bincount(overlap.other, overlap.shared > RULES.there * overlap.area[overlap.one], k)
+        is_other = np.bincount(overlap.other, overlap.shared > MAJORITY * overlap.area[overlap.one], k)
         is_new = (overlap.other_covered <= RULES.new) & (is_other == 0)
         status = np.where(fit.moved.any(axis=1), MOVED, UNCHANGED).astype(object)
         covered = [overlap.one[rows].tolist() for rows in touching]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..criteria import PARALLEL
 from ..geometry.groups import components, split_groups
 from ..geometry.line_segments import is_valid
 from ..geometry.points_in_polygons import are_in_polygons
@@ -15,6 +16,7 @@ from ..geometry.rings import along_sides
 from ..packages import spatial
 from ..stage import Monitor
 from .building_maps import BuildingMap
+from .corner_matching import MEDIANS
 
 # Distance (m) of positions along walls: several on the shortest wall.
 _STEP = 0.25
@@ -43,14 +45,11 @@ _FOUND = 0.6
 # A building that is moved lies this much nearer to its counterpart afterwards: least ratio of the deviations.
 _NEARER = 0.35
 
-# Shifts are of a building if they are greater than this multiple of the median one; least and greatest tolerance (m).
-_DEVIATIONS, _LEAST_SHIFT, _MOST_SHIFT = 3.0, 0.75, 2.0
+# Shifts are of a building if they are greater than the usual one by this tolerance (m), at least and at most.
+_LEAST_SHIFT, _MOST_SHIFT = 0.75, 2.0
 
 # Greatest overhang (m) that is taken off new outlines.
 _MOST_OVERHANG = 1.0
-
-# Where walls that meet are nearly parallel, their corner stays along them: the least share of singular values.
-_PARALLEL = 0.05
 
 
 @dataclass(frozen=True)
@@ -79,7 +78,7 @@ def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
     off, found = walls.deviations(fits)
     before, _ = walls.deviations(np.tile(usual, (count, 1)))
     apart = np.hypot(*(fits - usual)[:, :2].T)
-    tolerance = np.clip(_DEVIATIONS * np.median(apart), _LEAST_SHIFT, _MOST_SHIFT)
+    tolerance = np.clip(MEDIANS * np.median(apart), _LEAST_SHIFT, _MOST_SHIFT)
     is_moved = (apart > tolerance) & (found >= _FOUND) & (off < _NEARER * before)
     shift = np.where(is_moved[:, None], fits[:, :2] - usual[:2], 0.0)
     overhang = float(np.clip(usual[2], -_MOST_OVERHANG, _MOST_OVERHANG))
@@ -100,7 +99,7 @@ def in_frame(new: BuildingMap, fit: MapFit) -> list:
             at += len(rows)
             across = np.stack([np.roll(outward[rows], 1, axis=0), outward[rows]], axis=1)
             by = -fit.overhang * np.column_stack([np.roll(is_outer[rows], 1), is_outer[rows]])
-            corners = sides[rows, 0] - fit.shift + (np.linalg.pinv(across, _PARALLEL) @ by[..., None])[..., 0]
+            corners = sides[rows, 0] - fit.shift + (np.linalg.pinv(across, PARALLEL) @ by[..., None])[..., 0]
             own.append(np.concatenate([corners, corners[:1]]))
         # Edges shorter than the overhang may turn around.
         made.append(own if is_valid(own) else [ring - fit.shift for ring in rings])

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..geometry.groups import placed
 from ..packages import spatial
-
-# Files keep millimeters or centimeters, so equal points agree far better than this (m).
-_TOLERANCE = 1e-3
 
 
 def counted_points(
@@ -62,7 +60,7 @@ def match_points(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
     ValueError
         If a point is not in the reference.
     """
-    if xyz.shape == reference_xyz.shape and (np.abs(xyz - reference_xyz) <= _TOLERANCE).all():
+    if xyz.shape == reference_xyz.shape and (np.abs(xyz - reference_xyz) <= MILLIMETER).all():
         return np.arange(len(xyz))
     found = _match_rounded(xyz, reference_xyz)
     _match_nearest(xyz, reference_xyz, found)
@@ -80,7 +78,7 @@ def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
     """Return the reference row whose rounded coordinates are a point's, -1 if unassigned."""
     n = len(xyz)
     both = np.concatenate([xyz, reference_xyz])
-    keys = np.rint((both - both.min(axis=0)) / _TOLERANCE).astype(np.int64)
+    keys = np.rint((both - both.min(axis=0)) / MILLIMETER).astype(np.int64)
     # Stable: within a position the points of the input come first, each cloud in its own order.
     order = np.lexsort(keys.T)
     starts = np.flatnonzero((np.diff(keys[order], axis=0, prepend=-1) != 0).any(axis=1))
@@ -103,7 +101,7 @@ def _match_nearest(xyz: np.ndarray, reference_xyz: np.ndarray, found: np.ndarray
     free = np.flatnonzero(is_free)
     if not len(left) or not len(free):
         return
-    distance, nearest = spatial.cKDTree(reference_xyz[free]).query(xyz[left], distance_upper_bound=2 * _TOLERANCE)
+    distance, nearest = spatial.cKDTree(reference_xyz[free]).query(xyz[left], distance_upper_bound=2 * MILLIMETER)
     near = np.flatnonzero(np.isfinite(distance))
     _, first = np.unique(nearest[near], return_index=True)
     found[left[near[first]]] = free[nearest[near[first]]]

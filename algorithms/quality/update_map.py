@@ -18,7 +18,18 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, feature_names, stage, tunable
 from .building_maps import clean_map, refuse_elsewhere
 from .changed_block import ChangedBlock
-from .map_changes import COLORS, GONE, NEW, OLD, RULES, STATUS, MapUpdate, SeenPoints, roof_points
+from .corner_matching import LEAST_TOLERANCE, MEDIANS, MOST_TOLERANCE
+from .map_changes import (
+    COLORS,
+    GONE,
+    NEW,
+    OLD,
+    RULES,  # noqa: F401 - the docstring names it
+    STATUS,
+    MapUpdate,
+    SeenPoints,
+    roof_points,
+)
 from .map_fit import MapFit, fit_map
 
 _FIELDS = (
@@ -73,7 +84,7 @@ def _update_in_windows(
     refuse_elsewhere(old, new, "old map", "new footprints")
     fit = fit_map(old, new)
     if least_width is None:
-        least_width = float(np.clip(RULES.deviations * fit.deviation, RULES.least_width, RULES.most_width))
+        least_width = float(np.clip(MEDIANS * fit.deviation, LEAST_TOLERANCE, MOST_TOLERANCE))
         monitor.resolved(least_width=least_width)
     start = MapUpdate.of(old, new, fit)
     update, part, done, kinds = start.copied(), start.copied(), 0, np.zeros(0, np.uint8)
@@ -141,8 +152,8 @@ def update_map(
         None,
         "Narrower strips that were added or removed are errors of the map or of the points.",
         within="[0.5, 20] m",
-        automatic=f"{RULES.deviations:g} times the median distance between the walls of the map and the new ones, "
-        f"{RULES.least_width:g} to {RULES.most_width:g} m.",
+        automatic=f"{MEDIANS:g} times the median distance between the walls of the map and the new ones, "
+        f"{LEAST_TOLERANCE:g} to {MOST_TOLERANCE:g} m.",
     ),
     id_field: str = tunable(
         "",
@@ -200,10 +211,9 @@ def update_map(
     of ``_SIDE`` m or less, and seen ``_REACH`` m around the buildings of each: each building is decided on in one.
 
     A part was added where the new outlines cover what the map does not, and removed where they don't and points show
-    the ground on at least ``RULES.shown`` of it. Both are at least ``least_width`` wide and have ``min_area``. A
-    building is gone if the new outlines cover at most ``RULES.gone`` of it and points show the ground on most of it.
-    Where most of it has no points it was not seen. Otherwise, if the new outlines cover less than ``RULES.there`` of
-    it, it is doubtful.
+    the ground on at least half of it. Both are at least ``least_width`` wide and have ``min_area``. A building is gone
+    if the new outlines cover at most ``RULES.gone`` of it and points show the ground on most of it. Where most of it
+    has no points it was not seen. Otherwise, if the new outlines cover less than half of it, it is doubtful.
 
     Old walls, and new ones where these are farther than ``least_width`` from the line of an old one, divide the plane
     into cells. Each is of the building that most of it is to be of.

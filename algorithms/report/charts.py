@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..criteria import ROUNDING
+
 # Tol's high-contrast scheme, as in the maps of the pages, and a gray.
 BLUE, YELLOW, RED, GRAY = "#004488", "#ddaa33", "#bb5566", "#bbbbbb"
 
@@ -18,9 +20,6 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 50, 50
 # Bounds of the number of bars: narrower ones are not distinguishable, wider ones hide two groups.
 _MOST_BARS = 40
 _FEWEST_BARS = 20
-
-# Parts of a step by which rounding may miss a round number.
-_ROUNDING = 1e-9
 
 # Smaller values are 0 in a chart: powers of ten of their widths are beyond what float64 holds.
 _LEAST_VALUE = 1e-200
@@ -91,19 +90,19 @@ def bar_edges(values: np.ndarray) -> np.ndarray:
     extent, size = high - low, max(abs(low), abs(high))
     if size < _LEAST_VALUE:
         return np.array([0.0, 1.0] if low >= 0 else [-1.0, 0.0, 1.0])
-    if extent <= _ROUNDING * size:  # equal but for rounding
+    if extent <= ROUNDING * size:  # equal but for rounding
         step = round_step(size / 10)
     else:
         width = 2 * float(np.subtract(*np.percentile(values, [75, 25]))) / len(values) ** (1 / 3)
         step = round_step(float(np.clip(width, extent / _MOST_BARS, extent / _FEWEST_BARS)))
-    first, last = math.floor(low / step + _ROUNDING), math.ceil(high / step - _ROUNDING)
+    first, last = math.floor(low / step + ROUNDING), math.ceil(high / step - ROUNDING)
     return np.arange(first, max(last, first + 1) + 1) * step
 
 
 def round_step(width: float) -> float:
     """Return the smallest of 1, 2 and 5 times a power of ten that is at least ``width``."""
     power = 10.0 ** math.floor(math.log10(width))
-    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= width * (1 - _ROUNDING))
+    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= width * (1 - ROUNDING))
 
 
 def draw_scatter(xy: np.ndarray, axis: str, unit: str, mean_name: str) -> str:
@@ -209,7 +208,7 @@ class _Axis:
     def ticks(self, most: int) -> list[float]:
         """Return the round values on the axis, at most one more than ``most``."""
         step = round_step((self.high - self.low) / most)
-        first, last = math.ceil(self.low / step - _ROUNDING), math.floor(self.high / step + _ROUNDING)
+        first, last = math.ceil(self.low / step - ROUNDING), math.floor(self.high / step + ROUNDING)
         return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
 
 

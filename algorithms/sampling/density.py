@@ -28,6 +28,11 @@ class DENSITY:
     )
 
 
+def link_distance(spacing: float) -> float:
+    """Return the distance (m) in plan up to which points of one object lie next to each other, by their spacing (m)."""
+    return max(DENSITY.least_link, DENSITY.link * spacing)
+
+
 def point_density(xyz: np.ndarray) -> float:
     """Return the points per square meter of the area that the points occupy in plan.
 

@@ -8,15 +8,12 @@ import numpy as np
 
 from ..packages import spatial
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import NEIGHBORS_AT_ONCE, in_chunks
 from .straight_pieces import Pieces
 
 # Neighbors that each point looks through for adjacent lines, at most: lines three times as far apart as the points on
 # them have 60 points within two distances of lines.
 _MOST_NEIGHBORS = 64
-
-# Points of a chunk: with 64 neighbors each they take 18 MB.
-_CHUNK = 3_000
 
 
 @dataclass(frozen=True)
@@ -96,7 +93,7 @@ def adjacent_pieces(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, distance
         found = np.where(known, found.reshape(len(rows), count), rows[:, None])
         nearest[rows] = _beside(xyz, piece, pieces.direction, rows, found)
 
-    in_chunks(work, np.arange(n), _CHUNK, monitor)
+    in_chunks(work, np.arange(n), NEIGHBORS_AT_ONCE // max(count, 1), monitor)
     return _pairs(xyz, piece, pieces, nearest)
 
 

@@ -6,6 +6,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import DEVIATIONS, PLANE_NEIGHBORS
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items, placed
@@ -19,14 +20,8 @@ from ..stage import Monitor, stage, tunable
 # gaps between scan lines three times as wide as points lie apart on the average.
 _RADIUS_SPACINGS = 3.0
 
-# Points of a neighborhood: nine degrees of freedom, so that the deviation of a plane is known to a quarter.
-_NEIGHBORS = 12
-
 # Roughness of a surface beyond noise, in point spacings: its curvature between points.
 _BENDS = 0.05
-
-# Distance to a plane within which a point belongs to it (standard deviations): one point in 370 lies farther off.
-_WITHIN = 3.0
 
 # Tolerance (radii) up to which the noise of a cloud, at least a centimeter, is used; beyond, the scan's if finer.
 _OF_RADIUS = 0.25
@@ -83,14 +78,14 @@ def segment_surfaces(
         automatic=f"{_RADIUS_SPACINGS:g} times the point spacing on surfaces.",
     ),
     neighbors: int = tunable(
-        _NEIGHBORS, "Nearest points within the radius that are used, the point included.", within="[6, 200]"
+        PLANE_NEIGHBORS, "Nearest points within the radius that are used, the point included.", within="[6, 200]"
     ),
     tolerance: Optional[float] = tunable(
         None,
         "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
         "surfaces.",
         within="(0, 100] m",
-        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
+        automatic=f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
         "spacings.",
     ),
     max_angle: float = tunable(
@@ -143,7 +138,7 @@ def segment_surfaces(
     pairs where they meet.
 
     The neighbors and the plane of each point are kept; links between seeds are not, only the sets that they join. The
-    memory beyond the cloud is 100 bytes for each point, 120 in *global* mode, with ``_NEIGHBORS`` neighbors; each
+    memory beyond the cloud is 100 bytes for each point, 120 in *global* mode, with ``PLANE_NEIGHBORS`` neighbors; each
     further neighbor takes 4 bytes, and a copy without noise 30.
 
     References
@@ -166,7 +161,7 @@ def segment_surfaces(
     spacing = 1 / float(np.sqrt(density))
     radius = _RADIUS_SPACINGS * spacing if radius is None else radius
     noise = _noise(sampling, radius) if noise is None else noise
-    tolerance = _WITHIN * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
+    tolerance = DEVIATIONS * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
     monitor.resolved(density=density, noise=noise, radius=radius, tolerance=tolerance)
     used = not_noise(classification)
     if not len(used):
@@ -179,7 +174,7 @@ def segment_surfaces(
     planes = local_planes(points, neighbors, radius, seeds, tolerance, monitor.part(0, 0.5))
     if proximity == "edges":
         planes.neighbors = _edge_neighbors(points, radius, monitor.part(0.5, 0.6))
-    is_seed = planes.deviation <= _SMOOTH / _WITHIN * tolerance
+    is_seed = planes.deviation <= _SMOOTH / DEVIATIONS * tolerance
     criteria = Criteria(
         tolerance if planarity != "none" else None, float(np.cos(np.radians(max_angle))) if smooth_normals else None
     )
@@ -189,7 +184,7 @@ def segment_surfaces(
 
 def _noise(sampling: CloudSampling, radius: float) -> float:
     """Return the surface noise (m), less than a centimeter in scans so dense that it would blur neighborhoods."""
-    most = _OF_RADIUS * radius / _WITHIN
+    most = _OF_RADIUS * radius / DEVIATIONS
     return sampling.noise if sampling.noise <= most else min(sampling.noise, max(sampling.scan_noise, most))
 
 
@@ -198,7 +193,7 @@ def _grown(
 ) -> np.ndarray:
     """Return the surface (n,) of each point, -1 for none: planes with global planarity."""
     if planarity == "global":
-        return grow_planes(planes, is_seed, criteria, _SMOOTH / _WITHIN * tolerance, monitor)
+        return grow_planes(planes, is_seed, criteria, _SMOOTH / DEVIATIONS * tolerance, monitor)
     return grow_surfaces(planes, is_seed, criteria, monitor)
 
 

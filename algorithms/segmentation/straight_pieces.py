@@ -12,9 +12,7 @@ from ..geometry.groups import items, run_starts
 from ..neighborhoods.covariance import full_matrices
 from ..planes.least_squares_planes import Planes, planes_of
 from ..stage import Monitor
-
-# Points of a block of pieces (about 100 bytes each), between two reports of progress; a longer piece is a block.
-_BLOCK = 200_000
+from ..threads import NEIGHBORS_AT_ONCE
 
 
 @dataclass(frozen=True)
@@ -74,8 +72,8 @@ def split_lines(xyz: np.ndarray, line: np.ndarray, tolerance: float, min_points:
 def _farthest_in_blocks(
     xyz: np.ndarray, first: np.ndarray, last: np.ndarray, report: Callable[[], None]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return what `_farthest` returns, for pieces of about ``_BLOCK`` points at once; ``report`` is called for each."""
-    block = np.cumsum(last - first + 1) // _BLOCK
+    """Return what `_farthest` returns, for pieces of some 200,000 points at once; ``report`` is called for each."""
+    block = np.cumsum(last - first + 1) // NEIGHBORS_AT_ONCE
     farthest, distance = np.zeros(len(first), np.int64), np.zeros(len(first))
     starts = run_starts(block)
     for start, stop in zip(starts, np.append(starts[1:], len(block))):

@@ -8,6 +8,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.polygons import axes_across
 from ..neighborhoods.covariance import symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
@@ -71,9 +72,6 @@ _GAP_SPACINGS = 6.0
 
 # Least height of the arc that is seen above its chord (standard deviations of the noise): a flatter one is a plane.
 _LEAST_SAGITTA = 6.0
-
-# Least share of the cells of the surface, between the ends and on the circumference seen, that hold points.
-_LEAST_FILLED = 0.5
 
 
 @lru_cache(maxsize=64)
@@ -320,7 +318,7 @@ class CylinderSearch:
             return None
         seen, filled = self.evidence.coverage(along, cylinder.angle(away), cylinder)
         sagitta = cylinder.radius * (1 - np.cos(np.pi * min(seen, 0.5)))
-        if seen < self.min_seen or filled < _LEAST_FILLED or sagitta < _LEAST_SAGITTA * self.noise:
+        if seen < self.min_seen or filled < MAJORITY or sagitta < _LEAST_SAGITTA * self.noise:
             return None
         rms = float(np.sqrt(((distance - cylinder.radius) ** 2).mean()))
         one = Found(cylinder, float(along.min()), float(along.max()), points, rms, seen)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
+from .cylinder_evidence import MOST_LOOKED_AT
 from .cylinder_fits import explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
@@ -64,9 +65,6 @@ _AROUND = 1.5
 
 # Most points in the surroundings of a sphere per point on it: it lies in the air.
 _MOST_AROUND = 0.6
-
-# Most points of the fit of a seed, or of a test of roundness: more don't change it.
-_MOST_SAMPLED = 1500
 
 
 @dataclass(frozen=True)
@@ -158,7 +156,7 @@ class SphereSearch:
             points = rows[self._is_on(rows, center, radius, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None
-            center, radius = fit_sphere(self.xyz[points[:: len(points) // _MOST_SAMPLED + 1]], center, radius)
+            center, radius = fit_sphere(self.xyz[points[:: len(points) // MOST_LOOKED_AT + 1]], center, radius)
             if not LEAST_OF_LEVEL * low <= radius <= MOST_OF_LEVEL * high:
                 return None
         return (center, radius) if self._is_round(points, center, radius) else None
@@ -172,7 +170,7 @@ class SphereSearch:
 
     def _is_round(self, points: np.ndarray, center: np.ndarray, radius: float) -> bool:
         """Return whether points lie close to a sphere and their distances show no other shape."""
-        points = points[:: len(points) // _MOST_SAMPLED + 1]
+        points = points[:: len(points) // MOST_LOOKED_AT + 1]
         offset = self.xyz[points] - center
         away, residual = unit(offset), np.linalg.norm(offset, axis=1) - radius
         facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))

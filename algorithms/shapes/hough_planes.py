@@ -8,15 +8,13 @@ import numpy as np
 
 from ..geometry.boxes import Boxes
 from ..geometry.principal_axes import principal_axes
+from ..planes.local_planes import LEAST_POINTS
 from ..planes.voxel_planes import more_than_chance
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import PAIRS_AT_ONCE, in_chunks
 
 # Counters of the largest parameter space: of 8 bytes each, for each thread.
 _MOST_BINS = 20_000_000
-
-# Votes of points that one thread holds at once: 8 bytes each.
-_VOTES_AT_ONCE = 2_000_000
 
 # Least-squares fits to the points of a maximum, each to those near the fit before.
 _REFINEMENTS = 3
@@ -26,9 +24,6 @@ _MOST_PLANES = 20
 
 # Windows that one thread works on between two reports.
 _WINDOWS = 64
-
-# Points of the smallest plane of a window: three always lie on one.
-_LEAST_POINTS = 5
 
 
 class PlaneDirections:
@@ -149,7 +144,7 @@ class HoughPlanes:
                 else:
                     plane[inside] = self._by_normals(centered, self.normals[inside])
 
-        in_chunks(work, np.flatnonzero(self.boxes.size >= _LEAST_POINTS), _WINDOWS, monitor)
+        in_chunks(work, np.flatnonzero(self.boxes.size >= LEAST_POINTS), _WINDOWS, monitor)
         return plane
 
     def _by_points(self, xyz: np.ndarray) -> np.ndarray:
@@ -173,7 +168,7 @@ class HoughPlanes:
         """Return how many of the points (k, 3) lie on the plane of each bin (m, levels)."""
         directions = self.directions.normal
         votes = np.zeros(len(directions) * self.levels, np.int64)
-        step = max(1, _VOTES_AT_ONCE // len(directions))
+        step = max(1, PAIRS_AT_ONCE // len(directions))
         for first in range(0, len(xyz), step):
             level = ((xyz[first : first + step] @ directions.T + self.reach) / self.distance_bin).astype(np.int64)
             level += np.arange(len(directions)) * self.levels
@@ -186,12 +181,12 @@ class HoughPlanes:
         free = np.flatnonzero(normals.any(axis=1))
         bins = self.directions.bin_of(normals[free]) if len(free) else free
         for number in range(1, _MOST_PLANES + 1):
-            if len(free) < _LEAST_POINTS:
+            if len(free) < LEAST_POINTS:
                 return plane
             direction = self._direction(bins)
             is_alike = np.abs(normals[free] @ direction) >= self.cosine
             alike = free[is_alike]
-            if len(alike) < _LEAST_POINTS:
+            if len(alike) < LEAST_POINTS:
                 return plane
             signs = np.sign(normals[alike] @ direction)
             normal = unit((normals[alike] * signs[:, None]).sum(axis=0))
@@ -216,7 +211,7 @@ class HoughPlanes:
 
     def _is_plane(self, found: int, count: int) -> bool:
         """Return whether ``found`` of ``count`` points lie on a plane by more than chance."""
-        return found >= _LEAST_POINTS and bool(more_than_chance(found, count, self.by_chance, self.trials))
+        return found >= LEAST_POINTS and bool(more_than_chance(found, count, self.by_chance, self.trials))
 
     def _refined(self, xyz: np.ndarray, normal: np.ndarray, distance: float) -> np.ndarray:
         """Return the mask of points (k,) that lie on the least-squares plane of the points around a maximum."""
@@ -224,7 +219,7 @@ class HoughPlanes:
         # about as much for its slopes.
         on_plane = np.abs(xyz @ normal - distance) <= self.tolerance + self.distance_bin
         for _ in range(_REFINEMENTS):
-            if on_plane.sum() < _LEAST_POINTS:
+            if on_plane.sum() < LEAST_POINTS:
                 return np.zeros(len(xyz), bool)
             center, _, axes = principal_axes(xyz[on_plane])
             on_plane = np.abs((xyz - center) @ axes[:, 0]) <= self.tolerance

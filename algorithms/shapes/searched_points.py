@@ -8,6 +8,7 @@ from typing import Callable, Generic, Optional, Protocol, TypeVar
 
 import numpy as np
 
+from ..criteria import DEVIATIONS
 from ..geometry.boxes import by_first_point
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.candidate_points import candidates
@@ -18,9 +19,6 @@ from .surface_normals import normal_points, normals_of
 
 # Segments are moved apart by this many window sides, so that no window holds points of two.
 _SIDES_APART = 3.0
-
-# Distance from a surface within which points lie on it, in standard deviations of the noise.
-_TOLERANCE = 3.0
 
 
 class Shape(IntEnum):
@@ -229,7 +227,7 @@ def search_shapes(
     """
     spacing = 1 / float(np.sqrt(sampling.surface_density))
     noise = point_noise(sampling)
-    tolerance = _TOLERANCE * noise if tunables.tolerance is None else tunables.tolerance
+    tolerance = DEVIATIONS * noise if tunables.tolerance is None else tunables.tolerance
     min_radius, max_radius = check_radii(tunables.min_radius, tunables.max_radius, noise, spacing, cloud.xyz)
     n_neighbors = normal_points(sampling) if tunables.n_neighbors is None else tunables.n_neighbors
     monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
@@ -238,7 +236,7 @@ def search_shapes(
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
         # A tolerance set by the user implies a noise.
-        noise = max(noise, tolerance / _TOLERANCE)
+        noise = max(noise, tolerance / DEVIATIONS)
         around = MeasuredPoints(points.xyz, normals[points.rows], noise, tolerance, spacing, points.shift)
         found = search(around, min_radius, max_radius, monitor.part(0.2, 1))
     for number, one in enumerate(found, start=1):

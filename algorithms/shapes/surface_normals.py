@@ -7,6 +7,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from ..criteria import PLANE_NEIGHBORS
 from ..neighborhoods.covariance import Nearest, defined_eigenvalues, reduce_neighborhoods, smallest_eigenvectors
 from ..neighborhoods.nearest_blocks import Shapes
 from ..sampling.cloud_sampling import CloudSampling
@@ -14,9 +15,6 @@ from ..stage import Monitor, tunable
 
 # Standard deviation (radians) that normals may have from the noise: 3°, so that directions distinguish surfaces.
 _NORMAL_ERROR = 0.05
-
-# Points of the smallest neighborhood of a normal: fewer follow the noise.
-_LEAST_POINTS = 12
 
 # Points of the largest neighborhood of a normal: more cost time.
 _MOST_POINTS = 80
@@ -33,7 +31,7 @@ NORMAL_POINTS = tunable(
     "off edges and thin pipes.",
     label="Points for normals",
     within="[4, 1000]",
-    automatic=f"as many as hold the error of normals from the noise to 3°, {_LEAST_POINTS} to {_MOST_POINTS}.",
+    automatic=f"as many as hold the error of normals from the noise to 3°, {PLANE_NEIGHBORS} to {_MOST_POINTS}.",
     advanced=True,
 )
 
@@ -45,7 +43,7 @@ def normal_points(sampling: CloudSampling) -> int:
     sqrt(k)), and r is sqrt(k / (pi density)).
     """
     needed = 2 * sampling.scan_noise * float(np.sqrt(np.pi * sampling.surface_density)) / _NORMAL_ERROR
-    return int(np.clip(np.ceil(min(needed, _MOST_POINTS)), _LEAST_POINTS, _MOST_POINTS))
+    return int(np.clip(np.ceil(min(needed, _MOST_POINTS)), PLANE_NEIGHBORS, _MOST_POINTS))
 
 
 def normals_of(xyz: np.ndarray, count: int, sampling: CloudSampling, monitor: Monitor) -> np.ndarray:

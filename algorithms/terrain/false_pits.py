@@ -17,7 +17,7 @@ from ..geometry.groups import split_groups
 from ..geometry.tin import node_residuals
 from ..packages import spatial
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import ROWS_AT_ONCE, in_chunks
 
 # Least depth under the ground (m): less is grass, ruts, curbs and the scanner's own noise.
 _DEPTH = 0.45
@@ -45,9 +45,6 @@ _ROUNDS = 8
 
 # Residual (m) up to which a node has its full weight: about the noise of a scanner.
 _FULL_WEIGHT = 0.05
-
-# Suspects whose planes are fitted at once: their arrays stay small compared with the cloud.
-_CHUNK = 20_000
 
 # Extent in plan (m) of the widest group: mirrors are panes, cars and wet spots.
 _WIDEST = 3.0
@@ -171,7 +168,7 @@ def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Lev
         # The standard deviation of normally distributed residuals is 1.4826 times their median.
         made.deviation[rows] = 1.4826 * np.median(residual, axis=1)
 
-    in_chunks(fit, np.arange(len(positions)), _CHUNK, monitor)
+    in_chunks(fit, np.arange(len(positions)), ROWS_AT_ONCE, monitor)
     return made
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..packages import spatial
 from ..rules import rule, rules
-from ..sampling.density import DENSITY
+from ..sampling.density import link_distance
 from ..sampling.surface_noise import LEAST_NEIGHBORS
 
 
@@ -51,7 +51,7 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -ON_DECK.rough
     around &= (points[:, :2] <= deck[:, :2].max(axis=0) + ON_DECK.hidden).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
-    near = max(DENSITY.least_link, DENSITY.link * _spacing(deck, tree))
+    near = link_distance(_spacing(deck, tree))
     distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, ON_DECK.hidden))
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]

@@ -15,6 +15,7 @@ from ..pipelines import PIPELINES
 from ..run import Results, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Cancelled, LayerFeatures, Monitor, RasterSurface
+from ..threads import BETWEEN_LOOKS
 from .block_result import BlockResult
 from .survey import Survey, Window, inside
 from .tiled_steps import files_of, in_blocks, layers_of, owners
@@ -37,9 +38,6 @@ _PIECE_HALOS = 2
 
 # A window of fewer points is enlarged, too, as stages reject windows of a few points.
 _FEWEST_POINTS = 20
-
-# Seconds between two looks at whether to stop.
-_BETWEEN_LOOKS = 0.5
 
 
 @dataclass(frozen=True)
@@ -105,7 +103,7 @@ class StoppableMonitor(Monitor):
     def progress(self, fraction: float) -> None:
         """Raise :class:`Cancelled` when the file is there."""
         now = time.monotonic()
-        if now - self._looked > _BETWEEN_LOOKS:
+        if now - self._looked > BETWEEN_LOOKS:
             self._looked = now
             if self.stop.exists():
                 raise Cancelled

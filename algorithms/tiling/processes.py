@@ -27,7 +27,7 @@ FOLDER = Path(__file__).resolve().parents[2]
 _PROGRAM = str(Path(__file__).with_name("worker_process.py"))
 
 # Seconds that an interpreter has to answer.
-_ANSWER = 15
+ANSWER = 15
 
 # Seconds that a process has to end.
 _END = 5
@@ -231,7 +231,7 @@ def _is_own(python: str) -> bool:
     asked = [python, "-I", "-c", "import os, sys; print(sys.version, os.__file__)"]
     try:
         answer = subprocess.run(  # nosec B603 - an interpreter, no shell
-            asked, capture_output=True, text=True, timeout=_ANSWER, check=False
+            asked, capture_output=True, text=True, timeout=ANSWER, check=False
         )
     except (OSError, subprocess.TimeoutExpired):
         return False

@@ -6,14 +6,12 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import DEVIATIONS, MAJORITY
 from ..geometry.groups import components, placed
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes, shared_areas
 from ..geometry.polygons import area_vector, axes_across
 from ..stage import Layer, LayerFeatures, Monitor
 from .blocks import feature_boxes
-
-# Two features of different blocks are the same one if they share more than this part of the smaller one.
-_SAME = 0.5
 
 # Pieces of one feature overlap around the edge between their blocks by more than this part of the smaller one. Features
 # that merely touch do not.
@@ -22,10 +20,7 @@ _PIECES = 0.1
 # Pieces are also of one feature if their overlap has more than this length (m) or area (m²).
 _SHARED = 1.0
 
-# Largest distance between planes in space that are the same one, in root mean square distances of their points.
-_DEVIATIONS = 3.0
-
-# Tolerance (m) of planes whose points have no noise; ``_DEVIATIONS`` times their noise is added.
+# Tolerance (m) of planes whose points have no noise; ``DEVIATIONS`` times their noise is added.
 _LEAST = 0.005
 
 # Largest distance between axes or centers that are the same one, and largest difference of their radii (of the smaller
@@ -72,7 +67,7 @@ def leaders(
     one, other = one[of_two], other[of_two]
     size, shared = _sizes(features, layer, one, other, monitor)
     share = shared / np.maximum(np.minimum(size[one], size[other]), 1e-12)
-    is_same = share > _SAME
+    is_same = share > MAJORITY
     if is_piece is None:
         return _led(one[is_same], other[is_same], share[is_same], _ranks(size, is_own))
     are_pieces = is_piece[one] & is_piece[other]
@@ -185,7 +180,7 @@ def _shared_in_space(
 
 def _tolerance(features: LayerFeatures, layer: Layer) -> np.ndarray:
     """Return the distances (n,), m, up to which another plane is the same as that of a feature."""
-    return _DEVIATIONS * np.asarray(features.columns[layer.deviation], float) + _LEAST
+    return DEVIATIONS * np.asarray(features.columns[layer.deviation], float) + _LEAST
 
 
 def _areas(geometries: list) -> tuple[np.ndarray, np.ndarray]:

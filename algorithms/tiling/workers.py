@@ -18,17 +18,11 @@ from typing import Any, Callable, Optional
 from ..cloud.outputs import DiskFullError
 from ..memory import installed_memory
 from ..stage import Cancelled, Monitor
-from ..threads import n_threads
-from .processes import FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
-
-# Seconds between two checks for a cancellation by the user.
-_BETWEEN_LOOKS = 0.5
+from ..threads import BETWEEN_LOOKS, n_threads
+from .processes import ANSWER, FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
 
 # Seconds between two messages about tasks that are done or waited for.
 BETWEEN_MESSAGES = 10.0
-
-# Seconds that a scheduler has to answer.
-_ANSWER = 15
 
 # Seconds that work has to end after the signal to stop. Then its process is ended.
 _TO_STOP = 1.5
@@ -124,7 +118,7 @@ class Workers:
                 tls_ca_file=authority, tls_client_cert=certificate, tls_client_key=key, require_encryption=True
             )
         try:
-            client = distributed.Client(self.scheduler, timeout=_ANSWER, security=security, set_as_default=False)
+            client = distributed.Client(self.scheduler, timeout=ANSWER, security=security, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise ValueError(
                 f"No Dask scheduler answers at {self.scheduler} ({error}); start it or check the address."
@@ -216,7 +210,7 @@ def run_all(
     last = time.monotonic()
     try:
         while open_:
-            done, open_ = wait(open_, timeout=_BETWEEN_LOOKS, return_when=FIRST_COMPLETED)
+            done, open_ = wait(open_, timeout=BETWEEN_LOOKS, return_when=FIRST_COMPLETED)
             if done:
                 last = time.monotonic()
             elif time.monotonic() - last > BETWEEN_MESSAGES:

@@ -7,8 +7,9 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.rings import signed_area
-from .wall_edges import SEEN, closed
+from .wall_edges import closed
 from .wall_lines import MOST, WallLine
 from .wall_outline import Limits, WallOutline
 
@@ -58,7 +59,7 @@ def _is_alley(alley: WallLine, walls: tuple[WallLine, WallLine], outline: WallOu
         covered = [outline.cells.scale.covered(wall.along, low, high) if high > low else 0.0 for low, high in along]
         away = np.sign(alley.across(wall.point[None])[0]) * alley.normal
         behind = sum(signed_area(_clipped(ring, wall.point, away)) for ring in rings)
-        if length @ covered < SEEN * length.sum() or behind < min_area:
+        if length @ covered < MAJORITY * length.sum() or behind < min_area:
             return False
     return True
 

@@ -10,14 +10,12 @@ from ..geometry.groups import mask_of, placed
 from ..neighborhoods.dbscan import dbscan, points_at_corner
 from ..packages import ndimage, spatial
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.kinds import LASER
 from ..sampling.top_surface import TopSurface
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_roofs import segment_roofs
 from ..stage import Monitor
 from ..threads import n_threads
-
-# Least height (m) of objects above the ground: lower points are of the ground, of plants, kerbs and steps.
-_RAISED = 0.5
 
 # Width (m) of the ground around an object that is examined with it, to see whether a surface continues into the ground
 # and what surrounds it.
@@ -69,7 +67,7 @@ def _beside_roofs(surface: TopSurface, is_roof: np.ndarray) -> np.ndarray:
     """Return the mask of cells in or near raised objects with a roof; ``is_roof`` (n,) are the points of roofs."""
     row, column = surface.cell
     has_roof = mask_of(surface.height.shape, (row[is_roof], column[is_roof]))
-    label = ndimage.label(has_roof | (surface.height >= _RAISED), np.ones((3, 3), bool))[0]
+    label = ndimage.label(has_roof | (surface.height >= LASER.foot), np.ones((3, 3), bool))[0]
     is_object = mask_of(int(label.max()) + 1, label[has_roof])
     return ndimage.distance_transform_edt(~is_object[label]) * surface.size <= _AROUND
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..criteria import MICROMETER
 from ..packages import spatial
 from ..stage import Field
 from .wall_edges import WallEdge
@@ -20,9 +21,6 @@ OFF_OUTLINE = "off the outline"
 WALL_UNUSED = "wall not used"
 ROOF_OUTLINE = "outline of the roof"
 TOO_SMALL = "too small"
-
-# Positions closer than this (m) are the same: above rounding, below the thickness of any wall.
-_SAME = 1e-6
 
 CORNER_FIELDS = (
     Field("id", int, "number of the candidate, from 1"),
@@ -64,7 +62,7 @@ def _outcomes(outline: WallOutline, rings: list[list[WallEdge]], position: np.nd
     """Return the outcome of each position where two lines cross."""
     cells, inside = outline.cells, outline.inside
     corners = spatial.cKDTree([edge.start for ring in rings for edge in ring])
-    is_kept = corners.query(position)[0] < _SAME
+    is_kept = corners.query(position)[0] < MICROMETER
     is_unused = ~cells.is_used(inside)[cells.arrangement.crossing].all(axis=1)
     around = inside[cells.arrangement.around]
     is_on = around.any(axis=1) & ~around.all(axis=1)

@@ -12,6 +12,7 @@ from ..geometry.cheapest_labels import cheapest_cut
 from ..geometry.groups import components, members
 from ..geometry.rings import signed_area
 from ..stage import Monitor
+from ..threads import PAIRS_AT_ONCE
 from .roof_outline import RoofCover
 from .wall_edges import WallEdge, closed, edge_between, points_near
 from .wall_lines import Scale, WallLine
@@ -52,9 +53,6 @@ _SKEW_COST = 1.5
 
 # Corners are square within 2°: the cosine of the angle between their walls is no more than this.
 _SQUARE = np.sin(np.deg2rad(2.0))
-
-# Most positions times lines that are compared at once.
-_AT_ONCE = 10_000_000
 
 
 class OutlineCells:
@@ -135,7 +133,7 @@ def _cell_costs(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the cost of each cell (cells,) inside an outline and outside, by the roof."""
     positions, depth = cover.positions, cover.depth
-    size = max(1, _AT_ONCE // max(1, len(cells.points)))
+    size = max(1, PAIRS_AT_ONCE // max(1, len(cells.points)))
     parts = [positions[start : start + size] for start in range(0, len(positions), size)]
     cell = np.concatenate([cells.cells_at(sides_of(part, cells.points, cells.directions)) for part in parts])
 

@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.disjoint_polygons import divide_overlap
 from ..geometry.grid import SparsePointsError
 from ..geometry.groups import members
@@ -24,7 +25,7 @@ from .alleys import find_alley
 from .candidate_corners import CORNER_FIELDS, candidate_corners
 from .roof_outline import RoofOutline, outline_roof
 from .surroundings import Surroundings
-from .wall_edges import SEEN, WallEdge, closed, edge_between, points_near
+from .wall_edges import WallEdge, closed, edge_between, points_near
 from .wall_lines import WallLine
 from .wall_outline import Limits, WallOutline, outline_walls, share_seen
 from .wall_report import MEASURES, WALL, point_counts, wall_report
@@ -303,7 +304,7 @@ def _tell_unseen(footprints: LayerFeatures, monitor: Monitor) -> None:
             f"{source.count(ROOF)} of {len(footprints)} footprints are outlines of roofs, "
             "as too few of their walls were seen."
         )
-    thin = sum(one == WALL and seen < SEEN for one, seen in zip(source, quality))
+    thin = sum(one == WALL and seen < MAJORITY for one, seen in zip(source, quality))
     if thin:
         monitor.warn(
             f"Of {thin} of {len(footprints)} footprints less than half of the walls was seen; "
@@ -410,7 +411,7 @@ def _footprint(
         "area": sum(map(signed_area, corners)),
         "perimeter": sum(map(perimeter, corners)),
         "edges": len(own_edges),
-        "edges_seen": int((quality >= SEEN).sum()),
+        "edges_seen": int((quality >= MAJORITY).sum()),
         "quality": share_seen(rings),
         "worst_quality": float(quality.min()),
         "deviation": _pooled(np.array([edge.deviation for edge in own_edges]), points),
@@ -434,7 +435,7 @@ def _edges(rings: list[list[WallEdge]], footprint: int, origin: np.ndarray) -> I
         facts = {
             "footprint": footprint,
             "edge": number,
-            "source": WALL if edge.quality >= SEEN else ROOF,
+            "source": WALL if edge.quality >= MAJORITY else ROOF,
             "length": float(np.hypot(*(edge.end - edge.start))),
             "angle": _inner_angle(before, edge),
             "quality": edge.quality,

@@ -8,6 +8,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..geometry.arrangement import Arrangement
 from ..geometry.groups import components, members
 from ..geometry.line_segments import polygons_of
@@ -52,9 +53,6 @@ _CORNER_FIELDS = (
 
 # Corners are searched up to this distance (m) outside the box around the wall points, as in the authors' program.
 _AROUND = 10.0
-
-# Positions along a line that are closer than this (m) are the same.
-_SAME = 1e-3
 
 
 @stage(
@@ -280,7 +278,7 @@ class CornerPairs:
             for line in np.intersect1d(lines[i], lines[j]):
                 ends = self.corners[[i, j]] - self.cells.points[line]
                 low, high = np.sort(ends @ self.cells.directions[line])
-                is_wall |= (pieces.line == line) & (pieces.low > low - _SAME) & (pieces.high < high + _SAME)
+                is_wall |= (pieces.line == line) & (pieces.low > low - MILLIMETER) & (pieces.high < high + MILLIMETER)
         return is_wall
 
 

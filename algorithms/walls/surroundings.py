@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
 from ..geometry.groups import mask_of, run_starts
 from ..geometry.points_in_polygons import are_within
@@ -38,9 +39,6 @@ _EAVES = 5
 
 # Largest distance between points put into gaps (spacings of the roof's points).
 _FILLED = 2.0
-
-# A side of a roof is a party wall if another roof begins next to at least this share of it.
-_SHARED = 0.5
 
 # Distances (m) outward from a side at which the other roof is searched for: gaps between party walls are narrower.
 _OUTWARD = (0.25, 0.5, 0.75, 1.0)
@@ -112,7 +110,7 @@ class Surroundings:
             roof = self._at(along + distance * outward)[1]
             is_beside |= (roof > 0) & (roof != number)
         count = np.bincount(side, minlength=len(sides))
-        return np.bincount(side, is_beside, len(sides)) >= _SHARED * np.maximum(count, 1)
+        return np.bincount(side, is_beside, len(sides)) >= MAJORITY * np.maximum(count, 1)
 
 
 def _closed(mask: np.ndarray, radius: float) -> np.ndarray:

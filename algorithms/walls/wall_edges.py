@@ -14,9 +14,6 @@ _CORNER = 0.4
 # Largest such length, as a share of the edge.
 _CORNER_SHARE = 0.25
 
-# A wall counts as seen if this share of it has points.
-SEEN = 0.5
-
 
 @dataclass(frozen=True)
 class WallEdge:

@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import DEVIATIONS, MAJORITY
 from ..geometry.principal_axes import principal_axes
 from ..neighborhoods.covariance import MIN_NEIGHBORS, Shapes, Within, reduce_neighborhoods
 from ..stage import Monitor
@@ -23,14 +24,8 @@ LEAST_PAIR = 0.5
 # A wall continues across a gap up to this length (m): bushes, cars and holes.
 _GAP = 1.5
 
-# A line is a wall where at least this share of it has points.
-_LEAST_COVERED = 0.5
-
 # Mean number of points in a bin of a wall: with as many, one bin in twenty is empty by chance.
 _POINTS_PER_BIN = 3.0
-
-# Standard deviations up to which two angles are the same.
-_SAME = 3.0
 
 # Lines closer in direction than this (radians) are parallel: walls are built no straighter.
 _BUILT = np.deg2rad(0.7)
@@ -177,7 +172,7 @@ def find_lines(
         if line is None or len(line.points) < least:
             break
         start, end = line.along.min(), line.along.max()
-        if end - start < min_length or scale.covered(line.along, start, end) < _LEAST_COVERED:
+        if end - start < min_length or scale.covered(line.along, start, end) < MAJORITY:
             break
         lines.append(line)
         left = left[~np.isin(left, line.points)]
@@ -298,14 +293,14 @@ def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
     noise = float(np.median(np.repeat([line.deviation for line in lines], [len(line.points) for line in lines])))
     # Standard deviations of the directions, without and with what exceeds the noise.
     angles = np.array([np.arctan2(line.direction[1], line.direction[0]) for line in lines])
-    sure = np.array([np.hypot(line.angle_deviation, _BUILT / _SAME) for line in lines])
+    sure = np.array([np.hypot(line.angle_deviation, _BUILT / DEVIATIONS) for line in lines])
     unsure = np.hypot(sure, [line.angle_excess(noise) for line in lines])
     open_lines = list(np.argsort(sure, kind="stable"))
     while open_lines:
         first = open_lines[0]
         apart = np.abs(np.angle(np.exp(4j * (angles[open_lines] - angles[first]))) / 4)
         is_sure, may_be = (
-            apart <= np.minimum(_SAME * np.hypot(own[open_lines], own[first]), MOST) for own in (sure, unsure)
+            apart <= np.minimum(DEVIATIONS * np.hypot(own[open_lines], own[first]), MOST) for own in (sure, unsure)
         )
         group = [i for i, near in zip(open_lines, may_be) if near]
         deviations = np.where(is_sure, sure[open_lines], unsure[open_lines])[may_be]

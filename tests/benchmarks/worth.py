@@ -63,6 +63,8 @@ TECHNICAL = (
     "report.",
     "geometry.",
     "threads",
+    # A majority, rounding and the millimeters of maps are no choices.
+    "criteria",
     "params",
     "landcover.recode_classes",
     "landcover.keep_classes",

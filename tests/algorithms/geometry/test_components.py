@@ -55,7 +55,7 @@ def test_random_clouds(seed):
 def test_chunks_of_pairs_change_nothing(monkeypatch, rng):
     xyz = rng.uniform(0, [15, 15, 3], (700, 3))
     expected = by_all_pairs(xyz, 1.2, 0.4)
-    monkeypatch.setattr(boxes, "_PAIRS_AT_ONCE", 13)
+    monkeypatch.setattr(boxes, "PAIRS_AT_ONCE", 13)
     np.testing.assert_array_equal(connect(xyz, 1.2, 0.4, Monitor()), expected)
 
 

@@ -44,7 +44,7 @@ def meet_exactly(a, b, c, d):
 @pytest.mark.parametrize("at_once", [1, 7, 1000])
 def test_rings_are_valid_as_in_exact_integer_arithmetic(at_once, rng, monkeypatch):
     """Sides may only meet the sides before and after them, however many are compared at once."""
-    monkeypatch.setattr(module, "_PAIRS_AT_ONCE", at_once)
+    monkeypatch.setattr(module, "PAIRS_AT_ONCE", at_once)
     rings = [rng.integers(0, 6, (count, 2)) for count in (4, 5, 6) for _ in range(60)]
     found, expected = [], []
     for corners in rings:
@@ -67,7 +67,7 @@ def test_distances_to_segments_by_hand():
 
 @pytest.mark.parametrize("at_once", [1, 20, 1000])
 def test_the_nearest_position_on_a_line_is_on_its_nearest_segment(at_once, rng, monkeypatch):
-    monkeypatch.setattr(module, "_PAIRS_AT_ONCE", at_once)
+    monkeypatch.setattr(module, "PAIRS_AT_ONCE", at_once)
     points, line = rng.uniform(-5, 25, (31, 2)), L_SHAPE
     share = np.linspace(0, 1, 2001)[:, None, None]
     places = (line[:-1] + share * (line[1:] - line[:-1])).reshape(-1, 2)

@@ -46,7 +46,7 @@ def test_chunks_change_nothing(rng, monkeypatch):
     polygons = [star(rng, rng.uniform(0, 30, 2)) for _ in range(30)]
     whole = shared(polygons, polygons)
     # Fewer than the pairs of edges of two polygons, whose parts are added up.
-    monkeypatch.setattr(module, "_PAIRS_AT_ONCE", 50)
+    monkeypatch.setattr(module, "PAIRS_AT_ONCE", 50)
     np.testing.assert_allclose(shared(polygons, polygons), whole, rtol=1e-12, atol=1e-12)
 
 

@@ -19,7 +19,7 @@ SIDE = 80.0
 def small_tiles(monkeypatch):
     """Tiles so small that the few points of a test make many."""
     monkeypatch.setattr(module, "_TILE_NODES", 400)
-    monkeypatch.setattr(module, "_TILE_POSITIONS", 600)
+    monkeypatch.setattr(module, "ROWS_AT_ONCE", 600)
 
 
 def ground(rng, where, count=6000):
@@ -132,7 +132,7 @@ def test_size_of_tiles_changes_nothing(rng, monkeypatch):
     nodes, places = ground(rng, lambda plan: from_middle(plan) > 20), rng.uniform(0, SIDE, (3000, 2))
     found = TiledTin(nodes).elevation(places)
     monkeypatch.setattr(module, "_TILE_NODES", 100_000)
-    monkeypatch.setattr(module, "_TILE_POSITIONS", 100_000)
+    monkeypatch.setattr(module, "ROWS_AT_ONCE", 100_000)
     np.testing.assert_allclose(TiledTin(nodes).elevation(places), found, atol=1e-9)
 
 
@@ -186,7 +186,7 @@ def test_no_circle_is_doubted_where_all_nodes_are_known(rng, place):
 @pytest.mark.parametrize("rounding", [1e-9, -1e-9])
 def test_a_node_on_a_circle_makes_no_circle_wrong_that_has_all_nodes_known(rng, monkeypatch, rounding):
     """Else the search for nodes that are missing would never end."""
-    monkeypatch.setattr(module, "_ROUNDING", rounding)
+    monkeypatch.setattr(module, "ROUNDING", rounding)
     surface = TiledTin(ground(rng, lambda plan: plan[:, 0] > -1, 300))
     tin = Tin(surface.nodes, surface._box)
     intruders, is_wrong = surface._intruders(*tin.circles(np.arange(len(tin.facets))), np.arange(len(surface.nodes)))
@@ -205,7 +205,7 @@ def test_a_facet_of_nodes_on_a_line_is_taken_as_it_is(rng):
 
 @pytest.mark.parametrize("other", [3.0, np.nextafter(3.0, 4.0)])
 def test_places_that_no_line_parts_stay_in_one_tile(other, monkeypatch):
-    monkeypatch.setattr(module, "_TILE_POSITIONS", 1)
+    monkeypatch.setattr(module, "ROWS_AT_ONCE", 1)
     places = np.array([[3.0, 7.0], [other, 7.0]])
     ((rows, own),) = module._tiles(np.zeros((1, 3)), places)
     assert (rows.tolist(), own.tolist()) == ([0], [0, 1])

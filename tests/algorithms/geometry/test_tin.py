@@ -61,7 +61,7 @@ def test_nodes_that_join_change_the_surface_as_if_they_had_been_there(nodes, pos
 
 def test_chunks_change_nothing(nodes, positions, monkeypatch):
     whole = Tin(nodes).locate(positions)
-    monkeypatch.setattr(module, "_CHUNK", 700)
+    monkeypatch.setattr(module, "ROWS_AT_ONCE", 700)
     np.testing.assert_array_equal(Tin(nodes).locate(positions), whole)
 
 
@@ -153,7 +153,7 @@ def test_nodes_on_a_line_have_no_circle():
 
 
 def test_a_search_reports_its_progress(nodes, monkeypatch):
-    monkeypatch.setattr(module, "_CHUNK", 10)
+    monkeypatch.setattr(module, "ROWS_AT_ONCE", 10)
     monitor = Listening()
     Tin(nodes).locate(nodes[:40], monitor)
     assert monitor.heard == [0.25, 0.5, 0.75, 1.0]

@@ -156,7 +156,7 @@ def test_radius_neighborhoods_are_those_of_brute_force(rng):
 def test_chunks_and_point_order_change_nothing(rng, monkeypatch):
     xyz = rng.uniform(0, 10, (500, 3))
     whole = eigen.neighborhood_eigenvalues(xyz, eigen.Nearest(10), cKDTree(xyz))
-    monkeypatch.setattr(eigen, "_CHUNK_NEIGHBORS", 64)
+    monkeypatch.setattr(eigen, "NEIGHBORS_AT_ONCE", 64)
     order = rng.permutation(500)
     np.testing.assert_allclose(eigen.neighborhood_eigenvalues(xyz[order], eigen.Nearest(10)), whole[order], atol=1e-13)
 
@@ -175,7 +175,7 @@ def test_a_radius_chosen_by_mistake_is_refused(rng, monkeypatch):
 
 
 def test_cancel_stops_the_threads(rng, monkeypatch):
-    monkeypatch.setattr(eigen, "_CHUNK_NEIGHBORS", 100)
+    monkeypatch.setattr(eigen, "NEIGHBORS_AT_ONCE", 100)
     ran = []
 
     with pytest.raises(Cancelled):

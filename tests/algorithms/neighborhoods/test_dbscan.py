@@ -47,7 +47,7 @@ def test_same_labels_as_scikit_learn_on_random_clouds(seed):
 def test_chunks_of_pairs_change_nothing(monkeypatch, rng):
     xyz = rng.uniform(0, [12, 12, 3], (600, 3))
     expected = of_sklearn(xyz, 1.0, 6)
-    monkeypatch.setattr(boxes, "_PAIRS_AT_ONCE", 13)
+    monkeypatch.setattr(boxes, "PAIRS_AT_ONCE", 13)
     np.testing.assert_array_equal(dbscan(xyz, 1.0, 6, Monitor()), expected)
 
 

@@ -61,7 +61,7 @@ def test_area_is_that_of_the_rectangle(rng):
 def test_planes_of_points_in_chunks_are_those_of_all_at_once(patches, monkeypatch):
     xyz, group = patches
     whole = planes_of(xyz, group, 5)
-    monkeypatch.setattr(least_squares_planes, "_CHUNK", 7)
+    monkeypatch.setattr(least_squares_planes, "NEIGHBORS_AT_ONCE", 7)
     for planes in (planes_of(xyz, group, 5), planes_of(np.repeat(xyz, 2, axis=0), group, 5, 2 * np.arange(len(xyz)))):
         np.testing.assert_array_equal(planes.count, whole.count)
         np.testing.assert_allclose(planes.center, whole.center, rtol=1e-14)

@@ -9,7 +9,7 @@ from lidar_buildings.algorithms.stage import Monitor
 
 
 def test_agrees_with_brute_force(rng, monkeypatch):
-    monkeypatch.setattr(noise_statistical, "_CHUNK", 70)
+    monkeypatch.setattr(noise_statistical, "ROWS_AT_ONCE", 70)
     xyz = np.concatenate([rng.uniform(0, 10, (300, 3)), rng.uniform(-40, 40, (10, 3))])
     distance = np.sort(np.linalg.norm(xyz[:, None] - xyz, axis=2), axis=1)[:, 1:6].mean(axis=1)
     expected = distance > distance.mean() + 1.5 * distance.std()

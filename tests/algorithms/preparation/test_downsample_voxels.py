@@ -38,7 +38,7 @@ def points_at(steps: np.ndarray, scale: int = 100) -> np.ndarray:
 
 
 def test_agrees_with_a_dictionary_in_exact_numbers(rng, monkeypatch):
-    monkeypatch.setattr(voxels, "_CHUNK", 300)
+    monkeypatch.setattr(voxels, "ROWS_AT_ONCE", 300)
     steps, classes = cloud_of_centimeters(rng), rng.integers(0, 19, 4000).astype(np.uint8)
     selected, center, majority, count = downsample_voxels(points_at(steps), classes, voxel_size=0.1)
     expected = by_dictionary(steps, 100, 10)
@@ -207,7 +207,7 @@ def test_bad_sizes_are_refused(side):
 
 
 def test_it_can_be_cancelled(rng, monkeypatch):
-    monkeypatch.setattr(voxels, "_CHUNK", 50)
+    monkeypatch.setattr(voxels, "ROWS_AT_ONCE", 50)
 
     with pytest.raises(Cancelled):
         downsample_voxels(rng.uniform(0, 5, (1000, 3)), monitor=Listening(stop_at=0.5))

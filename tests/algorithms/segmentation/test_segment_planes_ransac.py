@@ -177,7 +177,7 @@ def test_seed_decides_and_order_position_and_chunks_do_not(monkeypatch, rng):
     assert (
         len(set(zip(ids[order].tolist(), shuffled.tolist()))) == len(set(ids.tolist())) == len(set(shuffled.tolist()))
     )
-    monkeypatch.setattr(voxel_planes, "_DISTANCES_AT_ONCE", 5000)
+    monkeypatch.setattr(voxel_planes, "PAIRS_AT_ONCE", 5000)
     np.testing.assert_array_equal(segment(xyz), ids)
     assert any((segment(xyz, trials=3, seed=seed) != segment(xyz, trials=3)).any() for seed in range(2, 6))
 

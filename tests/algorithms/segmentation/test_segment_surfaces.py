@@ -319,10 +319,10 @@ def peak_memory(n_points, planarity):
 def test_memory_is_bounded_by_the_points(planarity, most, monkeypatch):
     """The nodes of the tree, 14 bytes for each point, are not seen by Python and not counted."""
     segment_surfaces(np.zeros((10, 3)), radius=1.0, tolerance=0.1, noise=0.01, density=1.0)  # imports packages
-    for module in (surface_growing, best_pairs, least_squares_planes):
-        monkeypatch.setattr(module, "_CHUNK", 1000)
-    for module in (surface_growing, local_planes_module):
-        monkeypatch.setattr(module, "CHUNK_NEIGHBORS", 12_000)
+    for module in (surface_growing, best_pairs):
+        monkeypatch.setattr(module, "ROWS_AT_ONCE", 1000)
+    for module in (surface_growing, local_planes_module, least_squares_planes):
+        monkeypatch.setattr(module, "NEIGHBORS_AT_ONCE", 12_000)
     # With several threads it depends on their timing how many chunks are in memory at once.
     monkeypatch.setattr(threads, "_ASSIGNED", [1])
     few, many = (peak_memory(n_points, planarity) for n_points in (10_000, 30_000))

@@ -1,0 +1,29 @@
+"""Criteria that are no choice of a method: a majority, normal errors, rounding, the millimeters of maps."""
+
+from __future__ import annotations
+
+# Share of the parts of something that decides for all of it: the majority.
+MAJORITY = 0.5
+
+# Standard deviations within which normal errors lie, all but one of 370.
+DEVIATIONS = 3.0
+
+# Points of a neighborhood whose plane shows a surface: nine degrees of freedom, so that its deviation is known to a
+# quarter.
+PLANE_NEIGHBORS = 12
+
+# Share, distance (m) or area (m²) up to which rounding takes 0: far below the resolution of files.
+ROUNDING = 1e-9
+
+# Distance (m) or area (m²) that is of the computation and not of a map or a cloud, where coordinates are large.
+MICROMETER = 1e-6
+
+# Distance (m) or area (m²) that is of the computation and not of a map or a cloud, where coordinates are large.
+MICROMETER = 1e-6
+
+# Positions nearer to each other than this (m) are one: maps and files have millimeters at best.
+MILLIMETER = 1e-3
+
+# Lines with a smaller sine between them, and planes with a smaller share of the greatest singular value, are parallel:
+# the position of their intersection is undetermined.
+PARALLEL = 0.05
