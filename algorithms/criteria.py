@@ -15,13 +15,10 @@ PLANE_NEIGHBORS = 12
 # Share, distance (m) or area (m²) up to which rounding takes 0: far below the resolution of files.
 ROUNDING = 1e-9
 
-# Distance (m) or area (m²) that is of the computation and not of a map or a cloud, where coordinates are large.
+# Distance (m) or area (m²) up to which rounding of large coordinates takes 0: no map or cloud is as fine.
 MICROMETER = 1e-6
 
-# Distance (m) or area (m²) that is of the computation and not of a map or a cloud, where coordinates are large.
-MICROMETER = 1e-6
-
-# Positions nearer to each other than this (m) are one: maps and files have millimeters at best.
+# Positions closer than this (m) are the same, as maps and files have millimeters at best.
 MILLIMETER = 1e-3
 
 # Lines with a smaller sine between them, and planes with a smaller share of the greatest singular value, are parallel:

@@ -19,8 +19,8 @@ from .facade_outline import Drawing, outline_of, ring_area
 # Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't show which side was seen.
 _THICKNESS = 0.05
 
-# Side (m) of the cells in which a facade is compared with the points on both sides, and which two facades must share to
-# meet.
+# Side (m) of the cells in which street scans are examined, in plan and on facades: some spacings of a sparse scan. Two
+# facades meet where they share a cell.
 CELL = 0.5
 
 # Side (m) of the voxels whose points count as one around a facade: a cell holds a few of them.

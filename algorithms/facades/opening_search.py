@@ -30,8 +30,11 @@ _LINK = 0.3
 # Least value of half the gap ``_LINK``, in cells.
 _LINK_CELLS = 1.5
 
-# Mean share of the four sides of an opening along which the wall has an edge. A surplus makes up for a lack of
-# ``MAJORITY`` and the reverse: leaves and people past the end of a wall have little of both.
+# Distance (m) from the points behind the wall within which the edge of the wall is a side of their opening.
+_REACH = 0.3
+
+# Mean share of the four sides of an opening along which the wall has an edge. A surplus makes up for a lack of wall
+# next to its outline, and the reverse: leaves and people past the end of a wall have little of both.
 _EDGED = 0.33
 
 # Share of the cells of an opening in which points behind the wall must be seen.
@@ -88,7 +91,7 @@ class WallRaster:
     """Cells of a ``size`` (m) on a facade, and which hold positions (n, 2), m, of points of the wall and behind it."""
 
     def __init__(self, wall: np.ndarray, behind: np.ndarray, size: float) -> None:
-        self.size, self.margin = size, int(np.ceil(_LINK / size)) + 2
+        self.size, self.margin = size, int(np.ceil(_REACH / size)) + 2
         both = np.concatenate([wall, behind])
         self.low = both.min(axis=0) - self.margin * size
         self.shape = tuple(np.floor((both.max(axis=0) - self.low) / size).astype(np.int64) + self.margin + 1)
@@ -214,12 +217,12 @@ def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> 
         sign, other = (-1, 1)[end], 1 - axis
         # Positions outward of the side: the wall next to the opening is the first beyond its middle.
         outward = sign * (wall[:, axis] - box[end, axis])
-        near = (outward > -np.ptp(box[:, axis]) / 2) & (outward <= _LINK)
+        near = (outward > -np.ptp(box[:, axis]) / 2) & (outward <= _REACH)
         near &= (wall[:, other] >= box[0, other]) & (wall[:, other] <= box[1, other])
         lines = max(1, int(np.ceil((box[1, other] - box[0, other]) / cell)))
         line = np.minimum(((wall[near, other] - box[0, other]) / cell).astype(np.int64), lines - 1)
         nearest = least_of(outward[near], line, lines)
-        has_wall = np.abs(nearest) <= _LINK
+        has_wall = np.abs(nearest) <= _REACH
         shares[2 * axis + end] = has_wall.mean()
         if has_wall.any():
             edge = float(np.median(nearest[has_wall]))
@@ -269,4 +272,4 @@ def _enclosure(raster: WallRaster, ring: np.ndarray, sill: Optional[float]) -> f
         return 0.0
     distance = ndimage.distance_transform_edt(~raster.wall) * raster.size
     along, up = (np.clip(cell, 0, size - 1) for cell, size in zip(raster.cell(np.concatenate(positions)), raster.shape))
-    return float(np.mean(distance[along, up] <= _LINK / 2 + raster.size))
+    return float(np.mean(distance[along, up] <= _REACH / 2 + raster.size))
