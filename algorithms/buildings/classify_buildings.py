@@ -14,6 +14,7 @@ from ..rules import rule, rules
 from ..sampling.cloud_sampling import GROUND_NOISE, MEASURED, CloudSampling
 from ..sampling.sufficiency import doubted, why_doubtful
 from ..sampling.surface_noise import plane_roughness
+from ..segmentation.cluster_measures import pulses_going_on
 from ..stage import Monitor, stage, tunable
 from .cluster_decisions import Decisions, decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
@@ -196,10 +197,10 @@ def classify_buildings(
     monitor.progress(0.9)
 
     # 2. Evidence of penetration and of the surroundings of each cluster.
-    returns = (return_number, number_of_returns)
+    goes_on = pulses_going_on(return_number, number_of_returns)
     # Other programs number clusters as they like.
     group, numbers = entropies.groups(len(xyz)), np.arange(len(entropies.ids))
-    evidence = ClusterEvidence(xyz, group, numbers, density, min_area, *returns)
+    evidence = ClusterEvidence(xyz, group, numbers, density, min_area, goes_on)
     through = evidence.penetration()
     monitor.progress(0.94)
     surface = by_entropy.is_building.astype(float) if segment_id is None else entropies.share_of(segment_id > 0)
@@ -242,7 +243,7 @@ def _decided_in_scan(given: _Given, monitor: Monitor) -> Decisions:
         return given.by_entropy
     decided = with_penetration(given.by_entropy, given.through, given.max_penetration, given.evidence)
     monitor.progress(0.98)
-    if not given.evidence.has_returns:
+    if given.evidence.goes_on is None:
         is_green, green_from = green_clusters(given.colors, given.evidence, given.surface_share > 0.5)
         monitor.resolved(plant_greenness=green_from)
         decided = without_green(decided, is_green)

@@ -34,9 +34,7 @@ class ClusterEvidence:
     numbers: np.ndarray  #: (m,), int: the clusters that have points, ascending
     density: float  #: Points per square meter
     min_area: float  #: Area of the smallest building, m²
-    #: return_number, number_of_returns, (n,): where the scanner numbered its returns
-    return_number: Optional[np.ndarray]
-    number_of_returns: Optional[np.ndarray]
+    goes_on: Optional[np.ndarray]  #: (n,), bool: whether the pulse of each went on; None where none has several returns
 
     @cached_property
     def areas(self) -> np.ndarray:
@@ -44,19 +42,13 @@ class ClusterEvidence:
         member = self.group >= 0
         return plan_areas(self.xyz[member], self.group[member], self.density)[self.numbers]
 
-    @property
-    def has_returns(self) -> bool:
-        """Whether pulses are known to have several returns."""
-        return self.number_of_returns is not None and int(self.number_of_returns.max(initial=0)) > 1
-
     def penetration(self) -> np.ndarray:
         """Return the share (m,) of the beam that passes through each cluster."""
-        through = penetration(self.xyz, self.group, self.density, self.return_number, self.number_of_returns)
-        return through[self.numbers]
+        return penetration(self.xyz, self.group, self.density, self.goes_on)[self.numbers]
 
     def non_last_return_share(self) -> np.ndarray:
         """Return the share (m,) of each cluster's points that are not the last return of their pulse."""
-        return non_last_return_share(self.group, self.return_number, self.number_of_returns)[self.numbers]
+        return non_last_return_share(self.group, self.goes_on)[self.numbers]
 
     def share_around(self, is_chosen: np.ndarray) -> np.ndarray:
         """Return the share (m,) of the points around each cluster that belong to the chosen clusters (m,)."""

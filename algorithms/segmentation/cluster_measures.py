@@ -44,13 +44,7 @@ def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray
     return np.bincount(owner, minlength=int(group.max()) + 1) * grid.size**2
 
 
-def penetration(
-    xyz: np.ndarray,
-    group: np.ndarray,
-    density: float,
-    return_number: Optional[np.ndarray] = None,
-    number_of_returns: Optional[np.ndarray] = None,
-) -> np.ndarray:
+def penetration(xyz: np.ndarray, group: np.ndarray, density: float, goes_on: Optional[np.ndarray] = None) -> np.ndarray:
     """Return how much of the beam passes through each group of points, 0 to 1.
 
     Parameters
@@ -61,8 +55,8 @@ def penetration(
         Group of each point from 0, negative for none; at least one point has a group.
     density : float
         Points per square meter.
-    return_number, number_of_returns : ndarray of shape (n,), optional
-        Where the scanner numbered its returns.
+    goes_on : ndarray of shape (n,), bool, optional
+        Whether the pulse of each went on to another return, as of :func:`pulses_going_on`.
 
     Returns
     -------
@@ -78,28 +72,32 @@ def penetration(
     """
     owner, beneath = _columns(xyz, group, DENSITY.filled_cell / np.sqrt(density))
     share = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
-    if not _numbered(number_of_returns):
-        return share
-    return (share + non_last_return_share(group, return_number, number_of_returns)) / 2
+    return share if goes_on is None else (share + non_last_return_share(group, goes_on)) / 2
 
 
-def non_last_return_share(
-    group: np.ndarray, return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray]
-) -> np.ndarray:
+def non_last_return_share(group: np.ndarray, goes_on: Optional[np.ndarray]) -> np.ndarray:
     """Return the share of each group's points that are not the last return of their pulse; 0 where none is numbered.
 
     Arguments as of :func:`penetration`.
     """
     member = group >= 0
     size = np.bincount(group[member])
-    if return_number is None or number_of_returns is None or not _numbered(number_of_returns):
-        return np.zeros(len(size))
-    return np.bincount(group[member], (return_number < number_of_returns)[member]) / np.maximum(size, 1)
+    return np.zeros(len(size)) if goes_on is None else np.bincount(group[member], goes_on[member]) / np.maximum(size, 1)
 
 
-def _numbered(number_of_returns: Optional[np.ndarray]) -> bool:
-    """Whether a pulse is known to have several returns."""
-    return number_of_returns is not None and number_of_returns.max(initial=0) > 1
+def pulses_going_on(
+    return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray]
+) -> Optional[np.ndarray]:
+    """Return the mask (n,) of points whose pulse went on to another return; None where none is known to have several.
+
+    Parameters
+    ----------
+    return_number, number_of_returns : ndarray of shape (n,), optional
+        Where the scanner numbered its returns.
+    """
+    if return_number is None or number_of_returns is None or number_of_returns.max(initial=0) <= 1:
+        return None
+    return return_number < number_of_returns
 
 
 def adjacent_groups(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:

@@ -17,7 +17,7 @@ GREEN, GRAY, RED = (20_000, 40_000, 15_000), (30_000, 30_000, 30_000), (40_000, 
 
 def decided(parts, surface_share, green=None, min_area=4.0, min_share=0.4):
     xyz, number = clusters(*parts)
-    evidence = ClusterEvidence(xyz, number - 1, np.arange(len(parts)), 6.0, min_area, None, None)
+    evidence = ClusterEvidence(xyz, number - 1, np.arange(len(parts)), 6.0, min_area, None)
     green = np.zeros(len(parts), bool) if green is None else np.array(green)
     return decide_in_images(np.array(surface_share, float), green, evidence, min_share)
 
@@ -64,7 +64,7 @@ def green(bands, group, count):
     """Return the decisions on clusters of 100 m², the first of which is rough."""
     side = np.arange(len(group)) % 100
     xyz = np.column_stack([20.0 * group + side // 10, side % 10, np.zeros(len(group))])
-    evidence = ClusterEvidence(xyz, group, np.arange(count), 1.0, 4.0, None, None)
+    evidence = ClusterEvidence(xyz, group, np.arange(count), 1.0, 4.0, None)
     return green_clusters(bands, evidence, np.arange(count) > 0)
 
 
@@ -133,7 +133,7 @@ def dry(rng):
     xyz = np.concatenate([xyz, lawn])
     bands = np.concatenate([kinds, np.tile(GREEN, (len(lawn), 1))]) * rng.uniform(0.98, 1.02, (len(xyz), 3))
     group = np.append(number - 1, np.full(len(lawn), -1))
-    return ClusterEvidence(xyz, group, np.arange(3), 6.0, 4.0, None, None), tuple(bands.T.astype(np.uint16))
+    return ClusterEvidence(xyz, group, np.arange(3), 6.0, 4.0, None), tuple(bands.T.astype(np.uint16))
 
 
 def test_the_limit_lies_between_rough_crowns_and_large_roofs_and_not_at_the_lawn(dry):

@@ -7,6 +7,7 @@ from lidar_buildings.algorithms.segmentation.cluster_measures import (
     adjacent_groups,
     penetration,
     plan_areas,
+    pulses_going_on,
     share_around,
 )
 
@@ -68,8 +69,8 @@ def test_penetration_by_hand(depth, expected):
     own = at_cells(0, 1, 2, 3, 4)
     xyz = np.concatenate([own, own + [0, 0, 2], at_cells(1, z=5 - depth), at_cells(3, z=5 - depth)])
     assert penetration(xyz, group, 1.0).tolist() == [0.0, expected]
-    of_pulse = np.where(np.arange(12) == 7, 2, 1)
-    assert penetration(xyz, group, 1.0, np.ones(12), of_pulse)[1] == pytest.approx((expected + 0.1) / 2)
+    goes_on = pulses_going_on(np.ones(12), np.where(np.arange(12) == 7, 2, 1))
+    assert penetration(xyz, group, 1.0, goes_on)[1] == pytest.approx((expected + 0.1) / 2)
 
 
 def test_adjacent_groups_by_hand():
