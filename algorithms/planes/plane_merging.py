@@ -25,9 +25,6 @@ _HELD = 2 / 3
 # Least number of points of a voxel that a plane holds which goes on into it.
 _LEAST_POINTS = 4
 
-# Boxes of the first array of a pair with boxes of the second.
-_Pairs = list[tuple[np.ndarray, np.ndarray]]
-
 
 def joined_planes(
     boxes: Boxes, label: np.ndarray, tolerance: float, min_area: float, monitor: Monitor
@@ -64,15 +61,17 @@ def joined_planes(
     pieces, voxel = pieces.chosen(wide), voxel[wide]
     group = join_pieces(pieces, voxel, boxes, tolerance, monitor.part(0, 0.6))
     planes = pieces.merged(group, int(group.max(initial=-1)) + 1)
-    nearest = nearest_plane(boxes, voxel, group, planes, tolerance, monitor.part(0.6, 0.8))
+    nearest = NearestPlanes(boxes, planes, tolerance)
+    nearest.look(voxel, group, monitor.part(0.6, 0.8))
     # A plane across a ridge loses most of its points to the roofs on both sides.
-    kept = np.bincount(nearest[nearest >= 0], minlength=len(planes)) / planes.count
+    kept = np.bincount(nearest.plane[nearest.plane >= 0], minlength=len(planes)) / planes.count
     area = np.bincount(group, pieces.area, len(planes)) * np.minimum(kept, 1)
     large = (area >= min_area) & (kept >= MAJORITY)
     is_large = large[group]
     group = (np.cumsum(large) - 1)[group[is_large]]
     planes = planes.chosen(large)
-    return planes, grown_planes(boxes, voxel[is_large], group, planes, tolerance, monitor.part(0.8, 1))
+    nearest = NearestPlanes(boxes, planes, tolerance)
+    return planes, grown_planes(nearest, voxel[is_large], group, monitor.part(0.8, 1))
 
 
 def join_pieces(pieces: Planes, voxel: np.ndarray, boxes: Boxes, tolerance: float, monitor: Monitor) -> np.ndarray:
@@ -131,122 +130,93 @@ def _product(
     return start[here[which]] + first, start[there[which]] + second
 
 
-def grown_planes(
-    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, planes: Planes, tolerance: float, monitor: Monitor
-) -> np.ndarray:
-    """Return the plane (n,) nearest to each point, of planes that also grow into voxels where none was found.
-
-    The tip of a hip and the strip along an eave have too few points in a voxel to show a plane of their own. Takes and
-    returns what :func:`nearest_plane` does.
-
-    Parameters
-    ----------
-    boxes : Boxes
-        The voxels.
-    voxel : ndarray of shape (m,), int64
-        Box of each piece of a plane.
-    group : ndarray of shape (m,), int64
-        Its plane.
-    planes : Planes
-        Planes of the voxels.
-    tolerance : float
-        Largest distance of a point from its plane, m.
-    monitor : Monitor
-        Receives the progress.
-    """
-    box, around_each = boxes.box(), _around_each(boxes)
-    pieces = new = np.unique(voxel * len(planes) + group)
-    nearest, distance = np.full(len(box), -1), np.full(len(box), tolerance)
-    for step in range(_MAX_ROUNDS):
-        part = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
-        at, plane = np.divmod(new, max(len(planes), 1))
-        seen = _planes_around(boxes, at, plane, len(planes), around_each)
-        _take_nearer(boxes, box, *seen, planes, nearest, distance, part)
-        on_plane = nearest >= 0
-        held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
-        inside = on_plane & held[box]
-        found, count = np.unique(box[inside] * len(planes) + nearest[inside], return_counts=True)
-        grown = np.union1d(pieces, found[count >= _LEAST_POINTS])
-        new = np.setdiff1d(grown, pieces, assume_unique=True)
-        if not len(new):
-            break
-        pieces = grown
-    return nearest
-
-
-def nearest_plane(
-    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, planes: Planes, tolerance: float, monitor: Monitor
-) -> np.ndarray:
-    """Return the plane (n,), of those in its voxel and the voxels around, that each point lies nearest to.
+class NearestPlanes:
+    """The nearest plane to each point of boxes, of the planes that were looked for around it.
 
     Parameters
     ----------
     boxes : Boxes
         The voxels and their points.
-    voxel, group : ndarray of shape (m,), int64
-        Box and plane of each piece of a plane.
     planes : Planes
         The planes.
     tolerance : float
         Distance within which a point lies on a plane, m.
+
+    Attributes
+    ----------
+    box : ndarray of shape (n,), int64
+        Box of each point, in the order of the boxes.
+    plane : ndarray of shape (n,), int64
+        Number of its plane; -1 where none is within the tolerance.
+    """
+
+    def __init__(self, boxes: Boxes, planes: Planes, tolerance: float) -> None:
+        self.boxes, self.planes, self.box = boxes, planes, boxes.box()
+        self.plane, self._distance = np.full(len(self.box), -1), np.full(len(self.box), tolerance)
+        # Each box with itself and with every box that touches it, by the step between them.
+        every = np.arange(len(boxes))
+        self._around_each = [(every, every), *(boxes.beside(boxes, offset) for offset in around(1))]
+
+    def look(self, voxel: np.ndarray, group: np.ndarray, monitor: Monitor) -> None:
+        """Compare the points in the voxels (m,) of pieces, and around these, with their planes ``group`` (m,).
+
+        Of planes as near it is the one with the largest number.
+        """
+        seen_from, plane = self._planes_around(voxel, group)
+        count = np.bincount(seen_from, minlength=len(self.boxes))
+        start = np.cumsum(count) - count
+        box, nearest, distance = self.box, self.plane, self._distance
+
+        def work(rows: np.ndarray) -> None:
+            for rank in range(int(count[box[rows]].max())):
+                some = rows[count[box[rows]] > rank]
+                candidate = plane[start[box[some]] + rank]
+                off = self.planes.distance(self.boxes.xyz[some], candidate)
+                is_nearer = (off < distance[some]) | ((off == distance[some]) & (candidate > nearest[some]))
+                distance[some[is_nearer]], nearest[some[is_nearer]] = off[is_nearer], candidate[is_nearer]
+
+        in_chunks(work, np.flatnonzero(count[box]), ROWS_AT_ONCE, monitor)
+
+    def _planes_around(self, voxel: np.ndarray, group: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return pairs of a box and a plane that has a piece in it or next to it, by box."""
+        count, n_planes = np.bincount(voxel, minlength=len(self.boxes)), max(len(self.planes), 1)
+        start = np.cumsum(count) - count
+        keys = []
+        for here, there in self._around_each:
+            which, position = items(count[there])
+            keys.append(here[which] * n_planes + group[start[there[which]] + position])
+        return np.divmod(np.unique(np.concatenate(keys)), n_planes)
+
+
+def grown_planes(nearest: NearestPlanes, voxel: np.ndarray, group: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return the plane (n,) nearest to each point, of planes that also grow into voxels where none was found.
+
+    The tip of a hip and the strip along an eave have too few points in a voxel to show a plane of their own.
+
+    Parameters
+    ----------
+    nearest : NearestPlanes
+        The planes, which were looked for nowhere.
+    voxel : ndarray of shape (m,), int64
+        Box of each piece of a plane.
+    group : ndarray of shape (m,), int64
+        Its plane.
     monitor : Monitor
-        Receives progress.
-
-    Returns
-    -------
-    ndarray of shape (n,), int64
-        Numbers of planes in the order of the boxes; -1 where none is within the tolerance.
+        Receives the progress.
     """
-    box = boxes.box()
-    nearest, distance = np.full(len(box), -1), np.full(len(box), tolerance)
-    seen = _planes_around(boxes, voxel, group, len(planes), _around_each(boxes))
-    _take_nearer(boxes, box, *seen, planes, nearest, distance, monitor)
-    return nearest
-
-
-def _take_nearer(
-    boxes: Boxes,
-    box: np.ndarray,
-    seen_from: np.ndarray,
-    plane: np.ndarray,
-    planes: Planes,
-    nearest: np.ndarray,
-    distance: np.ndarray,
-    monitor: Monitor,
-) -> None:
-    """Change the plane ``nearest`` (n,) to each point, and its ``distance`` (m), to those that are nearer.
-
-    The planes numbered ``plane`` (m,) are compared with the points of the boxes ``seen_from`` (m,), ascending. Of
-    planes as near it is the one with the largest number.
-    """
-    count = np.bincount(seen_from, minlength=len(boxes))
-    start = np.cumsum(count) - count
-
-    def work(rows: np.ndarray) -> None:
-        for rank in range(int(count[box[rows]].max())):
-            some = rows[count[box[rows]] > rank]
-            candidate = plane[start[box[some]] + rank]
-            off = planes.distance(boxes.xyz[some], candidate)
-            is_nearer = (off < distance[some]) | ((off == distance[some]) & (candidate > nearest[some]))
-            distance[some[is_nearer]], nearest[some[is_nearer]] = off[is_nearer], candidate[is_nearer]
-
-    in_chunks(work, np.flatnonzero(count[box]), ROWS_AT_ONCE, monitor)
-
-
-def _around_each(boxes: Boxes) -> _Pairs:
-    """Return pairs of each box with itself and with every box that touches it, by the step between them."""
-    every = np.arange(len(boxes))
-    return [(every, every), *(boxes.beside(boxes, offset) for offset in around(1))]
-
-
-def _planes_around(
-    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, n_planes: int, around_each: _Pairs
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return pairs of a box and a plane that has a piece in it or next to it, by box."""
-    count = np.bincount(voxel, minlength=len(boxes))
-    start = np.cumsum(count) - count
-    keys = []
-    for here, there in around_each:
-        which, position = items(count[there])
-        keys.append(here[which] * n_planes + group[start[there[which]] + position])
-    return np.divmod(np.unique(np.concatenate(keys)), max(n_planes, 1))
+    boxes, box, n_planes = nearest.boxes, nearest.box, max(len(nearest.planes), 1)
+    pieces = new = np.unique(voxel * n_planes + group)
+    for step in range(_MAX_ROUNDS):
+        part = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
+        at, plane = np.divmod(new, n_planes)
+        nearest.look(at, plane, part)
+        on_plane = nearest.plane >= 0
+        held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
+        inside = on_plane & held[box]
+        found, count = np.unique(box[inside] * n_planes + nearest.plane[inside], return_counts=True)
+        grown = np.union1d(pieces, found[count >= _LEAST_POINTS])
+        new = np.setdiff1d(grown, pieces, assume_unique=True)
+        if not len(new):
+            break
+        pieces = grown
+    return nearest.plane

@@ -261,28 +261,21 @@ def _take_points(
     planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: Criteria, monitor: Monitor
 ) -> Planes:
     """Let planes take the points next to them in rounds, and return the planes of all points then."""
+
+    def hold(neighbor: np.ndarray, point: np.ndarray) -> np.ndarray:
+        # As fitted in the round before, to all points of the surface of each neighbor (m,).
+        plane = surface[neighbor]
+        return criteria.hold(planes.xyz[point] - fitted.center[plane], fitted.normal[plane], planes.normal[point])
+
     unassigned = np.flatnonzero(surface < 0).astype(np.int32)
     for step in range(_MAX_ROUNDS):
         part = monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1))
-        rows = _join(planes, unassigned, surface, partial(_plane_holds, planes, surface, fitted, criteria), part)
+        rows = _join(planes, unassigned, surface, hold, part)
         if not len(rows):
             break
         fitted = _with_points(fitted, planes.xyz, surface[rows], rows)
         unassigned = unassigned[surface[unassigned] < 0]
     return fitted
-
-
-def _plane_holds(
-    planes: LocalPlanes,
-    surface: np.ndarray,
-    fitted: Planes,
-    criteria: Criteria,
-    neighbor: np.ndarray,
-    point: np.ndarray,
-) -> np.ndarray:
-    """Return whether the planes of all points of the surfaces of some points (m,) hold others (m,)."""
-    plane = surface[neighbor]
-    return criteria.hold(planes.xyz[point] - fitted.center[plane], fitted.normal[plane], planes.normal[point])
 
 
 def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray, rows: np.ndarray) -> Planes:

@@ -4,7 +4,7 @@ import numpy as np
 
 from lidar_buildings.algorithms.geometry.boxes import Boxes
 from lidar_buildings.algorithms.planes.least_squares_planes import Planes, planes_of
-from lidar_buildings.algorithms.planes.plane_merging import grown_planes
+from lidar_buildings.algorithms.planes.plane_merging import NearestPlanes, grown_planes
 from lidar_buildings.algorithms.stage import Monitor
 
 
@@ -19,6 +19,6 @@ def test_a_plane_grows_along_a_strip_and_looks_at_each_point_a_few_times(rng, mo
     plane = planes_of(xyz[~is_off], np.zeros((~is_off).sum(), int), 1)
     looked_at, distance = [], Planes.distance
     monkeypatch.setattr(Planes, "distance", lambda *given: looked_at.append(len(given[1])) or distance(*given))
-    found = grown_planes(boxes, np.zeros(1, int), np.zeros(1, int), plane, 0.05, Monitor())
+    found = grown_planes(NearestPlanes(boxes, plane, 0.05), np.zeros(1, int), np.zeros(1, int), Monitor())
     np.testing.assert_array_equal(found, np.where(is_off[boxes.order], -1, 0))
     assert sum(looked_at) <= 3 * len(xyz)
