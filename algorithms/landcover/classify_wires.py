@@ -115,7 +115,7 @@ def classify_wires(
     points, height = sampling.from_corner(xyz[rows]), height_above_ground[rows]
     solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
     around = SpanSurroundings(points, solid, max(RULES.least_off, DEVIATIONS * noise))
-    spans = _spans(points, height, around, min_height, sampling.spacing, seed, monitor)
+    spans = _spans(around, height >= min_height, sampling.spacing, seed, monitor)
     # Wires next to these are seen in part only, so that their ends show no masts.
     for span in (*spans, *parallels_of(spans, around)):
         classes[rows[around.on_wire(span, beyond=1.0)]] = PointClass.WIRE_CONDUCTOR
@@ -124,18 +124,11 @@ def classify_wires(
     return classes
 
 
-def _spans(
-    points: np.ndarray,
-    height: np.ndarray,
-    around: SpanSurroundings,
-    min_height: float,
-    spacing: float,
-    seed: int,
-    monitor: Monitor,
-) -> list[Span]:
-    """Return the spans of the wires among the points (n, 3), m."""
+def _spans(around: SpanSurroundings, is_high: np.ndarray, spacing: float, seed: int, monitor: Monitor) -> list[Span]:
+    """Return the spans of the wires among the points (n,) that are high enough, bool."""
+    points = around.xyz
     free = over_free_space(points, spacing)
-    free = free[height[free] >= min_height]
+    free = free[is_high[free]]
     monitor.progress(0.2)
     if not len(free):
         return []
