@@ -135,7 +135,7 @@ def dimension_names(path: Union[str, Path]) -> list[str]:
     return Cloud(header, np.zeros(1, header.layout.dtype), Crs()).dimension_names
 
 
-def check_readable(path: Union[str, Path], read: CrsReader = read_crs, box: Optional[np.ndarray] = None) -> None:
+def check_readable(path: Union[str, Path], box: Optional[np.ndarray] = None) -> None:
     """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables show.
 
     Raises
@@ -146,7 +146,7 @@ def check_readable(path: Union[str, Path], read: CrsReader = read_crs, box: Opti
     path = file_at(path)
     with readable(path):
         for file, header in zip(*_opened(path, box=box)):
-            read(header)
+            read_crs(header)
             check_points(file, header)
 
 

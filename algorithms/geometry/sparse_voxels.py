@@ -28,9 +28,6 @@ MOST_KEYS = np.iinfo(np.int64).max
 # Neighbors that differ in at most this many of the three indices.
 _AXES = {6: 1, 18: 2, 26: 3}
 
-# Norms of the distances, as kd-trees number them.
-_NORMS = {"euclidean": 2.0, "taxicab": 1.0, "chessboard": math.inf}
-
 
 def voxel_index(scaled: np.ndarray, size: float) -> np.ndarray:
     """Return the index of the voxel along an axis, a whole float64, of coordinates divided by the voxel's ``size``."""
@@ -226,15 +223,13 @@ def close_voxels(cells: np.ndarray, connectivity: int, steps: int = 1) -> np.nda
     return erode(dilate(cells, connectivity, steps), connectivity, steps)
 
 
-def distance_to_background(cells: np.ndarray, metric: str = "euclidean") -> np.ndarray:
+def distance_to_background(cells: np.ndarray) -> np.ndarray:
     """Return the distance (m,), float64, in voxels, from each voxel to the nearest one of the background.
 
     Parameters
     ----------
     cells : ndarray of shape (m, 3), int64
         Voxels, sorted.
-    metric : {"euclidean", "taxicab", "chessboard"}
-        How distances between the centers are measured.
 
     Notes
     -----
@@ -247,7 +242,7 @@ def distance_to_background(cells: np.ndarray, metric: str = "euclidean") -> np.n
     keys = box.of(cells)
     around = np.unique(np.concatenate([keys + box.step(offset) for offset in neighbor_offsets(6)]))
     shell = box.cells(around[find_keys(keys, around) < 0])
-    return spatial.cKDTree(shell).query(cells, p=_NORMS[metric], workers=n_threads())[0]
+    return spatial.cKDTree(shell).query(cells, workers=n_threads())[0]
 
 
 def _structuring_parts(connectivity: int) -> list[np.ndarray]:

@@ -25,6 +25,9 @@ _MOST_PLANES = 20
 # Windows that one thread works on between two reports.
 _WINDOWS = 64
 
+# Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
+_MOST_ANGLE = 10.0
+
 
 class PlaneDirections:
     """The slopes of the parameter space: bins of normals on the faces of a cube around the half sphere.
@@ -92,10 +95,6 @@ class HoughPlanes:
         Width of a bin in the distance of a plane, m.
     slope_bin : float
         Width of a bin in both slopes of a plane.
-    normals : ndarray of shape (n, 3), optional
-        Normals of the points in the order of the boxes, for the transform in two steps.
-    max_angle : float
-        Angle (°) between the normals of a plane and of its points, in two steps.
 
     Raises
     ------
@@ -103,17 +102,8 @@ class HoughPlanes:
         If the parameter space has too many bins for the memory.
     """
 
-    def __init__(
-        self,
-        boxes: Boxes,
-        side: float,
-        tolerance: float,
-        distance_bin: float,
-        slope_bin: float,
-        normals: Optional[np.ndarray] = None,
-        max_angle: float = 10.0,
-    ) -> None:
-        self.boxes, self.tolerance, self.distance_bin, self.normals = boxes, tolerance, distance_bin, normals
+    def __init__(self, boxes: Boxes, side: float, tolerance: float, distance_bin: float, slope_bin: float) -> None:
+        self.boxes, self.tolerance, self.distance_bin = boxes, tolerance, distance_bin
         self.reach = side * np.sqrt(3) / 2
         self.levels = int(np.ceil(2 * self.reach / distance_bin)) + 1
         per_side = np.ceil(2 / slope_bin)
@@ -127,10 +117,13 @@ class HoughPlanes:
         # The largest section of a cube is the root of two times a face.
         self.by_chance = min(0.99, 2 * np.sqrt(2) * tolerance / side)
         self.trials = int(n_bins)
-        self.cosine = np.cos(np.radians(max_angle))
+        self.cosine = np.cos(np.radians(_MOST_ANGLE))
 
-    def find(self, monitor: Monitor) -> np.ndarray:
-        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each window, or 0."""
+    def find(self, monitor: Monitor, normals: Optional[np.ndarray] = None) -> np.ndarray:
+        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each window, or 0.
+
+        With the normals (n, 3) of the points in this order the transform is in two steps.
+        """
         plane = np.zeros(len(self.boxes.order), np.int16)
 
         def work(windows: np.ndarray) -> None:
@@ -139,10 +132,10 @@ class HoughPlanes:
                 inside = slice(start, start + self.boxes.size[window])
                 xyz = self.boxes.xyz[inside]
                 centered = xyz - (xyz.min(axis=0) + xyz.max(axis=0)) / 2
-                if self.normals is None:
+                if normals is None:
                     plane[inside] = self._by_points(centered)
                 else:
-                    plane[inside] = self._by_normals(centered, self.normals[inside])
+                    plane[inside] = self._by_normals(centered, normals[inside])
 
         in_chunks(work, np.flatnonzero(self.boxes.size >= LEAST_POINTS), _WINDOWS, monitor)
         return plane

@@ -41,10 +41,6 @@ _WIDE_WINDOW = 1.0
 # Gap (m) assumed for the reach if it is automatic: as in clouds with 40 points per m².
 _WIDE_GAP = 0.5
 
-# Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
-_MOST_ANGLE = 10.0
-
-
 _DISTANCE_BIN = tunable(
     None,
     "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
@@ -234,8 +230,8 @@ class _Search:
         boxes = Boxes(points.xyz, self.window_size, from_zero=True)
         normals = self._normals(xyz, points, boxes, monitor.part(0, 0.375))
         slope = float(np.tan(np.radians(self.slope_bin)))
-        hough = HoughPlanes(boxes, self.window_size, self.tolerance, self.distance_bin, slope, normals, _MOST_ANGLE)
-        planes = hough.find(monitor.part(0.375, 0.875))
+        hough = HoughPlanes(boxes, self.window_size, self.tolerance, self.distance_bin, slope)
+        planes = hough.find(monitor.part(0.375, 0.875), normals)
         plane[boxes.order] = joined_planes(boxes, planes, self.tolerance, 0.0, monitor.part(0.875, 1))[1]
         return plane
 
