@@ -1,4 +1,4 @@
-"""Find the planes that are roofs, and join the roofs of each building."""
+"""Find the planes that are roofs, join those of each building, and split blocks at party walls."""
 
 from __future__ import annotations
 
@@ -7,15 +7,18 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.groups import placed, ranked_by_least
+from ..footprints.outline_pieces import pieces_alone
+from ..footprints.row_houses import split_row
+from ..footprints.soft_shares import spread_out
+from ..geometry.grid import find_cells, raster_cells
+from ..geometry.groups import placed, ranked_by_least, topmost
 from ..neighborhoods.dbscan import dbscan, points_at_corner
 from ..params import MIN_MAPPED_AREA, POINT_DENSITY, POINT_SOURCE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
+from ..sampling.top_surface import highest_of_cells
 from ..segmentation.cluster_measures import plan_areas
 from ..stage import Monitor, stage, tunable
 from .bent_roofs import bent_roofs, with_bent_roofs
-from .party_walls import split_blocks
-from .stacked_roofs import join_stacked
 
 # Surfaces closer than this (m) belong to one roof: roofs of two buildings are seldom as close.
 _LEAST_GAP = 0.6
@@ -25,6 +28,16 @@ _GAP_SPACINGS = 3.0
 
 # Surfaces farther apart than this (m), the width of a lane, are different roofs at any density.
 _MOST_GAP = 5.0
+
+# A roof is part of a larger one if more than this share of its border meets that one. A house between two others shares
+# at most a third with each, an annex in a nook half. A stair house at the edge of a roof has three quarters.
+_ENCLOSED = 0.6
+
+# Roofs meet across up to this many cells without a roof: parapets, and walls smeared by image matching.
+_OVER = 2
+
+# Side of the cells (m) whose highest points are used: about the width of parapets.
+_CELL = 0.3
 
 
 @stage(
@@ -152,3 +165,117 @@ def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, moni
     if len(member):
         number[member] = ranked_by_least(xyz[member, 0], cluster[member])
     return number
+
+
+def join_stacked(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarray:
+    """Return the roofs (n,) of points (n, 3), m, where one larger roof that surrounds others takes their place.
+
+    ``cluster`` (n,) are the roofs before, from 0; -1 if unassigned. Cells have the ``size`` (m) of the distance within
+    which points are of one roof.
+    """
+    joined = cluster.copy()
+    while True:
+        into = _surrounding(xyz, joined, size)
+        if (into == np.arange(len(into))).all():
+            return joined
+        own = joined >= 0
+        joined[own] = into[joined[own]]
+
+
+def _surrounding(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarray:
+    """Return the roof (k,) that surrounds each roof, the roof itself where none does."""
+    count = int(cluster.max(initial=-1)) + 1
+    own = np.flatnonzero(cluster >= 0)
+    into = np.arange(count)
+    if count < 2:
+        return into
+    # A margin, so that the numbers of cells next to the border are unique.
+    row, column = raster_cells(xyz[own], size, _OVER + 1)
+    columns = int(column.max()) + _OVER + 2
+    number = row * columns + column
+    top = topmost(xyz[own, 2], number, -cluster[own])
+    cells, label = number[top], cluster[own[top]]
+    area = np.bincount(label, minlength=count)
+    ending, beginning = _borders(cells, columns, label)
+    length = np.bincount(ending, minlength=count)
+    meets = beginning >= 0
+    pairs, shared = np.unique(ending[meets] * count + beginning[meets], return_counts=True)
+    one, other = np.divmod(pairs, count)
+    inner = (shared > _ENCLOSED * length[one]) & (area[one] < area[other])
+    # The surrounding roof is larger, so that there is no circle.
+    into[one[inner]] = other[inner]
+    return into
+
+
+def _borders(cells: np.ndarray, columns: int, label: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the roof (k,) of each side of a cell where a roof ends, and the one that begins there, -1 for none.
+
+    ``cells`` (m,) are numbers, ascending; from one row to the next they differ by ``columns``.
+    """
+    ending, beginning = [], []
+    for step in (1, -1, columns, -columns):
+        beside = np.full(len(cells), -1)
+        for times in range(1, _OVER + 2):
+            position, found = find_cells(cells, cells + times * step)
+            beside = np.where((beside < 0) & found, label[position], beside)
+        ends = beside != label
+        ending.append(label[ends])
+        beginning.append(beside[ends])
+    return np.concatenate(ending), np.concatenate(beginning)
+
+
+def split_blocks(
+    xyz: np.ndarray, height: np.ndarray, cluster_id: np.ndarray, spacing: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the buildings (n,), each house of rows and blocks as one, from 1 from west to east; 0 if unassigned.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    height : ndarray of shape (n,)
+        Heights above ground, m.
+    cluster_id : ndarray of shape (n,)
+        Buildings, from 1; 0 if unassigned.
+    spacing : float
+        Mean distance between points, m.
+    monitor : Monitor
+        Receives progress.
+
+    Notes
+    -----
+    Houses are separated as in rows of gables: along lines from one side of the block to the other, a house apart. Along
+    such a line a wall rises above both roofs, or one roof steps down to the other.
+    """
+    own = np.flatnonzero(cluster_id > 0)
+    if not len(own):
+        return cluster_id
+    size = max(_CELL, 2 * spacing)
+    top = own[highest_of_cells(xyz[own], size)[0]]
+    # Roofs are compared by their elevations: over sloping ground, heights above ground vary on a level roof.
+    lowest_ground = np.full(int(cluster_id.max()) + 1, np.inf)
+    np.minimum.at(lowest_ground, cluster_id[top], (xyz[:, 2] - height)[top])
+    corner = xyz[own, :2].min(axis=0)
+    count = int(cluster_id.max())
+    house = cluster_id[own].astype(np.int64)
+    buildings = np.unique(cluster_id[top])
+    for done, number in enumerate(buildings.tolist()):
+        roof, mine = top[cluster_id[top] == number], cluster_id[own] == number
+        over_lowest = xyz[roof, 2] - lowest_ground[number]
+        part = _houses_at(xyz[roof, :2] - corner, over_lowest, xyz[own[mine], :2] - corner, size)
+        house[mine] = np.where(part > 1, count + part - 1, number)
+        count += int(part.max()) - 1
+        monitor.progress((done + 1) / len(buildings))
+    return placed(ranked_by_least(xyz[own, 0], house), own, len(cluster_id))
+
+
+def _houses_at(plan: np.ndarray, height: np.ndarray, positions: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the house (k,), from 1, at positions (k, 2), m, of a building.
+
+    Its roof has points at ``plan`` (n, 2), m, ``spacing`` (m) apart, with heights (n,) above one level, m.
+    """
+    shares, pieces, directions = pieces_alone(plan, spacing, 0.0)
+    if not pieces:
+        return np.ones(len(positions), np.int64)
+    houses = split_row(shares.lattice, shares.share > shares.rest, plan, height, directions, spacing)
+    return spread_out(houses.house)[shares.lattice.nearest(positions)]

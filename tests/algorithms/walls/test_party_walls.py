@@ -5,7 +5,7 @@ import pytest
 from scipy import ndimage
 
 from lidar_buildings.algorithms.stage import Monitor
-from lidar_buildings.algorithms.walls.party_walls import split_blocks
+from lidar_buildings.algorithms.walls.classify_roofs import split_blocks
 
 # Width and depth of a house, room around the block, cells in which matching rounds edges (m).
 WIDTH, DEPTH, ROOM, CELL = 8.0, 9.0, 3.0, 0.1

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.walls.classify_roofs import classify_roofs
-from lidar_buildings.algorithms.walls.stacked_roofs import join_stacked
+from lidar_buildings.algorithms.walls.classify_roofs import classify_roofs, join_stacked
 
 SIZE = 0.6
 
