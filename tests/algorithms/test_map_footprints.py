@@ -32,7 +32,7 @@ def turned(arrays, layers, angle, shift):
 @pytest.mark.parametrize(
     ("tunables", "angle"),
     [
-        ({"density": 50.0, "noise": 0.05, "seed": 2}, 0.0),
+        ({"density": 30.0, "noise": 0.05, "seed": 2}, 0.0),
         pytest.param({"density": 70.0, "noise": 0.03, "seed": 3}, 0.7, marks=pytest.mark.slow),
     ],
 )
@@ -75,7 +75,7 @@ def test_the_published_chain_finds_most_of_the_corners():
 
 
 def test_without_an_old_map_footprints_are_made_all_the_same():
-    arrays, true, _ = village(size=90.0, density=30.0, seed=4)
+    arrays, true, _ = village(size=70.0, density=30.0, seed=4)
     monitor = Monitor()
     made = mapped(arrays, None, monitor)
     assert len(made.layers["wall_footprints"]) == len(true) > 2
@@ -97,7 +97,7 @@ def test_where_no_walls_are_seen_footprints_are_roofs():
 
 
 def test_the_clouds_of_the_steps_can_be_kept():
-    arrays, _, _ = village(size=90.0, density=20.0, seed=4)
+    arrays, _, _ = village(size=60.0, density=20.0, seed=4)
     made = run_pipeline(CHAIN, create_cloud(arrays))
     assert set(made.clouds) == {f"{step}_output" for step in CHAIN.kept}
     assert made.clouds["ground_output"].has("voxel_count")

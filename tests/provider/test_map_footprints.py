@@ -33,7 +33,7 @@ CRS, CORNER = "EPSG:23700", np.array([650_000.0, 240_000.0])
 def village(tmp_path_factory):
     """The folder with cloud and old map, the true footprints' rings, and how many buildings have gone or come."""
     folder = tmp_path_factory.mktemp("village")
-    *arrays, true, old_map = simulate_village(size=90.0, density=40.0, map_changes=0.25, seed=5)
+    *arrays, true, old_map = simulate_village(size=80.0, density=30.0, map_changes=0.25, seed=5)
     made = dict(zip(simulate_village.stage.creates, arrays))
     xyz = made["xyz"] + [*CORNER, 120.0]
     colors = {name: made[name] for name in ("red", "green", "blue")}

@@ -17,15 +17,23 @@ from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.las_files import vlr
 
 
-@pytest.fixture
-def good(tmp_path, rng):
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
     """A sound file of each kind, as bytes."""
+    rng, folder, found = np.random.default_rng(20190613), tmp_path_factory.mktemp("good"), {}
     cloud = create_cloud({"xyz": rng.uniform(0, 100, (60_000, 3)), "intensity": rng.integers(0, 9, 60_000)})
-    found = {}
     for kind in (".las", ".laz", ".copc.laz"):
-        write_cloud(cloud, tmp_path / f"good{kind}")
-        found[kind] = (tmp_path / f"good{kind}").read_bytes()
+        write_cloud(cloud, folder / f"good{kind}")
+        found[kind] = (folder / f"good{kind}").read_bytes()
     return found
+
+
+@pytest.fixture
+def good(made, tmp_path):
+    """A sound file of each kind in the folder of the test, as bytes."""
+    for kind, raw in made.items():
+        (tmp_path / f"good{kind}").write_bytes(raw)
+    return made
 
 
 def refuse(path, message):

@@ -547,7 +547,7 @@ def test_only_steps_that_the_wanted_outputs_need_are_run_in_tiles(tmp_path):
     write_cloud(create_cloud({"xyz": np.column_stack([x, y, z])}), tmp_path / "a.las")
     pipeline, made = PIPELINES["detect_buildings"], {}
     for name, wanted in (("all", None), ("cloud", ()), ("footprints", ("footprints",))):
-        options = TilesOptions(workers=Workers(1), block_side=40.0, wanted=wanted)
+        options = TilesOptions(workers=Workers(1), block_side=60.0, wanted=wanted)
         made[name] = run_in_tiles(pipeline, [tmp_path / "a.las"], tmp_path / name, options=options)
     classes = [read_cloud(tmp_path / name / "a.laz").get("classification") for name in made]
     assert (classes[0] == classes[1]).all()
