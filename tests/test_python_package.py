@@ -15,6 +15,7 @@ import pytest
 from lidar_buildings.algorithms import packages
 
 ROOT = Path(__file__).resolve().parent.parent
+TOWN = ("--size", "100", "--density", "3", "--buildings", "20")
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +63,7 @@ def test_what_it_needs_is_what_the_plugin_needs(wheel):
 
 
 def test_a_town_is_made_and_its_buildings_are_found(run, tmp_path):
-    made = run("simulate-town", "--size", "120", "--buildings", "20", "--output", "town.laz")
+    made = run("simulate-town", *TOWN, "--output", "town.laz")
     assert made.returncode == 0, made.stderr
     found = run("detect", "town.laz", "--output", "classified.laz", "--footprints", "buildings.gpkg")
     assert found.returncode == 0, found.stderr
@@ -77,7 +78,7 @@ def test_a_town_is_made_and_its_buildings_are_found(run, tmp_path):
 def test_it_is_imported_as_the_documentation_says(run):
     text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
     blocks = [block.split("```")[0] for block in text.split("```python\n")[1:]]
-    assert run("simulate-town", "--size", "120", "--buildings", "20", "--output", "tile.laz").returncode == 0
+    assert run("simulate-town", *TOWN, "--output", "tile.laz").returncode == 0
     done = run(python="\n".join([*blocks, "print(len(footprints.geometries), (classification == 2).mean())"]))
     assert done.returncode == 0, done.stderr
     buildings, ground = map(float, done.stdout.split())

@@ -55,7 +55,7 @@ def test_the_values_are_those_of_one_run(town, monkeypatch):
     given = {"footprints": layer_of(rings, cloud.origin)}
     whole = run_stage(HEIGHTS, cloud, None, Monitor(), given).layers["buildings"]
     survey = open_survey([folder / "west.las", folder / "east.las"])
-    monkeypatch.setattr(features_in_blocks, "side_of_blocks", lambda *_: 40.0)
+    monkeypatch.setattr(features_in_blocks, "side_of_blocks", lambda *_: 75.0)
     monitor = Monitor()
     found = measure_features(HEIGHTS, survey, layer_of(rings, survey.origin), monitor)
     assert not monitor.warnings

@@ -23,7 +23,7 @@ from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import roof
 
-DETECT = PIPELINES["detect_buildings"]
+DETECT, TERRAIN = PIPELINES["detect_buildings"], PIPELINES["model_terrain"]
 
 
 @pytest.fixture
@@ -72,8 +72,11 @@ def started(arguments, folder):
 
 
 @pytest.fixture
-def cluster(tmp_path):
-    """A scheduler and two workers on loopback, with certificates; their address, certificates and processes."""
+def cluster(tmp_path, request):
+    """A scheduler and two workers, or as many as asked for, on loopback, with certificates.
+
+    Their address, certificates and processes, and a function that starts another worker.
+    """
     pytest.importorskip("distributed")
     if shutil.which("openssl") is None:
         pytest.skip("openssl is not installed")
@@ -86,10 +89,14 @@ def cluster(tmp_path):
         port = free.getsockname()[1]
     address = f"tls://127.0.0.1:{port}"
     processes = [started(["dask_scheduler", "--host", address, "--no-dashboard", *tls], folder)]
-    for _ in range(2):
+
+    def join():
         one = ["dask_worker", address, "--nthreads", "1", "--no-dashboard", "--no-nanny", *tls]
         processes.append(started(one, folder))
-    yield address, files, processes
+
+    for _ in range(getattr(request, "param", 2)):
+        join()
+    yield address, files, processes, join
     for process in processes:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
@@ -110,11 +117,11 @@ class Killing(Monitor):
 
 
 def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile, cluster, tmp_path):
-    address, files, processes = cluster
-    expected = run_in_tiles(DETECT, [tile], tmp_path / "here", options=TilesOptions(Workers(processes=1), 20.0))
+    address, files, processes, _ = cluster
+    expected = run_in_tiles(DETECT, [tile], tmp_path / "here", options=TilesOptions(Workers(processes=1), 30.0))
     workers = Workers(scheduler=address, certificates=files)
     begun = time.monotonic()
-    options = TilesOptions(workers, 20.0)
+    options = TilesOptions(workers, 30.0)
     outcome = run_in_tiles(DETECT, [tile], tmp_path / "there", Killing(processes[1]), options)
     assert time.monotonic() - begun < 120
     assert processes[1].poll() is not None
@@ -128,7 +135,7 @@ def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile,
 @pytest.mark.slow
 def test_a_scheduler_that_ends_is_a_sentence_and_the_run_goes_on_with_another(tile, cluster, tmp_path):
     """It was Python's CancelledError, without a word."""
-    address, files, processes = cluster
+    address, files, processes, _ = cluster
     options = TilesOptions(Workers(scheduler=address, certificates=files), 20.0)
     begun = time.monotonic()
     with pytest.raises(ValueError, match="The Dask scheduler has ended or dropped the work; start it and the same"):
@@ -154,18 +161,15 @@ class Joining(Monitor):
             self.start = None
 
 
+@pytest.mark.parametrize("cluster", [0], indirect=True)
 def test_a_scheduler_without_workers_is_said(tile, cluster, tmp_path, monkeypatch):
     """The run waited for ever, without a word."""
     monkeypatch.setattr(workers_module, "BETWEEN_MESSAGES", 1.0)
-    address, files, processes = cluster
-    command = processes[1].args
-    for process in processes[1:]:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    monitor = Joining(lambda: processes.append(subprocess.Popen(command, cwd=tmp_path, start_new_session=True)))
-    options = TilesOptions(Workers(scheduler=address, certificates=files), 20.0)
-    assert run_in_tiles(DETECT, [tile], tmp_path / "there", monitor, options).failures == []
-    assert [one for one in monitor.infos if one.startswith("Waiting for 9 of 9 tasks: the Dask scheduler has no work")]
+    address, files, _, join = cluster
+    monitor = Joining(join)
+    options = TilesOptions(Workers(scheduler=address, certificates=files), 30.0)
+    assert run_in_tiles(TERRAIN, [tile], tmp_path / "there", monitor, options).failures == []
+    assert [one for one in monitor.infos if one.startswith("Waiting for 6 of 6 tasks: the Dask scheduler has no work")]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a script is no program on Windows")
