@@ -191,9 +191,9 @@ def scanned(
 
 @lru_cache(maxsize=1)
 def scene() -> dict[str, np.ndarray]:
-    """A flat roof, a gable, a crown, a wall, a tank and two stray points on a slope of 40 m by 40 m, 3 to 12 per m²."""
+    """A flat roof, a gable, a crown, a wall, a tank and two stray points on a slope of 40 m by 40 m, 4 to 12 per m²."""
     rng = np.random.default_rng(42)
-    ground = scanned(rng, 0, 0, 40, 40, 3)
+    ground = scanned(rng, 0, 0, 40, 40, 4)
     houses = [scanned(rng, 5, 5, 12, 8, 6), scanned(rng, 22, 20, 9, 14, 6)]
     crown = scanned(rng, 28, 6, 6, 6, 12)
     for west, south, east, north in ((5, 5, 17, 13), (22, 20, 31, 34)):

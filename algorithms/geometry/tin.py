@@ -262,16 +262,31 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
     ndarray of shape (m,), or fewer
         Residuals (m): measurement noise and what the surface bends within its own spacing.
     """
+    return node_fits(nodes, n_neighbors, most)[0]
+
+
+def node_fits(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] = None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the residuals of nodes, see :func:`node_residuals`, and the distance (m) of each to its nearest neighbor.
+
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 3), float64
+        Points of a surface (m), m > 3.
+    n_neighbors : int
+        Neighbors in plan that the plane is fitted to.
+    most : int, optional
+        Size of the sample, about; all nodes, unless given.
+    """
     count = min(n_neighbors, len(nodes) - 1)
     tree = spatial.cKDTree(nodes[:, :2])
     # Sample by square decimeters, so that the choice depends neither on the order of nodes nor on the others.
     number = scattered(np.floor(10.0 * nodes[:, :2]).astype(np.int64))
     taken = np.flatnonzero(number <= max(1.0 / max(1, len(nodes) // (most or len(nodes))), number.min()))
-    residuals = np.empty(len(taken))
+    residuals, nearest = np.empty((2, len(taken)))
 
     def fit(sample: np.ndarray) -> None:
         rows = taken[sample]
-        neighbors = tree.query(nodes[rows, :2], k=count + 1)[1][:, 1:]
+        apart, neighbors = (found[:, 1:] for found in tree.query(nodes[rows, :2], k=count + 1))
         design = nodes[neighbors] - nodes[rows, None]
         heights = design[..., 2].copy()
         # The plane through offsets is slope . (x, y) + level.
@@ -279,10 +294,10 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
         # A small term on the diagonal keeps the equations of collinear neighbors solvable.
         normal = np.swapaxes(design, 1, 2) @ design + 1e-6 * np.eye(3)
         right = np.swapaxes(design, 1, 2) @ heights[..., None]
-        residuals[sample] = -np.linalg.solve(normal, right)[:, 2, 0]
+        residuals[sample], nearest[sample] = -np.linalg.solve(normal, right)[:, 2, 0], apart[:, 0]
 
     in_chunks(fit, np.arange(len(residuals)), ROWS_AT_ONCE, Monitor())
-    return residuals
+    return residuals, nearest
 
 
 def robust_deviation(residuals: np.ndarray, floor: float = 0.01) -> float:

@@ -8,8 +8,7 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..geometry.grid import plan_box
-from ..geometry.tin import Tin, node_residuals, robust_deviation
-from ..packages import spatial
+from ..geometry.tin import Tin, node_fits, node_residuals, robust_deviation
 from ..rules import rule, rules
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from ..sampling.surface_noise import SURFACES
@@ -54,23 +53,26 @@ class JoinRules:
 
     def limits(self, nodes: np.ndarray) -> tuple[float, float]:
         """Return the largest distance (m) and angle (°) at which a point joins the TIN of ``nodes``."""
-        return self.distance(nodes), self.angle(nodes)
+        # Roughness is that of a sample; of fewer nodes it is that of all, as the angle is.
+        fits = node_fits(nodes) if self.estimates_angle and 3 < len(nodes) < 2 * SURFACES.sample else None
+        return self.distance(nodes, fits), self.angle(nodes, fits)
 
-    def angle(self, nodes: np.ndarray) -> float:
-        """Return the largest angle (°) at which a point joins the TIN of ``nodes``."""
+    def angle(self, nodes: np.ndarray, fits: Optional[tuple[np.ndarray, np.ndarray]] = None) -> float:
+        """Return the largest angle (°) at which a point joins the TIN of ``nodes``, whose ``fits`` may be known."""
         if not self.estimates_angle or len(nodes) <= 3:
             return self.max_angle
-        nearest = spatial.cKDTree(nodes[:, :2]).query(nodes[:, :2], 2)[0][:, 1]
-        angles = np.degrees(np.arctan2(np.abs(node_residuals(nodes)), nearest))
+        residuals, nearest = fits or node_fits(nodes)
+        angles = np.degrees(np.arctan2(np.abs(residuals), nearest))
         return min(self.max_angle, DENSIFICATION.deviations * robust_deviation(angles, 0.0))
 
-    def distance(self, nodes: np.ndarray) -> float:
-        """Return the largest distance (m) at which a point joins the TIN of ``nodes``."""
+    def distance(self, nodes: np.ndarray, fits: Optional[tuple[np.ndarray, np.ndarray]] = None) -> float:
+        """Return the largest distance (m) at which a point joins the TIN of ``nodes``, as :meth:`angle`."""
         if self.max_distance is not None:
             return self.max_distance
         if len(nodes) <= 3:
             return np.inf
-        rough = DENSIFICATION.deviations * surface_roughness(nodes, self.least)
+        roughness = robust_deviation(fits[0], self.least) if fits else surface_roughness(nodes, self.least)
+        rough = DENSIFICATION.deviations * roughness
         return max(rough, rough / 2 + self.bend)
 
 

@@ -119,7 +119,8 @@ def test_a_raster_is_a_grid_at_its_place(tile, tmp_path):
 def test_the_same_as_the_chain_in_memory(tmp_path, capsys):
     cloud, footprints, page = tmp_path / "v.laz", tmp_path / "f.geojson", tmp_path / "r.html"
     made = tmp_path / "c.laz"
-    simulate = ["simulate-town", "--size", "100", "--density", "4", "--seed", "3", "--output", str(cloud), "--buildings", "20"]
+    small = ["--size", "100", "--density", "4", "--seed", "3", "--buildings", "20"]
+    simulate = ["simulate-town", *small, "--output", str(cloud)]
     assert main(simulate) == 0
     asked = ["--output", str(made), "--footprints", str(footprints), "--report", str(page)]
     assert main(["detect", str(cloud), "--min-area", "8", *asked]) == 0
