@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.line_segments import is_valid
 from ..geometry.polygon_overlap import meeting_boxes
+from ..geometry.rings import is_valid
 from ..stage import Monitor
 from .facade_frame import Frame, intersection_line
 from .facade_outline import ring_of_lines

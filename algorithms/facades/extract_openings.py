@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..criteria import DEVIATIONS, MAJORITY
-from ..geometry.line_segments import is_valid
+from ..geometry.rings import is_valid
 from ..packages import spatial
 from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable

@@ -10,10 +10,9 @@ import numpy as np
 from ..criteria import PARALLEL, ROUNDING
 from ..footprints.outline_pieces import sampled
 from ..geometry.groups import least_of
-from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
 from ..geometry.ring_directions import direction_weights, main_directions
 from ..geometry.ring_drawing import Prices, draw_ring
-from ..geometry.rings import signed_area
+from ..geometry.rings import are_inside, edge_distances, is_valid, nearest_edge_distances, signed_area
 from ..packages import spatial
 from .alpha_shape import trace_outlines, triangulated
 

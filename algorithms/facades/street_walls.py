@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.line_segments import is_valid
+from ..geometry.rings import is_valid
 from ..rules import rules
 from ..stage import LayerFeatures
 from .facade_outline import ring_of_lines

@@ -9,10 +9,9 @@ import numpy as np
 from ..geometry.grid import plan_box
 from ..geometry.groups import components, split_groups
 from ..geometry.level_lines import level_lines
-from ..geometry.line_segments import is_inside
 from ..geometry.polygon_overlap import SQUARE, in_squares, meeting_boxes
 from ..geometry.ring_directions import N_STEPS, RingPieces, direction_weights, main_directions, weights_of_pieces
-from ..geometry.rings import perimeter, signed_area
+from ..geometry.rings import is_inside, perimeter, signed_area
 from ..packages import spatial
 from .soft_shares import Shares, find_shares
 

@@ -9,11 +9,10 @@ import numpy as np
 from ..criteria import MICROMETER
 from ..geometry.grid import plan_box
 from ..geometry.kept_areas import welded, with_areas
-from ..geometry.line_segments import distances_to_rings
 from ..geometry.points_in_polygons import are_within
 from ..geometry.polygon_overlap import as_polygons, overlaps
 from ..geometry.ring_directions import deviations
-from ..geometry.rings import perimeter, polygon_area, sampled_rings, sides_of_rings
+from ..geometry.rings import distances_to_rings, perimeter, polygon_area, sampled_rings, sides_of_rings
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable
 from .drawn_blocks import BlockDrawing, draw_block
 from .outline_pieces import OutlinePiece, blocks_of, sampled, shared_directions

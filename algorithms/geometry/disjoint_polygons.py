@@ -7,8 +7,7 @@ import numpy as np
 from ..criteria import MICROMETER
 from .arrangement import Arrangement, sides_of
 from .groups import components
-from .line_segments import are_inside
-from .rings import sides_of_rings
+from .rings import are_inside, sides_of_rings
 
 # A polygon: its closed rings (k, 2), m, holes clockwise; of several parts, the exteriors of all.
 Rings = list[np.ndarray]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..footprints.footprint_attributes import RIDGE
 from ..geometry.groups import components, placed
-from ..geometry.line_segments import distances_to_rings
+from ..geometry.rings import distances_to_rings
 from ..sampling.points_on_top import are_on_roof, distances, root_mean_square
 from .mending import LARGE, mended
 from .overhangs import overhanging, wall_rings

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..criteria import MICROMETER
 from ..geometry.groups import components, items, split_groups, topmost
-from ..geometry.line_segments import nearest_edge_distances
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons
 from ..geometry.polylines import simplify
+from ..geometry.rings import nearest_edge_distances
 from ..geometry.tiled_tin import TiledTin
 from ..packages import spatial
 from ..stage import Field, LayerFeatures, Monitor

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..criteria import MAJORITY
-from ..geometry.line_segments import edge_distances
-from ..geometry.rings import sides_of_rings, signed_area
+from ..geometry.rings import edge_distances, sides_of_rings, signed_area
 from ..geometry.subdivision import SNAP
 from ..sampling.density import DENSITY, link_distance
 from .mending import connected

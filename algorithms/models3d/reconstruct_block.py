@@ -8,7 +8,7 @@ import numpy as np
 
 from ..facades.plan_segments import PlanSegments, facade_segments
 from ..facades.street_walls import fitted_to_walls
-from ..geometry.line_segments import nearest_edge_distances
+from ..geometry.rings import nearest_edge_distances
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, TextFile, stage, tunable

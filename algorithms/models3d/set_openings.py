@@ -8,8 +8,8 @@ import numpy as np
 
 from ..criteria import MAJORITY
 from ..facades.facade_frame import frame_of
-from ..geometry.line_segments import are_inside, is_valid
 from ..geometry.polygons import area_vector
+from ..geometry.rings import are_inside, is_valid
 from .solids import WALL, Solid
 
 WINDOW, DOOR = "window", "door"

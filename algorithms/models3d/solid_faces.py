@@ -9,8 +9,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.line_segments import polygons_of
-from ..geometry.rings import rings_of_edges
+from ..geometry.rings import polygons_of, rings_of_edges
 from .solid_levels import BASE, Levels, Position
 from .solids import GROUND, ROOF, SOFFIT, WALL, Ring, Solid, edges_around, groups_of
 

@@ -8,10 +8,9 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from ..criteria import MILLIMETER
-from ..geometry.line_segments import edge_distances, nearest_edge_distances
 from ..geometry.points_in_polygons import are_within
 from ..geometry.polygons import axes_across
-from ..geometry.rings import sides_of_rings, signed_area
+from ..geometry.rings import edge_distances, nearest_edge_distances, sides_of_rings, signed_area
 from ..packages import spatial
 from ..rules import rules
 from .face_triangles import triangulate_face

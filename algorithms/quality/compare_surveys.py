@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..geometry.groups import components, split_groups
-from ..geometry.line_segments import distances_to_rings
+from ..geometry.rings import distances_to_rings
 from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..footprints.soft_shares import Lattice
 from ..geometry.cell_polygons import cell_polygons
-from ..geometry.line_segments import is_valid
 from ..geometry.points_in_polygons import are_within
 from ..geometry.polygon_overlap import as_polygons, overlaps
-from ..geometry.rings import perimeter, polygon_area, sides_of_rings
+from ..geometry.rings import is_valid, perimeter, polygon_area, sides_of_rings
 from ..geometry.subdivision import Subdivision
 from ..packages import spatial
 from ..stage import Monitor

@@ -9,10 +9,9 @@ import numpy as np
 
 from ..criteria import PARALLEL
 from ..geometry.groups import components, split_groups
-from ..geometry.line_segments import is_valid
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import Polygons
-from ..geometry.rings import along_sides
+from ..geometry.rings import along_sides, is_valid
 from ..packages import spatial
 from ..stage import Monitor
 from .building_maps import BuildingMap

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.line_segments import distances_to_rings
 from ..geometry.ring_directions import along_two_directions
-from ..geometry.rings import sampled_rings
+from ..geometry.rings import distances_to_rings, sampled_rings
 
 # Step (m) of the samples between which the distance of two outlines is measured: below the accuracy of outlines.
 _STEP = 0.1

@@ -6,9 +6,8 @@ import numpy as np
 
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import Grid, connected_cells, grid_over
-from ..geometry.line_segments import is_valid
 from ..geometry.polylines import simplify_ring
-from ..geometry.rings import signed_area
+from ..geometry.rings import is_valid, signed_area
 from ..planes.least_squares_planes import planes_of
 from ..stage import Field, LayerFeatures
 

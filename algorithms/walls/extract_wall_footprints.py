@@ -13,9 +13,8 @@ from ..criteria import MAJORITY
 from ..geometry.disjoint_polygons import divide_overlap
 from ..geometry.grid import SparsePointsError
 from ..geometry.groups import members
-from ..geometry.line_segments import polygons_of
 from ..geometry.polygon_overlap import as_polygons, overlaps
-from ..geometry.rings import perimeter, signed_area
+from ..geometry.rings import perimeter, polygons_of, signed_area
 from ..params import MIN_MAPPED_AREA, SEED
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing

@@ -11,8 +11,7 @@ import numpy as np
 from ..criteria import MILLIMETER
 from ..geometry.arrangement import Arrangement
 from ..geometry.groups import components, members
-from ..geometry.line_segments import polygons_of
-from ..geometry.rings import perimeter, signed_area
+from ..geometry.rings import perimeter, polygons_of, signed_area
 from ..packages import csgraph, sparse
 from ..params import MIN_MAPPED_AREA, SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable

@@ -8,8 +8,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.line_segments import nearest_edge_distances
-from ..geometry.rings import perimeter
+from ..geometry.rings import nearest_edge_distances, perimeter
 from ..stage import Monitor
 from .cheapest_outline import OutlineCells, simplified
 from .roof_outline import RoofCover, RoofOutline

@@ -10,8 +10,8 @@ from qgis.core import QgsVectorLayer
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.footprints.footprint_points import by_easting
-from lidar_buildings.algorithms.geometry.line_segments import is_valid
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
+from lidar_buildings.algorithms.geometry.rings import is_valid
 from lidar_buildings.algorithms.quality.map_changes import CHANGED, GONE, NEW, UNCHANGED
 from lidar_buildings.algorithms.quality.update_map import update_map
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.geometry.level_lines import level_lines
-from lidar_buildings.algorithms.geometry.line_segments import are_inside, is_valid
-from lidar_buildings.algorithms.geometry.rings import signed_area
+from lidar_buildings.algorithms.geometry.rings import are_inside, is_valid, signed_area
 
 
 def test_a_ring_has_an_exterior_and_a_hole():

@@ -5,8 +5,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.geometry import line_segments as module
-from lidar_buildings.algorithms.geometry.line_segments import (
+from lidar_buildings.algorithms.geometry import rings as module
+from lidar_buildings.algorithms.geometry.rings import (
     distances_to,
     edge_distances,
     farthest,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.geometry.line_segments import farthest
 from lidar_buildings.algorithms.geometry.polylines import simplify
+from lidar_buildings.algorithms.geometry.rings import farthest
 from lidar_buildings.tests.builders import L_SHAPE
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
 from lidar_buildings.algorithms.export.export_models import export_models
-from lidar_buildings.algorithms.geometry.line_segments import nearest_edge_distances
+from lidar_buildings.algorithms.geometry.rings import nearest_edge_distances
 from lidar_buildings.algorithms.models3d.building_facts import NamedModel
 from lidar_buildings.algorithms.models3d.building_models import BuildingModel
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ, cityjson_pieces

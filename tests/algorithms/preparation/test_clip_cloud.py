@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.geometry.line_segments import are_inside
+from lidar_buildings.algorithms.geometry.rings import are_inside
 from lidar_buildings.algorithms.preparation.clip_cloud import clip_cloud
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.geometry.line_segments import distances_to
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
-from lidar_buildings.algorithms.geometry.rings import signed_area
+from lidar_buildings.algorithms.geometry.rings import distances_to, signed_area
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.walls.extract_wall_footprints import extract_wall_footprints
