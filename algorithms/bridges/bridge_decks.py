@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry.components import connect
+from ..geometry.boxes import connect
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import items, placed, run_starts
 from ..geometry.sparse_voxels import one_per_voxel

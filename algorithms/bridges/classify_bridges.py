@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
 from ..geometry.adjacent_cells import DIRECTIONS
-from ..geometry.components import connect
+from ..geometry.boxes import connect
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..geometry.groups import least_of
 from ..packages import ndimage, spatial

@@ -166,3 +166,15 @@ def split_groups(group: np.ndarray, count: int) -> list[np.ndarray]:
     """Return the rows of each group from 0 to ``count`` - 1; rows of -1 are left out."""
     order = np.argsort(group, kind="stable")
     return np.split(order, np.searchsorted(group[order], np.arange(count + 1)))[1:-1]
+
+
+def number_large(component: np.ndarray, min_points: float) -> np.ndarray:
+    """Return ids (n,), int32, from 1 for components of at least ``min_points`` points and 0 for the others.
+
+    ``component`` holds numbers from 0; negative ones are no component.
+    """
+    inside = component >= 0
+    size = np.bincount(component[inside]) if inside.any() else np.zeros(0, np.int64)
+    large = (size >= min_points) & (size > 0)
+    number = np.where(large, np.cumsum(large), 0).astype(np.int32)
+    return placed(number[component[inside]], inside, len(component))

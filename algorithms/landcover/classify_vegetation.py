@@ -9,7 +9,7 @@ import numpy as np
 from ..cloud.asprs import VEGETATION, PointClass
 from ..cloud.reasons import Reason
 from ..criteria import MAJORITY
-from ..geometry.components import connect
+from ..geometry.boxes import connect
 from ..geometry.groups import least_of
 from ..neighborhoods.covariance import Nearest, reduce_neighborhoods, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import Shapes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..geometry.components import connect
+from ..geometry.boxes import connect
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import link_distance
 from ..stage import stage

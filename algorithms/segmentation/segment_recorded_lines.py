@@ -6,8 +6,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..geometry.components import number_large
-from ..geometry.groups import placed
+from ..geometry.groups import number_large, placed
 from ..packages import spatial
 from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise

@@ -6,8 +6,8 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.components import connect, number_large
-from ..geometry.groups import placed
+from ..geometry.boxes import connect
+from ..geometry.groups import number_large, placed
 from ..params import MIN_BUILDING_AREA, MIN_CLUSTER_HEIGHT, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable

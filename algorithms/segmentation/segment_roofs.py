@@ -10,8 +10,8 @@ import numpy as np
 
 from ..cloud.asprs import NOISE
 from ..cloud.reasons import Reason
-from ..geometry.components import connect, number_large
-from ..geometry.groups import placed
+from ..geometry.boxes import connect
+from ..geometry.groups import number_large, placed
 from ..neighborhoods.covariance import Nearest
 from ..params import POINT_DENSITY, POINT_SOURCE, SURFACE_NOISE
 from ..planes.planar_patches import segment_patches

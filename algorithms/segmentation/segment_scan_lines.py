@@ -7,8 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.boxes import by_first_point
-from ..geometry.components import number_large
-from ..geometry.groups import placed
+from ..geometry.groups import number_large, placed
 from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage, tunable

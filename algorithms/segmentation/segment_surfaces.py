@@ -7,9 +7,8 @@ from typing import Any, Optional
 import numpy as np
 
 from ..criteria import DEVIATIONS, PLANE_NEIGHBORS
-from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
-from ..geometry.groups import items, placed
+from ..geometry.groups import items, number_large, placed
 from ..params import POINT_DENSITY
 from ..planes.local_planes import Criteria, LocalPlanes, local_planes
 from ..planes.surface_growing import grow_planes, grow_surfaces

@@ -7,9 +7,8 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.boxes import by_first_point
-from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
-from ..geometry.groups import placed
+from ..geometry.groups import number_large, placed
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..planes.best_pairs import common_deviation, merge_best_pairs

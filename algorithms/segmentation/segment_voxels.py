@@ -7,8 +7,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.boxes import by_first_point
-from ..geometry.components import number_large
-from ..geometry.groups import placed
+from ..geometry.groups import number_large, placed
 from ..geometry.sparse_voxels import (
     close_voxels,
     dilate,

@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.components import connect
+from ..geometry.boxes import connect
 from ..geometry.grid import distinct, find_cells, grid_over
 from ..geometry.groups import least_of, split_groups
 from ..stage import Monitor

@@ -8,8 +8,8 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from lidar_buildings.algorithms.geometry import boxes
-from lidar_buildings.algorithms.geometry.boxes import by_first_point
-from lidar_buildings.algorithms.geometry.components import connect, number_large
+from lidar_buildings.algorithms.geometry.boxes import by_first_point, connect
+from lidar_buildings.algorithms.geometry.groups import number_large
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.monitors import Listening
