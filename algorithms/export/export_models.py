@@ -12,11 +12,10 @@ from ..models3d.set_openings import WINDOW
 from ..models3d.solids import GROUND, ROOF, TERRAIN, WALL
 from ..stage import InputLayer, MapFrame, Piece, TextFile, stage, tunable
 from .cityjson_faces import ENDINGS, read_cityjson
-from .exported_models import ExportedModel, exported_models
+from .exported_models import ExportedModel, exported_models, textured
 from .gltf import glb
 from .textured_cityjson import cityjson_pieces
 from .textured_obj import obj_pieces
-from .textures import textured
 from .tileset import tileset_pieces
 
 # The page around a file, with "@GLB@" in its place.

@@ -14,8 +14,7 @@ from ..geometry.polygons import area_vector
 from ..models3d.face_triangles import triangulate_face
 from ..models3d.solids import GROUND, TERRAIN
 from ..report.page import png
-from .exported_models import KINDS, ExportedModel, Face
-from .textures import Atlas, atlas_of
+from .exported_models import KINDS, Atlas, ExportedModel, Face, atlas_of
 
 # Colors (red, green, blue, 0 to 255) of roofs, walls, grounds, windows, doors, terrain and soffits, as in the styles of
 # layers, where soffits are among the walls.

@@ -11,8 +11,7 @@ from ..models3d.cityjson import RELIEF, SURFACES, Vertices, dumped, head_of, pla
 from ..models3d.solids import TERRAIN
 from ..report.page import png
 from ..stage import MapFrame, Piece
-from .exported_models import ExportedModel, Face
-from .textures import Atlas, atlas_of
+from .exported_models import Atlas, ExportedModel, Face, atlas_of
 
 # Level of detail of faces whose layers name none, and of terrain.
 _LEVEL, _LEVEL_OF_TERRAIN = "2", "1"

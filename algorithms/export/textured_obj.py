@@ -10,9 +10,8 @@ import numpy as np
 from ..models3d.wavefront import object_line, vertex_lines
 from ..report.page import png
 from ..stage import MapFrame, Piece
-from .exported_models import KINDS, ExportedModel
+from .exported_models import KINDS, ExportedModel, atlas_of
 from .gltf import COLORS, image_of, triangles_of
-from .textures import atlas_of
 
 
 def obj_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) -> Iterator[Piece]:

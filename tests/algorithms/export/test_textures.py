@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.export.export_models import export_models, glb_pieces
-from lidar_buildings.algorithms.export.textures import atlas_of
+from lidar_buildings.algorithms.export.exported_models import atlas_of
 from lidar_buildings.algorithms.report.page import png
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
 from lidar_buildings.tests.colored_models import BLUE, RED, ROOF, decoded, exported, points
