@@ -10,8 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.reasons import Reason
 from ..geometry.groups import split_groups
-from ..geometry.points_in_polygons import holders
-from ..geometry.polygon_overlap import as_polygons
+from ..geometry.polygon_overlap import as_polygons, holders
 from ..sampling.kinds import LASER
 from ..stage import InputLayer, LayerFeatures, Monitor
 from .roof_coverage import renumbered

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..criteria import DEVIATIONS
-from ..geometry.points_in_polygons import are_within
+from ..geometry.polygon_overlap import are_within
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import polygon_area, sampled_rings, sides_of_rings, signed_area
 from ..stage import Monitor

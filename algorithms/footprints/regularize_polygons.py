@@ -9,8 +9,7 @@ import numpy as np
 from ..criteria import MICROMETER
 from ..geometry.grid import plan_box
 from ..geometry.kept_areas import welded, with_areas
-from ..geometry.points_in_polygons import are_within
-from ..geometry.polygon_overlap import as_polygons, overlaps
+from ..geometry.polygon_overlap import are_within, as_polygons, overlaps
 from ..geometry.ring_directions import deviations
 from ..geometry.rings import distances_to_rings, perimeter, polygon_area, sampled_rings, sides_of_rings
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable

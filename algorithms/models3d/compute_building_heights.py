@@ -22,8 +22,7 @@ from ..footprints.footprint_points import (
     sound_rings,
     tell_without_area,
 )
-from ..geometry.points_in_polygons import are_in_polygons
-from ..geometry.polygon_overlap import as_polygons
+from ..geometry.polygon_overlap import are_in_polygons, as_polygons
 from ..geometry.rings import along_sides, polygon_area, sides_of_rings
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling

@@ -9,8 +9,7 @@ import numpy as np
 
 from ..criteria import MICROMETER
 from ..geometry.groups import components, items, split_groups, topmost
-from ..geometry.points_in_polygons import are_in_polygons
-from ..geometry.polygon_overlap import as_polygons
+from ..geometry.polygon_overlap import are_in_polygons, as_polygons
 from ..geometry.polylines import simplify
 from ..geometry.rings import nearest_edge_distances
 from ..geometry.tiled_tin import TiledTin

@@ -10,7 +10,7 @@ import numpy as np
 from ..criteria import MILLIMETER
 from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.groups import placed
-from ..geometry.points_in_polygons import are_within
+from ..geometry.polygon_overlap import are_within
 from ..geometry.rings import sides_of_rings
 from ..geometry.subdivision import SNAP, Subdivision
 from .roof_lines import find_roof_lines

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from ..criteria import MILLIMETER
-from ..geometry.points_in_polygons import are_within
+from ..geometry.polygon_overlap import are_within
 from ..geometry.polygons import axes_across
 from ..geometry.rings import edge_distances, nearest_edge_distances, sides_of_rings, signed_area
 from ..packages import spatial

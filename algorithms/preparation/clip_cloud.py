@@ -6,8 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.points_in_polygons import are_in_polygons
-from ..geometry.polygon_overlap import as_polygons
+from ..geometry.polygon_overlap import are_in_polygons, as_polygons
 from ..stage import InputLayer, LayerFeatures, stage, tunable
 
 

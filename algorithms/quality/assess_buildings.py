@@ -12,8 +12,7 @@ from ..cloud.asprs import NOISE, PointClass, parse_classes
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import Grid, connected_cells, find_cells, grid_over
 from ..geometry.groups import placed, topmost
-from ..geometry.points_in_polygons import are_in_polygons
-from ..geometry.polygon_overlap import as_polygons
+from ..geometry.polygon_overlap import are_in_polygons, as_polygons
 from ..params import IGNORED_CLASSES, MIN_BUILDING_AREA
 from ..report.page import Row, build_page, draw_map, outcome_of, percent, rows_of
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Report, stage, tunable

@@ -11,8 +11,7 @@ from ..footprints.footprint_points import rows_near
 from ..footprints.soft_shares import Lattice
 from ..geometry.grid import plan_box
 from ..geometry.groups import components, mask_of
-from ..geometry.points_in_polygons import are_within
-from ..geometry.polygon_overlap import as_polygons, meeting_boxes
+from ..geometry.polygon_overlap import are_within, as_polygons, meeting_boxes
 from ..geometry.rings import polygon_area, sides_of_rings
 from ..packages import ndimage, spatial
 from . import map_changes

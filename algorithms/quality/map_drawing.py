@@ -6,8 +6,7 @@ import numpy as np
 
 from ..footprints.soft_shares import Lattice
 from ..geometry.cell_polygons import cell_polygons
-from ..geometry.points_in_polygons import are_within
-from ..geometry.polygon_overlap import as_polygons, overlaps
+from ..geometry.polygon_overlap import are_within, as_polygons, overlaps
 from ..geometry.rings import is_valid, perimeter, polygon_area, sides_of_rings
 from ..geometry.subdivision import Subdivision
 from ..packages import spatial

@@ -9,8 +9,7 @@ import numpy as np
 
 from ..criteria import PARALLEL
 from ..geometry.groups import components, split_groups
-from ..geometry.points_in_polygons import are_in_polygons
-from ..geometry.polygon_overlap import Polygons
+from ..geometry.polygon_overlap import Polygons, are_in_polygons
 from ..geometry.rings import along_sides, is_valid
 from ..packages import spatial
 from ..stage import Monitor

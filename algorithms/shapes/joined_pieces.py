@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.grid import grid_over
-from ..geometry.points_in_polygons import are_in_polygons
-from ..geometry.polygon_overlap import as_polygons, shared_areas
+from ..geometry.polygon_overlap import are_in_polygons, as_polygons, shared_areas
 from ..geometry.polygons import area_vector, axes_across
 from ..geometry.rings import signed_area
 from ..stage import LayerFeatures, Monitor

@@ -12,7 +12,7 @@ from ..footprints.drawn_blocks import BlockDrawing, draw_block
 from ..footprints.outline_pieces import blocks_of, pieces_alone
 from ..footprints.soft_shares import LEAST_SPACING
 from ..geometry.grid import plan_box
-from ..geometry.points_in_polygons import are_within
+from ..geometry.polygon_overlap import are_within
 from ..geometry.rings import sides_of_rings, signed_area
 from ..packages import ndimage
 from .surroundings import CELL, without_nested

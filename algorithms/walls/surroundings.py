@@ -9,7 +9,7 @@ import numpy as np
 from ..criteria import MAJORITY
 from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
 from ..geometry.groups import mask_of, run_starts
-from ..geometry.points_in_polygons import are_within
+from ..geometry.polygon_overlap import are_within
 from ..geometry.rings import along_sides, sides_of_rings, signed_area
 from ..packages import ndimage
 from ..sampling.cloud_sampling import CloudSampling

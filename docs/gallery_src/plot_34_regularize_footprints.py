@@ -11,7 +11,7 @@ import numpy as np
 
 from lidar_buildings.algorithms.geometry.cell_outlines import outline_cells
 from lidar_buildings.algorithms.geometry.grid import Grid
-from lidar_buildings.algorithms.geometry.points_in_polygons import are_within
+from lidar_buildings.algorithms.geometry.polygon_overlap import are_within
 from lidar_buildings.algorithms.geometry.rings import sides_of_rings
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures

@@ -5,8 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.geometry.points_in_polygons import are_in_polygons
-from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons
+from lidar_buildings.algorithms.geometry.polygon_overlap import are_in_polygons, as_polygons
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline, run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor

@@ -8,8 +8,7 @@ import numpy as np
 
 from lidar_buildings.algorithms.buildings.reviewed_buildings import DELETED, KEPT, ReviewedBuildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.geometry.points_in_polygons import holders
-from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons
+from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, holders
 from lidar_buildings.algorithms.quality.report_buildings import SURE
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor

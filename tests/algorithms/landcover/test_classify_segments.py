@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import parse_classes
-from lidar_buildings.algorithms.geometry.points_in_polygons import are_within
+from lidar_buildings.algorithms.geometry.polygon_overlap import are_within
 from lidar_buildings.algorithms.geometry.rings import polygon_area, sides_of_rings
 from lidar_buildings.algorithms.landcover.classify_segments import classify_segments
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor

@@ -8,7 +8,7 @@ import pytest
 from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
 from lidar_buildings.algorithms.export.export_models import export_models
 from lidar_buildings.algorithms.export.gltf import glb
-from lidar_buildings.algorithms.geometry.points_in_polygons import are_within
+from lidar_buildings.algorithms.geometry.polygon_overlap import are_within
 from lidar_buildings.algorithms.geometry.rings import distances_to_rings, polygon_area, sides_of_rings
 from lidar_buildings.algorithms.models3d.building_facts import NamedModel
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON

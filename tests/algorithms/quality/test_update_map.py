@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.geometry.points_in_polygons import are_within
-from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
+from lidar_buildings.algorithms.geometry.polygon_overlap import are_within, as_polygons, overlaps
 from lidar_buildings.algorithms.geometry.rings import is_valid, polygon_area, sides_of_rings
 from lidar_buildings.algorithms.quality import update_map as updating
 from lidar_buildings.algorithms.quality.map_changes import (
