@@ -16,13 +16,12 @@ from ..sampling.sufficiency import doubted, why_doubtful
 from ..sampling.surface_noise import plane_roughness
 from ..segmentation.cluster_measures import pulses_going_on
 from ..stage import Monitor, stage, tunable
-from .cluster_decisions import Decisions, decide_by_entropy, no_clusters, written_to_points
+from .cluster_decisions import Decisions, decide_by_entropy, no_clusters, weakest_evidence, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_evidence import ClusterEvidence, with_penetration, with_surroundings
 from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, held_means, reference_entropies, split_of_whole
 from .surface_evidence import decide_in_images, green_clusters, without_green
-from .weakest_evidence import weakest_evidence
 
 
 @rules

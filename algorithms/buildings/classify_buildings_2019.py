@@ -11,11 +11,10 @@ from ..packages import cluster
 from ..params import MIN_BUILDING_AREA, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS, nearest_points
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, stage, tunable
-from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
+from .cluster_decisions import decide_by_entropy, no_clusters, weakest_evidence, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, Split, split_of_whole
-from .weakest_evidence import weakest_evidence
 
 # Reach of neighborhoods (m): 1.1 m for 4 m², more in sparse clouds.
 _REACH = 5.0
