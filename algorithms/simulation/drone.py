@@ -75,6 +75,16 @@ class LineScan:
     range_noise: float  #: Standard deviation of distances, m
     seed: int  #: The same seed makes the same points
 
+    def times(self, n_lines: int, pulses: np.ndarray, most: float) -> Iterator[np.ndarray]:
+        """Yield the times (s) of the pulses of some lines each, of ``most`` (s) together.
+
+        A turn of the mirror is a line, of which ``pulses`` (k,) are sent after some shares.
+        """
+        step = max(1, min(_BLOCK // len(pulses), int(most * self.line_rate)))
+        for line in range(0, n_lines, step):
+            lines = np.arange(line, min(line + step, n_lines))
+            yield (lines[:, None] + pulses).ravel() / self.line_rate
+
 
 @dataclass(frozen=True)
 class Flight:
@@ -113,7 +123,9 @@ class Flight:
     ) -> dict[str, np.ndarray]:
         """Return the dimensions of a scene scanned by some of the scanners, by name, in the order of time."""
         world, parts = DroneWorld(scene, scan.max_range), []
-        blocks = [(name, time) for name in scanners for time in self._blocks(scan)]
+        pulses = np.arange(pulses_per_line(scan.angular_step)) * (scan.angular_step / 360.0)
+        times = list(scan.times(int(self.duration * scan.line_rate), pulses, _BLOCK_TIME))
+        blocks = [(name, time) for name in scanners for time in times]
         generators = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
         for i, (name, time) in enumerate(blocks):
             rng = generators[name]
@@ -127,15 +139,6 @@ class Flight:
             parts.append(part)
             monitor.progress((i + 1) / len(blocks))
         return in_time_order(parts)
-
-    def _blocks(self, scan: LineScan) -> Iterator[np.ndarray]:
-        """Yield the times (s) of the pulses of some scan lines each; a turn of the mirror is a line."""
-        per_line, rate = pulses_per_line(scan.angular_step), scan.line_rate
-        n_lines, step = int(self.duration * rate), max(1, min(_BLOCK // per_line, int(_BLOCK_TIME * rate)))
-        for line in range(0, n_lines, step):
-            lines = np.arange(line, min(line + step, n_lines))
-            pulse = np.arange(per_line) * (scan.angular_step / 360.0)
-            yield (lines[:, None] + pulse).ravel() / rate
 
     def _pulses(self, scanner: str, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
         """Return the beams of pulses, and directions to the left of the drone (n, 3)."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,9 +14,6 @@ from .scene import Scene
 # Angle (°) from the perpendicular of the drive to the upright plane in which each scanner turns, positive ahead, by
 # scanner number, the source id of its points. As on most mapping vehicles, each scanner sees one side of a recess.
 PLANES = {1: 45.0, 2: -45.0}
-
-# Most pulses worked on at once, which bounds memory.
-_BLOCK = 50_000
 
 # Longest distance (m) that the vehicle drives while it sends the pulses that are worked on at once.
 _BLOCK_WAY = 1.0
@@ -43,7 +39,9 @@ class Drive:
     def scanned(self, scene: Scene, scan: LineScan, monitor: Monitor) -> dict[str, np.ndarray]:
         """Return the dimensions of a scene scanned on the way by name, in the order of time."""
         world, parts = DroneWorld(scene, scan.max_range), []
-        blocks = [(number, time) for number in PLANES for time in self._blocks(scan)]
+        per_turn, n_lines = pulses_per_turn(scan.angular_step), max(1, int(self.length / self.speed * scan.line_rate))
+        times = list(scan.times(n_lines, np.arange(per_turn) / per_turn, _BLOCK_WAY / self.speed))
+        blocks = [(number, time) for number in PLANES for time in times]
         for i, (number, time) in enumerate(blocks):
             rng = np.random.default_rng([scan.seed, _STREAM, i])
             beams, left = self._pulses(PLANES[number], time, scan.line_rate)
@@ -55,15 +53,6 @@ class Drive:
             parts.append(part)
             monitor.progress((i + 1) / len(blocks))
         return in_time_order(parts)
-
-    def _blocks(self, scan: LineScan) -> Iterator[np.ndarray]:
-        """Yield the times (s) of the pulses of some scan lines each."""
-        per_line, rate = pulses_per_turn(scan.angular_step), scan.line_rate
-        n_lines = max(1, int(self.length / self.speed * rate))
-        step = max(1, min(_BLOCK // per_line, int(_BLOCK_WAY / self.speed * rate)))
-        for line in range(0, n_lines, step):
-            lines = np.arange(line, min(line + step, n_lines))
-            yield (lines[:, None] + np.arange(per_line) / per_line).ravel() / rate
 
     def _pulses(self, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
         """Return the beams of pulses at times (n,) (s) in a plane turned by ``turn`` (°).

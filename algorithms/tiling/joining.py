@@ -217,7 +217,7 @@ def join_features(
     own = np.array([block.box for block in blocks])[of_block]
     is_own = ((middle >= own[:, 0]) & (middle < own[:, 1])).all(axis=1)
     is_piece = np.concatenate(pieces) if declared.whole and pieces is not None else None
-    leader = leaders(features, declared, of_block, is_own, monitor, is_piece)
+    leader = leaders(features, declared, of_block, is_own, is_piece, monitor)
     own_id = np.asarray(features.columns.get(_ID, np.zeros(len(features))), np.int64)
     references = references or References([])
     keys = list(zip(of_block.tolist(), own_id.tolist()))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -29,12 +29,7 @@ _OFF = 0.2
 
 
 def leaders(
-    features: LayerFeatures,
-    layer: Layer,
-    of_block: np.ndarray,
-    is_own: np.ndarray,
-    monitor: Monitor,
-    is_piece: Optional[np.ndarray] = None,
+    features: LayerFeatures, layer: Layer, of_block: np.ndarray, is_own: np.ndarray, is_piece: Any, monitor: Monitor
 ) -> np.ndarray:
     """Return for each feature (n,) the one that stays in its place, itself where it stays; -1 where none does.
 
@@ -52,10 +47,10 @@ def leaders(
         Block of each.
     is_own : ndarray of shape (n,), bool
         Whether its middle lies in this block.
+    is_piece : ndarray of shape (n,), bool, or None
+        Which may have been cut off, where pieces can be put together.
     monitor : Monitor
         Receives progress.
-    is_piece : ndarray of shape (n,), bool, optional
-        Which may have been cut off, where pieces can be put together.
     """
     if layer.geometry != "Polygon" and not layer.radius:
         return np.where(is_own, np.arange(len(features)), -1)
