@@ -177,16 +177,10 @@ def _views(
         ends[..., axis], ends[..., 1 - axis] = along + [-beyond, beyond], across[:, None]
         return grid.in_plan(ends) @ turn.T + fixed
 
+    ways = ((roof.T, seen.T, of_grid.T, of_lattice[::-1]), (roof, seen, of_grid, of_lattice))
     return [
-        _View(
-            spacing,
-            step,
-            of_grid.T,
-            of_lattice[::-1],
-            partial(in_plan, axis=0),
-            *_evidence(roof.T, seen.T, step, along),
-        ),
-        _View(spacing, step, of_grid, of_lattice, partial(in_plan, axis=1), *_evidence(roof, seen, step, along)),
+        _View(spacing, step, nodes, of_nodes, partial(in_plan, axis=axis), *_evidence(heights, counts, step, along))
+        for axis, (heights, counts, nodes, of_nodes) in enumerate(ways)
     ]
 
 

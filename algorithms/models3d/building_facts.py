@@ -264,15 +264,8 @@ def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
         return {**facts, "kind": kind, "azimuth": math.nan if kind == SOFFIT else azimuth}
     z = solid.vertices[solid.faces[face][0]][:, 2]
     rms, on, rim = (getattr(one.model, name).get(solid.planes[face], math.nan) for name in _OF_PLANES)
-    heights = {"eave": float(z.min()), "ridge": float(z.max())}
-    return {
-        **facts,
-        "slope": slope,
-        "usable_area": area * on,
-        **heights,
-        "rms": rms,
-        "parapet": rim if slope < _FLAT else math.nan,
-    }
+    facts.update(slope=slope, usable_area=area * on, eave=float(z.min()), ridge=float(z.max()), rms=rms)
+    return {**facts, "parapet": rim if slope < _FLAT else math.nan}
 
 
 def roof_type(solids: Sequence[Solid]) -> str:

@@ -93,13 +93,8 @@ def mended(
     """
     found = []
     for spared in (_SPARED, 0):
-        mending = _Mending(
-            replace(partition, cells=partition.cells.copy(), label=partition.label.copy()),
-            xyz,
-            limits,
-            percentile,
-            spared,
-        )
+        own = replace(partition, cells=partition.cells.copy(), label=partition.label.copy())
+        mending = _Mending(own, xyz, limits, percentile, spared)
         found.append((*_mended(mending, base), mending))
         if mending.spared == spared:
             break

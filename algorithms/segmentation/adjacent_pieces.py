@@ -111,12 +111,8 @@ def _beside(
     first = is_beside.argmax(axis=1)
     opposite = is_beside & (np.einsum("ijk,ik->ij", across, across[position, first]) < 0)
     second = opposite.argmax(axis=1)
-    return np.column_stack(
-        [
-            np.where(is_beside.any(axis=1), found[position, first], -1),
-            np.where(opposite.any(axis=1), found[position, second], -1),
-        ]
-    )
+    one, other = found[position, first], found[position, second]
+    return np.column_stack([np.where(is_beside.any(axis=1), one, -1), np.where(opposite.any(axis=1), other, -1)])
 
 
 def _pairs(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, nearest: np.ndarray) -> Adjacency:
