@@ -240,7 +240,7 @@ def test_a_house_in_a_courtyard_and_an_annex_in_a_nook_stay_buildings(rng):
     assert joined(nook, roof(rng, 10.5, 10.5, 6, 6, 3)) == [0, 1]
 
 
-def test_the_order_of_points_changes_nothing(rng):
+def test_the_order_of_points_changes_no_stacked_roof(rng):
     main, stairs = without(roof(rng, 0, 0, 20, 12, 9), 7, 3, 5, 5), roof(rng, 8, 4, 3.5, 3, 11.4)
     xyz, number = np.concatenate([main, stairs]), np.repeat([0, 1], [len(main), len(stairs)])
     order = rng.permutation(len(xyz))
