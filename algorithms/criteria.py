@@ -8,6 +8,9 @@ MAJORITY = 0.5
 # Standard deviations within which normal errors lie, all but one of 370.
 DEVIATIONS = 3.0
 
+# Side of a cell (point spacings) that holds four points of a surface on average: chance leaves one of fifty empty.
+CELL_SPACINGS = 2.0
+
 # Points of a neighborhood whose plane shows a surface: nine degrees of freedom, so that its deviation is known to a
 # quarter.
 PLANE_NEIGHBORS = 12

@@ -24,15 +24,12 @@ from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import OutlinePiece, blocks_of, find_pieces, shared_directions
 from .roof_points import edge_weights, find_non_building_points, find_roof_points
 from .row_houses import ROWS, Houses, split_row
-from .soft_shares import APART, LEAST_SPACING, Shares, even_weights, find_shares
-
-# Tolerance (spacings) of outlines: samples along an edge lie within one spacing of it, and corners are rounded.
-_TOLERANCE_SPACINGS = 1.75
+from .soft_shares import APART, LEAST_SPACING, TOLERANCE_SPACINGS, Shares, even_weights, find_shares
 
 # Automatic tolerance in words, for the help.
 _AUTOMATIC_TOLERANCE = (
-    f"{_TOLERANCE_SPACINGS:g} times the mean spacing of the building points, at least "
-    f"{_TOLERANCE_SPACINGS * LEAST_SPACING:.2g} m."
+    f"{TOLERANCE_SPACINGS:g} times the mean spacing of the building points, at least "
+    f"{TOLERANCE_SPACINGS * LEAST_SPACING:.2g} m."
 )
 
 # The spacing is rounded to this many steps per factor of two, so that the same cloud with a tenth fewer points, or a
@@ -41,9 +38,6 @@ _STEPS_PER_OCTAVE = 4
 
 # Name of the mean distance of building points of the whole.
 _ROOF_SPACING = "roof_spacing"
-
-# Progress when the evidence is found, and when the outlines are drawn; attributes take the rest.
-_FOUND, _DRAWN = 0.4, 0.9
 
 
 @stage(
@@ -181,15 +175,15 @@ def extract_footprints(
             f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they stay in one."
         )
     if tolerance is None:
-        tolerance = _TOLERANCE_SPACINGS * spacing
+        tolerance = TOLERANCE_SPACINGS * spacing
         monitor.resolved(tolerance=tolerance)
-    how = BlockDrawing(spacing, tolerance / _TOLERANCE_SPACINGS, min_area, min_hole_area, merge_touching)
+    how = BlockDrawing(spacing, tolerance / TOLERANCE_SPACINGS, min_area, min_hole_area, merge_touching)
     measures = PointMeasures(
         xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason, weakest_evidence
     )
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     parts = _parts(measures, classification, building, cluster, spacing)
-    searching = monitor.part(0.0, _FOUND)
+    searching = monitor.part(0.0, 0.4)
     evidence = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), searching))
     unknown = [dict.fromkeys(one.shares, np.zeros(0)) for one in evidence]
     directions = _directions(evidence) if regularize else unknown
@@ -197,7 +191,7 @@ def extract_footprints(
     houses_of_parts = made_ahead(
         lambda number, _: _houses(parts[number], evidence[number], directions[number], measures, how),
         len(parts),
-        monitor.part(_FOUND, _DRAWN),
+        monitor.part(0.4, 0.9),
     )
     outlines = [
         [
@@ -212,7 +206,7 @@ def extract_footprints(
             outlines[number], parts[number].roof, parts[number].members, measures, spacing
         ),
         len(parts),
-        monitor.part(_DRAWN, 1.0),
+        monitor.part(0.9, 1.0),
     )
     attributes = [one for of_part in described for one in of_part]
     rings = [[ring + sampling.corner for ring in outlined.rings] for of_part in outlines for outlined in of_part]

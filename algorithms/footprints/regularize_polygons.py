@@ -15,11 +15,11 @@ from ..geometry.rings import distances_to_rings, perimeter, polygon_area, sample
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable
 from .drawn_blocks import BlockDrawing, draw_block
 from .outline_pieces import OutlinePiece, blocks_of, sampled, shared_directions
-from .soft_shares import LEAST_SPACING, Lattice, Shares
+from .soft_shares import LEAST_SPACING, TOLERANCE_SPACINGS, Lattice, Shares
 
-# Tolerance (scales) and distance of samples (scales): stairs of a raster are as high as its cells, and each sample is
-# of more than one of them. With samples one scale apart outlines of rasters have a fifth more corners, no closer.
-_TOLERANCE_SCALES, _SAMPLE_SCALES = 1.75, 1.5
+# Distance (scales) of samples: stairs of a raster are as high as its cells, and each sample is of more than one of
+# them. With samples one scale apart outlines of rasters have a fifth more corners, no closer.
+_SAMPLE_SCALES = 1.5
 
 # Automatic scale: the standard deviation across straight pieces times this; stairs of 1 m deviate by 0.25 m.
 _SCALE_DEVIATIONS = 2.5
@@ -81,8 +81,8 @@ def regularize_polygons(
         None,
         "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
         within="[0.1, 20] m",
-        automatic="1.75 times the length of the edges, or less where walls deviate less from straight lines, at "
-        f"least {_TOLERANCE_SCALES * LEAST_SPACING:.2g} m.",
+        automatic=f"{TOLERANCE_SPACINGS:g} times the length of the edges, or less where walls deviate less from "
+        f"straight lines, at least {TOLERANCE_SPACINGS * LEAST_SPACING:.2g} m.",
     ),
     monitor=None,
 ):
@@ -142,9 +142,9 @@ def regularize_polygons(
     corner = plan_box(np.concatenate([ring for rings in plan for ring in rings]))[0]
     local = [[ring - corner for ring in rings] for rings in plan]
     if tolerance is None:
-        tolerance = _TOLERANCE_SCALES * _scale([ring for rings in local for ring in rings])
+        tolerance = TOLERANCE_SPACINGS * _scale([ring for rings in local for ring in rings])
         monitor.resolved(tolerance=tolerance)
-    made = _drawn(local, tolerance / _TOLERANCE_SCALES, monitor)
+    made = _drawn(local, tolerance / TOLERANCE_SPACINGS, monitor)
     moved = [_farthest(new, old) for new, old in zip(made, local)]
     n_same = sum(new is old for new, old in zip(made, local))
     n_corners = [sum(len(ring) - 1 for rings in one for ring in rings) for one in (local, made)]

@@ -13,6 +13,7 @@ from typing import Callable
 
 import numpy as np
 
+from ..geometry.cheapest_labels import STEPS_OF_LABELS
 from ..geometry.groups import components, split_groups
 from ..packages import ndimage
 from ..rules import rule
@@ -70,9 +71,6 @@ _FIXED = 16.0
 # Number of mean-shift steps that move a wall to the middle of the evidence around it; it hardly moves after half of
 # them.
 _SHIFTS = 10
-
-# Costs are whole multiples of one wall divided by this number, so that rounding decides nothing.
-_STEPS = 10_000
 
 # Widths (m) of the houses of a row that are tried, a fifth apart.
 _WIDTHS = 4.0 * 1.2 ** np.arange(7)
@@ -246,7 +244,7 @@ class _View:
         pays = seen / np.maximum(counted, ROWS.narrowest) - ROWS.wall * self.spacing
         # A wall must pay by itself: likeness of the houses next to it is no evidence.
         is_wall = (counted >= ROWS.narrowest) & (counted <= ROWS.deepest) & (pays > 0)
-        return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * _STEPS), -np.inf)
+        return np.where(is_wall, np.rint(np.minimum(pays, ROWS.row) * STEPS_OF_LABELS), -np.inf)
 
     def _places(self, seen: np.ndarray, walls: np.ndarray) -> np.ndarray:
         """Move walls (columns of the chain) to the middle of the evidence around them, by mean shift."""
@@ -332,11 +330,11 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[fl
     count, narrowest = len(pays), int(np.ceil(ROWS.narrowest / step))
     starts = range(0, count, narrowest)
     # No more than one wall stands in each strip as wide as the narrowest house.
-    if np.maximum.reduceat(pays, starts).clip(0).sum() <= ROWS.row * _STEPS:
+    if np.maximum.reduceat(pays, starts).clip(0).sum() <= ROWS.row * STEPS_OF_LABELS:
         return 0.0, np.zeros(0, np.int64)
     area = np.concatenate([[0], np.cumsum(length)]) * step**2
     widths = np.arange(1, count + 1) * step
-    unlike = np.rint(ROWS.unlike * _STEPS * np.abs(np.log(widths / _WIDTHS[:, None])))
+    unlike = np.rint(ROWS.unlike * STEPS_OF_LABELS * np.abs(np.log(widths / _WIDTHS[:, None])))
     saved = np.full((len(_WIDTHS), count + 1), -np.inf)
     before = np.zeros(saved.shape, np.int64)
     saved[:, 0] = 0
@@ -346,7 +344,7 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[fl
         if last > 0:
             total = saved[:, :last] - unlike[:, end - last : end][:, ::-1]
             before[:, end] = total.argmax(axis=1)
-            saved[:, end] = total.max(axis=1) + (pays[end] if end < count else -round(ROWS.row * _STEPS))
+            saved[:, end] = total.max(axis=1) + (pays[end] if end < count else -round(ROWS.row * STEPS_OF_LABELS))
     width = int(saved[:, count].argmax())
     walls, at = [], int(before[width, count])
     while at > 0:

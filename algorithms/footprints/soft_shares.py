@@ -41,6 +41,9 @@ APART = 8.0
 # separated. Gutters and small bays are no walls, and a fire wall is thicker.
 LEAST_SPACING = 0.25
 
+# Tolerance (spacings) of outlines: samples along an edge lie within one spacing of it, and corners are rounded.
+TOLERANCE_SPACINGS = 1.75
+
 # Least density of roofs, as a share of the usual density of one point per square spacing, below which a position is far
 # from any.
 _NOWHERE = 1e-3

@@ -13,7 +13,7 @@ from .groups import mask_of, run_starts
 _STEPS = 1000
 
 # Steps per unit of cost in the cuts of :func:`cheapest_labels`.
-_STEPS_OF_LABELS = 10_000
+STEPS_OF_LABELS = 10_000
 
 # Largest cost in steps. It is a seventh of the largest number of 32 bits, as the costs of edges are added in these.
 _LARGEST = 3e8
@@ -101,7 +101,7 @@ def _takers(
     take, edge_cost = take[chosen], np.maximum(first + second - both, 0.0)[inner]
     ends, back = number[[p[inner], q[inner]]], np.zeros_like(edge_cost)
     keeps = cheapest_cut(
-        ends[0], ends[1], edge_cost, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, _STEPS_OF_LABELS
+        ends[0], ends[1], edge_cost, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, STEPS_OF_LABELS
     )
     return mask_of(len(extra), chosen[~keeps])
 

@@ -7,14 +7,12 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import ROUNDING
 from .covariance import PAIRS, Nearest, Shapes, full_matrices, nearest_offsets
 from .nearest_blocks import EQUAL_SQUARES, reach_of_ties
 
 # Most values of an array over all neighbors in one batch: a handful of such arrays fit into the second-level cache.
 _CACHED = 16_000
-
-# Entropies closer than this are equal but for rounding; of equal ones the smallest neighborhood is taken.
-_EQUAL = 1e-9
 
 # Replaces zero in logarithms, as 0 ln 0 is 0.
 _LEAST = 1e-300
@@ -188,4 +186,4 @@ def eigenentropies(covariances: np.ndarray) -> np.ndarray:
 
 def _first_least(entropies: np.ndarray) -> np.ndarray:
     """Return the index (m,) of the first of the least entropies (s, m) of each point."""
-    return np.argmax(entropies <= entropies.min(axis=0) + _EQUAL, axis=0)
+    return np.argmax(entropies <= entropies.min(axis=0) + ROUNDING, axis=0)

@@ -18,7 +18,7 @@ from ..threads import NEIGHBORS_AT_ONCE, in_chunks
 LEAST_POINTS = 5
 
 # Fits of a robust plane, each to the points near the one before.
-_REFITS = 3
+REFITS = 3
 
 # Directions of the local Hough transform, even on the half sphere: 13° apart, so that a plane between two of them
 # leaves most of its points within the bins of one.
@@ -202,7 +202,7 @@ def _voted(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarra
     vote *= near[..., None]
     best = vote.sum(axis=1).argmax(axis=1)
     chosen = near & (np.take_along_axis(vote, best[:, None, None], axis=2)[..., 0] > 0)
-    for _ in range(_REFITS):
+    for _ in range(REFITS):
         center, normal, _ = fit_planes(offsets, chosen)
         chosen = near & (_distances(offsets, center, normal) <= tolerance)
     return chosen

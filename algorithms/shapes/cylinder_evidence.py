@@ -18,7 +18,7 @@ MOST_LOOKED_AT = 1500
 
 
 @rules
-class _RULES:
+class EVIDENCE:
     """Criteria for points on a cylinder."""
 
     #: Least share of the points within the tolerance, of those that face the axis within twice the tolerance. It is
@@ -74,28 +74,28 @@ class CylinderEvidence:
         along, distance, away = cylinder.local(own.xyz)
         near_along, near_distance, near_away = cylinder.local(near.xyz)
         angle = np.degrees(np.arccos(min(float(np.median(_facing(away, own.normals))), 1.0)))
-        if angle > _RULES.median_angle + _RULES.uneven_angle * self.spacing / cylinder.radius:
+        if angle > EVIDENCE.median_angle + EVIDENCE.uneven_angle * self.spacing / cylinder.radius:
             return False
         rough = float(np.sqrt(((distance - cylinder.radius) ** 2).mean())) / self.noise
-        if angle > _RULES.median_angle and rough > 1 + _RULES.confidence / np.sqrt(2 * len(along)):
+        if angle > EVIDENCE.median_angle and rough > 1 + EVIDENCE.confidence / np.sqrt(2 * len(along)):
             return False
         count = _in_slices(along, along)
         facing = (np.abs(near_distance - cylinder.radius) <= 2 * self.tolerance) & (
             _facing(near_away, near.normals) >= FACING
         )
-        if len(along) < _RULES.close * _in_slices(near_along[facing], along).sum():
+        if len(along) < EVIDENCE.close * _in_slices(near_along[facing], along).sum():
             return False
-        is_inside = near_distance < _RULES.inner * cylinder.radius - 2 * self.tolerance
+        is_inside = near_distance < EVIDENCE.inner * cylinder.radius - 2 * self.tolerance
         inside = _in_slices(near_along[is_inside], along)
-        if np.median(inside / np.maximum(count, 1)) > _RULES.inside:
+        if np.median(inside / np.maximum(count, 1)) > EVIDENCE.inside:
             return False
-        most = float(np.hypot(_RULES.bent * self.noise, _RULES.as_built * cylinder.radius))
+        most = float(np.hypot(EVIDENCE.bent * self.noise, EVIDENCE.as_built * cylinder.radius))
         return bends(cylinder, own.xyz[:: len(along) // MOST_LOOKED_AT + 1]) <= most
 
     def is_long(self, along: np.ndarray, cylinder: Cylinder) -> bool:
         """Return whether points at positions ``along`` the axis (k,), m, are of a cylinder, not of an elbow."""
         diameter = 2 * cylinder.radius
-        least = max(min(_RULES.length * diameter, _RULES.long_enough), _RULES.short * diameter)
+        least = max(min(EVIDENCE.length * diameter, EVIDENCE.long_enough), EVIDENCE.short * diameter)
         return bool(np.ptp(along) >= least)
 
     def coverage(self, along: np.ndarray, angle: np.ndarray, cylinder: Cylinder) -> tuple[float, float]:
@@ -106,7 +106,7 @@ class CylinderEvidence:
         slices = int(np.clip(length / max(3 * self.spacing, 0.5 * cylinder.radius), 1, 30))
         at = np.minimum(((along - along.min()) / max(length, 1e-9) * slices).astype(np.int64), slices - 1)
         cells = np.bincount(sector * slices + at, minlength=sectors * slices).reshape(sectors, slices) > 0
-        is_seen = cells.mean(axis=1) >= _RULES.seen
+        is_seen = cells.mean(axis=1) >= EVIDENCE.seen
         return float(is_seen.mean()), float(cells[is_seen].mean()) if is_seen.any() else 0.0
 
     def goes_on(self, cylinder: Cylinder, along: np.ndarray) -> bool:
@@ -134,7 +134,7 @@ class CylinderEvidence:
         for end in ends:
             squared = distance**2 + cylinder.radius**2 - 2 * distance * cylinder.radius * np.cos(turn - end)
             beyond = _in_slices(at[is_off & (squared < reach**2)], along)
-            if np.median(beyond / np.maximum(own, 0.5)) < _RULES.goes_on:
+            if np.median(beyond / np.maximum(own, 0.5)) < EVIDENCE.goes_on:
                 return False
         return True
 
@@ -155,7 +155,7 @@ def _arc(turn: np.ndarray) -> tuple[float, float, float]:
     gap = np.diff(np.append(turned, turned[0] + 2 * np.pi))
     widest = int(np.argmax(gap))
     start = float(turned[(widest + 1) % len(turned)])
-    first, last = np.quantile(np.mod(turned - start, 2 * np.pi), [_RULES.stray, 1 - _RULES.stray])
+    first, last = np.quantile(np.mod(turned - start, 2 * np.pi), [EVIDENCE.stray, 1 - EVIDENCE.stray])
     return start + float(first), start + float(last), float(gap[widest])
 
 
@@ -167,4 +167,4 @@ def _facing(away: np.ndarray, normals: np.ndarray) -> np.ndarray:
 def _in_slices(at: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Return how many positions ``at`` the axis lie in each of the slices from the first to the last of ``along``."""
     low, high = float(along.min()), float(along.max())
-    return np.histogram(at, _RULES.slices, (low, max(high, low + 1e-9)))[0]
+    return np.histogram(at, EVIDENCE.slices, (low, max(high, low + 1e-9)))[0]

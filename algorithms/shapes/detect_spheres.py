@@ -9,7 +9,7 @@ import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_evidence import MOST_LOOKED_AT
+from .cylinder_evidence import EVIDENCE, MOST_LOOKED_AT
 from .cylinder_fits import explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
@@ -39,9 +39,6 @@ _FIRST_FITS = (0.25, 0.1)
 # Largest angle between the normal of a point on a sphere and the direction from the center (°).
 _NORMAL_ANGLE = 25.0
 
-# Largest median of these angles over a sphere (°).
-_MOST_MEDIAN_ANGLE = 10.0
-
 # Least points of a seed, and of a window in which one is looked for.
 LEAST_POINTS = 20
 
@@ -50,15 +47,6 @@ _LEAST_SPREAD = 0.02
 
 # Largest deviation of the points from a sphere, in multiples of the noise.
 _MOST_ROUGH = 1.25
-
-# Largest part of that deviation that waves of another shape explain, in multiples of the noise.
-_MOST_BENT = 0.6
-
-# Distance from the center, as a share of the radius, up to which points are inside a sphere.
-_INNER = 0.9
-
-# Most points inside a sphere per point on it: it is empty.
-_MOST_INSIDE = 0.15
 
 # Radius of the surroundings of a sphere, in its radii.
 _AROUND = 1.5
@@ -176,12 +164,12 @@ class SphereSearch:
         facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))
         if np.sqrt((residual**2).mean()) > _MOST_ROUGH * self.noise:
             return False
-        if np.median(facing) < np.cos(np.radians(_MOST_MEDIAN_ANGLE)):
+        if np.median(facing) < np.cos(np.radians(EVIDENCE.median_angle)):
             return False
         x, y, z = away.T
         # An ellipsoid, a cylinder or a torus has waves of second order, faces have higher ones.
         waves = np.column_stack([x * y, x * z, y * z, x * x - y * y, 3 * z * z - 1, *(away**3).T, x * y * z])
-        return explained(residual - residual.mean(), waves) <= _MOST_BENT * self.noise
+        return explained(residual - residual.mean(), waves) <= EVIDENCE.bent * self.noise
 
     def _checked(self, center: np.ndarray, radius: float) -> Optional[FoundSphere]:
         """Return the sphere with all its points if these look like one."""
@@ -197,9 +185,9 @@ class SphereSearch:
         if len(points) < self.min_points or not self._is_round(points, center, radius):
             return None
         distance = np.linalg.norm(self.xyz[near] - center, axis=1)
-        inside = distance < _INNER * radius - 2 * self.tolerance
+        inside = distance < EVIDENCE.inner * radius - 2 * self.tolerance
         around = (distance > radius + 2 * self.tolerance) & (distance < reach)
-        if inside.sum() > _MOST_INSIDE * len(points) or around.sum() > _MOST_AROUND * len(points):
+        if inside.sum() > EVIDENCE.inside * len(points) or around.sum() > _MOST_AROUND * len(points):
             return None
         away = self.xyz[points] - center
         part = self.parts.bin_of(away) * 2 + (away[np.arange(len(away)), np.argmax(np.abs(away), axis=1)] > 0)

@@ -8,16 +8,13 @@ import numpy as np
 
 from ..geometry.boxes import Boxes
 from ..geometry.principal_axes import principal_axes
-from ..planes.local_planes import LEAST_POINTS
+from ..planes.local_planes import LEAST_POINTS, REFITS
 from ..planes.voxel_planes import more_than_chance
 from ..stage import Monitor
 from ..threads import PAIRS_AT_ONCE, in_chunks
 
 # Counters of the largest parameter space: of 8 bytes each, for each thread.
 _MOST_BINS = 20_000_000
-
-# Least-squares fits to the points of a maximum, each to those near the fit before.
-_REFINEMENTS = 3
 
 # Most planes of one window: more than it has surfaces.
 _MOST_PLANES = 20
@@ -211,7 +208,7 @@ class HoughPlanes:
         # The middle of a bin is off a plane in it by up to half a bin in distance and, at the end of the window, by
         # about as much for its slopes.
         on_plane = np.abs(xyz @ normal - distance) <= self.tolerance + self.distance_bin
-        for _ in range(_REFINEMENTS):
+        for _ in range(REFITS):
             if on_plane.sum() < LEAST_POINTS:
                 return np.zeros(len(xyz), bool)
             center, _, axes = principal_axes(xyz[on_plane])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..criteria import CELL_SPACINGS
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import Grid, connected_cells, grid_over
 from ..geometry.polylines import simplify_ring
@@ -20,12 +21,9 @@ PLANE_FIELDS = (
     Field("rms", float, "root mean square distance of the points from the plane", "m"),
 )
 
-# Side of a cell (spacings): one cell of a surface in 50 is empty by chance.
-_CELL_SPACINGS = 2.0
-
 # How far cells with points reach beyond the edge of a surface (cells). With four points to a cell on average, a cell of
 # which the surface covers the share f has one with the probability 1 - exp(-4 f).
-_OVERSHOOT = 0.5 - (1 - np.exp(-(_CELL_SPACINGS**2))) / _CELL_SPACINGS**2
+_OVERSHOOT = 0.5 - (1 - np.exp(-(CELL_SPACINGS**2))) / CELL_SPACINGS**2
 
 # Slope (°) below which a plane faces no direction.
 _LEVEL = 0.5
@@ -54,7 +52,7 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, offset: int, density: flo
         parts = np.split(on_plane[order], np.cumsum(planes.count)[:-1].astype(np.int64))
         for number, part in enumerate(parts):
             normal, center = planes.normal[number], planes.center[number]
-            rings = _outline(xyz[part], center, normal, _CELL_SPACINGS / np.sqrt(density))
+            rings = _outline(xyz[part], center, normal, CELL_SPACINGS / np.sqrt(density))
             area = sum(signed_area(ring) for ring in rings)
             level, upward = plane_axes(normal)
             geometries.append([center + ring[:, :1] * level + ring[:, 1:] * upward for ring in rings])

@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import CELL_SPACINGS
 from ..geometry.groups import split_groups
 from ..geometry.polygons import axes_across
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
@@ -24,9 +25,6 @@ from .tree_structure import (
     smooth,
     voxels_of,
 )
-
-# Side of a voxel (spacings): few voxels of bark are empty.
-_VOXEL_SPACINGS = 2.0
 
 # Least side of a voxel (m): bark is not resolved any finer.
 _LEAST_VOXEL = 0.02
@@ -77,7 +75,7 @@ def segment_tree(
         "Side of a voxel: about the thickness of the thinnest branches. Smaller voxels show thinner branches and "
         "need denser points.",
         within="[0.005, 10] m",
-        automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces, at least {_LEAST_VOXEL:g} m.",
+        automatic=f"{CELL_SPACINGS:g} times the point spacing on surfaces, at least {_LEAST_VOXEL:g} m.",
     ),
     min_count: int = tunable(
         2,
@@ -159,7 +157,7 @@ def segment_tree(
     refuse_line(xyz)
     rows = candidates(classification, None, 0)
     if voxel_size is None:
-        voxel_size = max(_VOXEL_SPACINGS / float(np.sqrt(sampling.surface_density)), _LEAST_VOXEL)
+        voxel_size = max(CELL_SPACINGS / float(np.sqrt(sampling.surface_density)), _LEAST_VOXEL)
     max_gap = _GAP_VOXELS * voxel_size if max_gap is None else max_gap
     monitor.resolved(voxel_size=voxel_size, max_gap=max_gap)
     origin = xyz.min(axis=0)

@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ..criteria import PLANE_NEIGHBORS
+from ..criteria import PLANE_NEIGHBORS, ROUNDING
 from ..neighborhoods.covariance import Nearest, defined_eigenvalues, reduce_neighborhoods, smallest_eigenvectors
 from ..neighborhoods.nearest_blocks import Shapes
 from ..sampling.cloud_sampling import CloudSampling
@@ -18,9 +18,6 @@ _NORMAL_ERROR = 0.05
 
 # Points of the largest neighborhood of a normal: more cost time.
 _MOST_POINTS = 80
-
-# Points are collinear, without a plane, if the ratio of their two larger variances is below this.
-_LINE = 1e-8
 
 # Of each sampling: the points that its normals were measured on, and the normals. They go with the sampling.
 _KEPT: WeakKeyDictionary[CloudSampling, tuple[tuple, np.ndarray]] = WeakKeyDictionary()
@@ -100,7 +97,7 @@ def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> np.ndarray
     def keep(positions: np.ndarray, shapes: Shapes) -> None:
         rows = order[positions]
         eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
-        is_plane = eigenvalues[:, 1] > _LINE * np.maximum(eigenvalues[:, 0], 1e-300)
+        is_plane = eigenvalues[:, 1] > ROUNDING * np.maximum(eigenvalues[:, 0], 1e-300)
         normal[rows[is_plane]] = smallest_eigenvectors(shapes.covariances[is_plane], eigenvalues[is_plane])
 
     reduce_neighborhoods(xyz[order], Nearest(count), keep, monitor=monitor)
@@ -112,5 +109,5 @@ def refuse_line(xyz: np.ndarray) -> None:
     if len(xyz) < 3:
         raise ValueError(f"Shapes need at least three points, got {len(xyz)}; choose another cloud.")
     spread = np.linalg.eigvalsh(np.cov((xyz - xyz.mean(axis=0)).T))
-    if spread[1] <= _LINE * max(spread[2], 1e-300):
+    if spread[1] <= ROUNDING * max(spread[2], 1e-300):
         raise ValueError("All points lie on one line, so that no surface has a normal; choose another cloud.")

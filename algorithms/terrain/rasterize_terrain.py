@@ -7,15 +7,13 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..criteria import CELL_SPACINGS
 from ..geometry.grid import EIGHT, refuse_sparse
 from ..geometry.sparse_voxels import voxel_index
 from ..geometry.tiled_tin import TiledTin
 from ..packages import ndimage
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, Raster, RasterSurface, stage, tunable
-
-# Side of a cell (point spacings): it holds four points on average, and one in fifty is empty.
-_CELL_SPACINGS = 2.0
 
 # Least side of a cell (m) that is set automatically.
 _LEAST_CELL = 0.05
@@ -48,7 +46,7 @@ def rasterize_terrain(
         None,
         "Side of a cell of the rasters.",
         within=f"[0.01, {_MOST_CELL}] m",
-        automatic=f"{_CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
+        automatic=f"{CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
         f"least {_LEAST_CELL:g} m.",
     ),
     gap_distance: Optional[float] = tunable(
@@ -110,7 +108,7 @@ def rasterize_terrain(
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
     used = xyz[~np.isin(classification, NOISE)]
     if cell_size is None:
-        cell_size = round_cell_size(_CELL_SPACINGS * sampling.spacing)
+        cell_size = round_cell_size(CELL_SPACINGS * sampling.spacing)
     gap_distance = _GAP_CELLS * cell_size if gap_distance is None else gap_distance
     monitor.resolved(cell_size=cell_size, gap_distance=gap_distance)
     refuse_sparse(used, cell_size)

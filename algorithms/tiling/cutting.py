@@ -18,9 +18,6 @@ from ..stage import Monitor
 from .blocks import Block
 from .survey import Survey, tiles_folder
 
-# Share of the time that reading takes; the rest is writing.
-_READ = 0.5
-
 
 def cut_into_tiles(
     survey: Survey, side: float, folder: Path, stem: str, compressed: bool, monitor: Monitor
@@ -61,7 +58,7 @@ def cut_into_tiles(
     if compressed:
         writing_backend(survey.header.layout.point_format)
     with tiles_folder(folder, [source.path for source in survey.sources]), working_folder(folder) as heaps:
-        blocks = _sort_out(survey, side, heaps, monitor.part(0.0, _READ))
+        blocks = _sort_out(survey, side, heaps, monitor.part(0.0, 0.5))
         if not blocks:
             raise ValueError("The survey has no points within the extent; choose another extent.")
         size = survey.header.layout.dtype.itemsize
@@ -69,7 +66,7 @@ def cut_into_tiles(
         if survey.extent is None and count != len(survey):
             raise ValueError(f"The tiles would have {count:,} of the {len(survey):,} points; nothing was written.")
         tiles = []
-        for block, part in zip(blocks, monitor.part(_READ, 1.0).parts(len(blocks))):
+        for block, part in zip(blocks, monitor.part(0.5, 1.0).parts(len(blocks))):
             tile = folder / f"{stem}_{block.name}{kind}"
             heap = heaps / block.name
             records = np.memmap(heap, survey.header.layout.dtype, "r")
