@@ -12,8 +12,7 @@ import numpy as np
 
 from ..algorithms.cloud.header import SOFTWARE
 from ..algorithms.cloud.outputs import replacing
-from ..algorithms.report.page import Row, with_run
-from ..algorithms.report.run_facts import StepFacts, draw_facts, draw_steps
+from ..algorithms.report.page import Row, StepFacts, with_run
 from ..algorithms.stage import Stage, Tunable
 from .paths import PLUGIN
 from .qgis_crs import crs_of
@@ -129,4 +128,4 @@ def write_page(target: str, page: str, rows: Iterable[Row], steps: Iterable[Step
     ``of_seconds`` says what the seconds of the steps are of.
     """
     with replacing(Path(target)) as stream:
-        stream.write(with_run(page, draw_facts(rows), draw_steps(steps, of_seconds)).encode())
+        stream.write(with_run(page, rows, steps, of_seconds).encode())

@@ -23,8 +23,7 @@ from qgis.core import (
 
 from ..algorithms.cloud.outputs import COPC, stem_of
 from ..algorithms.pipeline import CLOUD
-from ..algorithms.report.page import Row, with_coordinates
-from ..algorithms.report.run_facts import StepFacts
+from ..algorithms.report.page import Row, StepFacts, with_coordinates
 from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster, TextFile
 from ..algorithms.tiling.joined_files import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import run_in_tiles

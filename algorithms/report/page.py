@@ -9,7 +9,7 @@ import re
 import struct
 import zlib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Callable
 
 import numpy as np
@@ -153,12 +153,23 @@ def with_coordinates(page: str, to_map: Callable[[np.ndarray], np.ndarray]) -> s
     return _POSITION.sub(written, page)
 
 
-def with_run(page: str, first: str, last: str) -> str:
-    """Return a page with HTML about the run: ``first`` after the lead, ``last`` at the end.
+def with_run(page: str, rows: Iterable[Row], steps: Iterable[StepFacts], of_seconds: str = "") -> str:
+    """Return a page with the facts about a run after the lead, and its steps at the end.
 
     A page that has both already stays as it is.
+
+    Parameters
+    ----------
+    page : str
+        The page, as of :func:`build_page`.
+    rows : iterable of Row
+        Facts about the run: its input, date and version.
+    steps : iterable of StepFacts
+        Steps, with their seconds and parameters.
+    of_seconds : str
+        The work that took the seconds.
     """
-    return page.replace(_FIRST, first, 1).replace(_LAST, last, 1)
+    return page.replace(_FIRST, draw_rows("Run", rows), 1).replace(_LAST, _draw_steps(list(steps), of_seconds), 1)
 
 
 def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
@@ -228,3 +239,28 @@ def png(image: np.ndarray, colors: Iterable[Iterable[int]] = ()) -> bytes:
     # Photographs are large, and worth the time of the best compression.
     parts += [(b"IDAT", zlib.compress(lines, -1 if palette else 9)), (b"IEND", b"")]
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, data) for kind, data in parts)
+
+
+@dataclass
+class StepFacts:
+    """A step of a run: its title, its seconds, its parameters as used, and what it said."""
+
+    title: str
+    seconds: float = 0.0
+    parameters: list[Row] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def _draw_steps(steps: list[StepFacts], of_seconds: str) -> str:
+    """Return the HTML of the steps with their seconds, then of the parameters of each."""
+    times = [
+        Row(step.title, f"{step.seconds:.1f} s", " ".join(_sentence(note) for note in step.notes)) for step in steps
+    ]
+    times.append(Row("All steps", f"{sum(step.seconds for step in steps):.1f} s", of_seconds))
+    set_up = [f"<div>{draw_rows(step.title, step.parameters, 3)}</div>" for step in steps if step.parameters]
+    parts = [draw_rows("Steps", times), "<h2>Parameters</h2>", '<div class="parameters">', *set_up, "</div>"]
+    return "\n".join(parts)
+
+
+def _sentence(note: str) -> str:
+    return note if note.endswith((".", "!", "?")) else f"{note}."
