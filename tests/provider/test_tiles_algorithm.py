@@ -119,7 +119,7 @@ def test_a_scheduler_that_is_not_there_is_a_sentence(algorithm, context, log, fo
     from lidar_buildings.algorithms.tiling import workers
 
     pytest.importorskip("distributed")
-    monkeypatch.setattr(workers, "_ANSWER", 1)
+    monkeypatch.setattr(workers, "ANSWER", 1)
     monkeypatch.setattr(schedulers, "confirmed", lambda: ["tcp://127.0.0.1:9"])
     given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "SCHEDULER": "tcp://127.0.0.1:9", **QUICKLY}
     with pytest.raises(refused(), match="No Dask scheduler answers at tcp://127.0.0.1:9"):

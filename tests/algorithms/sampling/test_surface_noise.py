@@ -170,7 +170,7 @@ def test_only_some_points_are_looked_at_at_once(rng, monkeypatch):
     """A cloud that is looked at whole may be large: memory must not grow with it."""
     xyz, at_once, moments = plane(rng, 0.03), [], eigen.Nearest.moments
     expected = surface_noise(xyz)
-    monkeypatch.setattr(eigen, "_CHUNK_NEIGHBORS", 6000)
+    monkeypatch.setattr(eigen, "NEIGHBORS_AT_ONCE", 6000)
     monkeypatch.setattr(eigen.Nearest, "moments", lambda *given: at_once.append(len(given[-1])) or moments(*given))
     assert surface_noise(xyz) == expected
     assert at_once == [500] * 8
