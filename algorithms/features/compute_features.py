@@ -234,7 +234,9 @@ def compute_features(
         "radius": lambda: Within(radius or _automatic_radius(sampling, n_neighbors, monitor)),
         "optimal": lambda: Optimal(min_neighbors, max_neighbors, neighbors_step),
     }
-    made = {name: np.empty((len(xyz), 3) if name == "normal" else len(xyz), _dtype(name)) for name in features}
+    made = {
+        name: np.empty((len(xyz), 3) if name == "normal" else len(xyz), DIMENSIONS[name].dtype) for name in features
+    }
     undefined = np.empty(len(xyz), bool)
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
@@ -255,10 +257,6 @@ def compute_features(
             f"{undefined.sum()} of {len(xyz)} points have too few distinct neighbors: their features are undefined."
         )
     return tuple(made.get(name) for name in _FEATURES)
-
-
-def _dtype(name: str) -> str:
-    return DIMENSIONS[name].dtype
 
 
 def _automatic_radius(sampling: CloudSampling, n_neighbors: int, monitor: Monitor) -> float:

@@ -13,7 +13,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
-from .smeared_objects import on_no_object, on_smeared_objects
+from .smeared_objects import on_smeared_objects
 from .tin_densification import DENSIFICATION, JoinRules, Surface, grow, surface_roughness
 
 
@@ -243,7 +243,8 @@ def classify_ground_tin(
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
     )
-    is_ground &= ~kind.choose(laser=on_no_object, images=on_smeared_objects)(points, is_ground, spacing)
+    if kind.is_surface:
+        is_ground &= ~on_smeared_objects(points, is_ground, spacing)
     return with_ground(classification, usable[is_ground])
 
 

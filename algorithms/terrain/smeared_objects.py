@@ -22,11 +22,6 @@ class SMEARED:
     )
 
 
-def on_no_object(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
-    """Return False for each point (n,): in laser scans, whose edges are sharp, no object is smeared."""
-    return np.zeros(len(xyz), bool)
-
-
 def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
     """Return the mask of ground points (n,) on small objects: a ground surface climbs them over smeared walls.
 
