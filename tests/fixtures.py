@@ -40,7 +40,8 @@ def pytest_ignore_collect(collection_path):
 def pytest_xdist_setupnodes(config, specs):
     """Give all workers a folder for what they share, and the QGIS of each settings of its own.
 
-    Two that write one file of settings disturb each other.
+    Two that write one file of settings disturb each other. There are as many as cores: the linear algebra of each takes
+    one thread, as further ones would only wait.
     """
 
     def folder(prefix: str) -> str:
@@ -51,6 +52,7 @@ def pytest_xdist_setupnodes(config, specs):
     shared = folder("shared-results-")
     for spec in specs:
         spec.env.update({SHARED_RESULTS: shared, "QGIS_CUSTOM_CONFIG_PATH": folder("qgis-settings-")})
+        spec.env["OPENBLAS_NUM_THREADS"] = "1"
 
 
 def pytest_collect_file(file_path):
