@@ -19,9 +19,9 @@ VILLAGE = "simulate_village", {"size": 60.0, "density": 30.0, "trees": 0.0, "see
 SCENES = {
     "map_footprints": VILLAGE,
     "map_footprints_2022": VILLAGE,
-    "model_facades": ("simulate_street", {"length": 20.0, "line_rate": 30.0, "angular_step": 0.5, "clutter": False}),
-    "model_industry": ("simulate_plant", {"pipes": 1, "tanks": 0, "spheres": 1, "density": 1500.0, "clutter": False}),
-    "interpret_structure": ("simulate_flight", {"duration": 6.0, "scanners": "both", "trees": 1}),
+    "model_facades": ("simulate_street", {"length": 20.0, "line_rate": 20.0, "angular_step": 0.5, "clutter": False}),
+    "model_industry": ("simulate_plant", {"pipes": 1, "tanks": 0, "spheres": 1, "density": 1000.0, "clutter": False}),
+    "interpret_structure": ("simulate_flight", {"duration": 6.0, "line_rate": 15.0, "trees": 1}),
 }
 # One composite of each kind of scene; all are read in test_no_step_reads_what_only_a_later_one_writes.
 QUICK = ("detect_buildings", "model_buildings", "model_terrain", "model_facades", "interpret_structure")
