@@ -28,9 +28,9 @@ WINDOWS = ((10, 12), (19, 21), (39, 41), (45, 47))
 def street():
     """Return points of three fronts, of which the first has four windows, a house's side, and the floor between."""
     rng = np.random.default_rng(2)
-    parts = [wall(rng, (west, y), (east, y), density=30) for west, east, y in FRONTS]
-    parts.append(wall(rng, (50, 12), (50, 5), density=30))
-    pane = wall(rng, (3, 11.8), (50, 11.8), density=30)
+    parts = [wall(rng, (west, y), (east, y), density=20) for west, east, y in FRONTS]
+    parts.append(wall(rng, (50, 12), (50, 5), density=20))
+    pane = wall(rng, (3, 11.8), (50, 11.8), density=20)
 
     def in_window(xyz):
         inside = np.any([(xyz[:, 0] > west) & (xyz[:, 0] < east) for west, east in WINDOWS], axis=0)

@@ -29,7 +29,7 @@ WITH_TERRAIN = {"models_terrain_tolerance": 0.1}
 def cloud():
     """Three gable houses of 12 m by 10 m, eaves at 4 m and ridges at 8 m, on a plain of 66 m by 66 m."""
     rng = np.random.default_rng(3)
-    xyz = np.column_stack([rng.uniform(0, 66, (30_000, 2)), rng.normal(0, 0.02, 30_000)])
+    xyz = np.column_stack([rng.uniform(0, 66, (20_000, 2)), rng.normal(0, 0.02, 20_000)])
     for x, y in HOUSES:
         along, across = xyz[:, 0] - x, xyz[:, 1] - y
         over = (along > 0) & (along < 12) & (across > 0) & (across < 10)

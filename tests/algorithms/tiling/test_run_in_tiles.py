@@ -41,12 +41,12 @@ QUICK = Pipeline("quick", "Quick", "Tests", "", "", "", "", (Step("clusters", "s
 def survey():
     """Return points, GPS times and which points are roofs: three flat houses and two crowns on 66 m by 66 m."""
     rng = np.random.default_rng(3)
-    plan = rng.uniform(0, SIZE, (SIZE * SIZE * 4, 2))
+    plan = rng.uniform(0, SIZE, (SIZE * SIZE * 3, 2))
     under = np.zeros(len(plan), bool)
     for x, y in HOUSES:
         under |= ((plan > [x, y]) & (plan < [x + 12, y + 10])).all(axis=1)
     ground = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])[~under]
-    roofs = np.concatenate([roof(rng, x, y, 12, 10, 5.0, density=4.0) for x, y in HOUSES])
+    roofs = np.concatenate([roof(rng, x, y, 12, 10, 5.0, density=3.0) for x, y in HOUSES])
     crowns = np.concatenate([crown(rng, x, y) for x, y in ((50, 20), (15, 55))])
     xyz = np.concatenate([ground, roofs, crowns]) + CORNER
     is_roof = np.repeat([False, True, False], [len(ground), len(roofs), len(crowns)])
