@@ -9,10 +9,10 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges
-from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.monitors import Listening
+from lidar_buildings.tests.river_town import river_town
 
 EARTH, WATER, DECK, ROOF = range(4)
 
@@ -178,10 +178,8 @@ def test_at_gaps_nothing_changes_where_there_is_none():
 
 
 def test_bridges_over_the_river_of_a_town_are_decks_by_default():
-    xyz, true, number, count, *_ = simulate_town(size=120.0, density=6.0, seed=3)
-    cloud = create_cloud({"xyz": xyz, "return_number": number, "number_of_returns": count})
-    run_pipeline(PIPELINES["detect_buildings"], cloud)
-    found, is_deck = cloud.get("classification") == 17, true == 17
+    classes, true = river_town(density=3.0)
+    found, is_deck = classes == 17, true == 17
     # What else is called deck are its rails.
     assert (is_deck & found).sum() / found.sum() > 0.9
     assert (is_deck & found).sum() / is_deck.sum() > 0.5

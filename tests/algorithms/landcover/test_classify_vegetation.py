@@ -132,7 +132,7 @@ def test_earlier_vegetation_is_classified_anew():
     assert set(made[kind == BUSH]) <= {1, 3}
 
 
-@pytest.mark.parametrize("density", [4.0, pytest.param(12.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("density", [3.0, pytest.param(12.0, marks=pytest.mark.slow)])
 def test_a_town_gets_its_trees_and_keeps_its_ground_and_buildings(density):
     """Of the merged classes: F of vegetation, and not a point of ground or building fewer than without the step."""
     xyz, true, number, count, *_ = simulate_town(size=100.0, density=density, river=False, seed=3)

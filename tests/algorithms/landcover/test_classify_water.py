@@ -3,14 +3,11 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.landcover.classify_water import classify_water
-from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges
-from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.river_town import river_town
 
 
 def canal(drop=1.0, width=12.0, share=0.2, fall=0.0, density=8.0, length=60.0, seed=2):
@@ -99,10 +96,8 @@ def test_order_and_position_change_nothing():
 
 @pytest.mark.parametrize("density", [3.0, pytest.param(8.0, marks=pytest.mark.slow)])
 def test_the_river_of_a_town_is_water(density):
-    xyz, true, number, count, *_ = simulate_town(size=120.0, density=density, seed=3)
-    cloud = create_cloud({"xyz": xyz, "return_number": number, "number_of_returns": count})
-    run_pipeline(PIPELINES["detect_buildings"], cloud)
-    assert f_score(cloud.get("classification") == 9, true == 9) > 88
+    found, true = river_town(density)
+    assert f_score(found == 9, true == 9) > 88
 
 
 def test_a_road_in_a_cutting_is_no_water():

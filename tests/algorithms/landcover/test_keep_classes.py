@@ -35,7 +35,7 @@ def test_nothing_is_remembered_by_default_and_what_an_earlier_run_did_is_forgott
 @pytest.fixture(scope="module")
 def town():
     """A town whose true classes are changed by hand: a lawn, half of the houses, and trees that are low plants."""
-    xyz, true, number, count, _, _, _, _, object_id = simulate_town(size=110.0, density=2.5, seed=5)
+    xyz, true, number, count, _, _, _, _, object_id = simulate_town(size=90.0, density=2.5, seed=5)
     given = true.copy()
     x, y = (xyz[:, :2] - xyz[:, :2].min(axis=0)).T
     given[(true == 2) & (x < 20) & (y < 20)] = 1

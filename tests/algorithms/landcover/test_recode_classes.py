@@ -43,7 +43,7 @@ def test_what_is_no_mapping_is_refused(text):
 
 
 def test_a_chain_writes_them_and_finds_the_same_buildings():
-    xyz, _, number, count, *_ = simulate_town(size=60.0, density=6.0, seed=2)
+    xyz, _, number, count, *_ = simulate_town(size=60.0, density=3.0, seed=2)
     given = {"xyz": xyz, "return_number": number, "number_of_returns": count}
     made, plain = create_cloud(given), create_cloud(given)
     one = run_pipeline(PIPELINES["detect_buildings"], made, codes_mapping="6=200; 3-5=201")
