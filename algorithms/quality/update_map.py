@@ -19,17 +19,9 @@ from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, R
 from .building_maps import clean_map, refuse_elsewhere
 from .changed_block import ChangedBlock
 from .corner_matching import LEAST_TOLERANCE, MEDIANS, MOST_TOLERANCE
-from .map_changes import (
-    COLORS,
-    GONE,
-    NEW,
-    OLD,
-    RULES,  # noqa: F401 - the docstring names it
-    STATUS,
-    MapUpdate,
-    SeenPoints,
-    roof_points,
-)
+
+# The docstring names RULES.
+from .map_changes import COLORS, GONE, NEW, OLD, RULES, STATUS, MapUpdate, SeenPoints, roof_points  # noqa: F401
 from .map_fit import MapFit, fit_map
 
 _FIELDS = (
