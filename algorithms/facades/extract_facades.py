@@ -18,7 +18,7 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, ProgressOnly, stage, t
 from .common_borders import with_common_borders
 from .curved_fronts import as_strips
 from .facade_outline import Drawing
-from .facade_surfaces import CELL, Facade, facade_features, plane_of, surfaces_of
+from .facade_surfaces import CELL, FARTHEST, Facade, facade_features, plane_of, surfaces_of
 from .segment_facade_lines import are_of_facade_lines
 
 # Standard deviation (m) of plaster, joints and cladding about the plane of a wall, in addition to the noise.
@@ -39,7 +39,7 @@ _SEEN_HEIGHT = 0.9
 
 # Distance (m) of points that decide on a facade. Those up to 10 m before it show from which side it was seen; those up
 # to 10 m before the facades next to it decide on its border. The length of the facade itself is not included.
-_AROUND = 20.0
+_AROUND = 2 * FARTHEST
 
 FACADE_FIELDS = (
     Field("id", int, "SegmentID of its points", numbers="segment_id"),

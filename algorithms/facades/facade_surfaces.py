@@ -27,7 +27,7 @@ CELL = 0.5
 _THINNED = 0.1
 
 # Points farther from the plane than this (m) say nothing about the side from which a facade was seen.
-_FARTHEST = 10.0
+FARTHEST = 10.0
 
 # Panes, frames, curtains and reveals lie within this distance (m) behind a wall; cars and trees are farther before it.
 _DEPTH = 0.5
@@ -178,7 +178,7 @@ def facing_outside(
     evidence = []
     for done, (frame, own, thick) in enumerate(zip(frames, rows, thickness), start=1):
         points = xyz[own]
-        middle, reach = points.mean(axis=0), np.linalg.norm(np.ptp(points, axis=0)) / 2 + _FARTHEST
+        middle, reach = points.mean(axis=0), np.linalg.norm(np.ptp(points, axis=0)) / 2 + FARTHEST
         near = around[np.sort(tree.query_ball_point(middle, reach))]
         evidence.append(_evidence(frame, points, near, thick))
         monitor.progress(done / len(frames))
@@ -202,7 +202,7 @@ def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float)
         # Walls at a right angle lie behind the ends of the facade.
         inside &= (positions[:, 0] > own[:, 0].min() + CELL) & (positions[:, 0] < own[:, 0].max() - CELL)
     off = np.abs(positions[:, 2])
-    inside &= (off > thickness) & (off <= _FARTHEST)
+    inside &= (off > thickness) & (off <= FARTHEST)
     points = np.bincount(own_cell @ [count[1], 1], minlength=int(count.prod()))
     # A cell at the rim of an opening has fewer points than half of the usual.
     is_wall = points >= 0.5 * np.median(points[points > 0])

@@ -22,7 +22,7 @@ from .solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL, Solid
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
 _FLAT = 5.0
 
-# Faces whose azimuths differ by less than this (°) face the same way.
+# Azimuths or slopes that differ by less than this (°) are the same: the two slopes of a mansard roof differ by more.
 _SAME_WAY = 20.0
 
 # Directions with less than this share of the sloping area are ignored for the type.
@@ -33,9 +33,6 @@ _ANNEX = 0.1
 
 # Roofs with more than this share of level parts are of no simple type.
 _LEVEL = 0.35
-
-# Two slopes of one direction that differ by more than this (°) make a mansard roof.
-_MANSARD = 12.0
 
 
 @rules
@@ -331,7 +328,7 @@ def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
     if len(ways) == 2 and opposite:
         # A mansard roof has two slopes each way.
         steep = max(np.ptp(slope[sloping][_near(azimuth[sloping], way)]) for way in ways)
-        return "mansard" if steep > _MANSARD and sloping.sum() >= 4 else "gable"
+        return "mansard" if steep > _SAME_WAY and sloping.sum() >= 4 else "gable"
     # A hipped roof has one face each way, unless all ways have large ones: not dormers'.
     largely = [area[sloping][_near(azimuth[sloping], way)].sum() >= _ANNEX * area.sum() for way in ways]
     is_hip = opposite and len(ways) in (3, 4) and (sloping.sum() == len(ways) or all(largely))

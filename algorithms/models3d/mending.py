@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.groups import components, mask_of
 from .roof_limits import RADIUS, HeightsAround
-from .roof_partition import FARTHEST, Partition
+from .roof_partition import FARTHEST, FORBIDDEN, Partition
 from .roof_planes import planes_through
 from .solid_faces import build_solid
 from .solid_faults import faults_of
@@ -37,16 +37,6 @@ _LOWERINGS = _ROUNDS // 2
 # A part with a fault is first lowered by this distance (m): more than the snapping distance of corners, less than the
 # error of points. Where roofs cross, the corners move, and no longer meet an edge by chance.
 _LOWERED = 0.02
-
-# Parts of a footprint with less than this share of its area are not modelled.
-_SLIVER = 0.01
-
-# Cost of a cell left out of the model, as a multiple of its area: higher than the cost of planes that explain nothing.
-_LEFT_OUT = 3.0
-
-# Cost of any change of a cell, as a share of its area. It decides between changes with equal costs: the smallest cell
-# changes.
-_CHANGE = 0.01
 
 # Parts of a roof with less area in plan (m²), or a smaller mean width (m), join a neighbor: they are smaller than
 # dormers, and no wider than the distance of points.
@@ -136,7 +126,7 @@ def _pieces(partition: Partition, base: float, highest: np.ndarray) -> list[_Pie
         before = part.label >= 0
         partition.label[before] = -1
         # Drop slivers that touch the rest in a point only.
-        if areas[before].sum() <= _SLIVER * total:
+        if areas[before].sum() <= min(_LEAST_AREA, total / 2):
             continue
         levels = _cleared(part, base, highest)
         if levels is None:
@@ -188,7 +178,7 @@ def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarra
     present = sorted({int(partition.label[cell]) for cell in around})
     height = {label: levels.height(vertex, label) for label in present}
     planes = partition.coefficients
-    best: Optional[tuple[bool, float, int, int]] = None
+    best: Optional[tuple[bool, float, float, int, int]] = None
     for position, cell in enumerate(around):
         own = int(partition.label[cell])
         if own < 0:
@@ -201,13 +191,13 @@ def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarra
             changed[position] = label
             if label == own or turns_around([height[k] for k in changed]) > 2:
                 continue
-            loss = _LEFT_OUT * area if label < 0 else float(partition.cost[cell, label] - partition.cost[cell, own])
+            loss = FORBIDDEN if label < 0 else float(partition.cost[cell, label] - partition.cost[cell, own])
             is_high = label >= 0 and bool((planes[label, :2] @ corners.T + planes[label, 2] > limit).any())
-            change = is_high, loss + _CHANGE * area, cell, label
+            change = is_high, loss, area, cell, label
             if best is None or change < best:
                 best = change
     if best is not None:
-        partition.label[best[2]] = best[3]
+        partition.label[best[3]] = best[4]
     return best is not None
 
 

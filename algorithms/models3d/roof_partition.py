@@ -48,8 +48,8 @@ _LEAST_HEIGHT = 0.5
 # Largest depth (m) of a roof below the lowest of its points.
 _BELOW_POINTS = 1.5
 
-# Cost (m²) of a plane that is too low within a cell: more than the points of any cell can cost.
-_FORBIDDEN = 1000.0
+# Cost (m²) of a plane that is too low within a cell, and of a cell left out: more than the points of any cell can cost.
+FORBIDDEN = 1000.0
 
 
 @dataclass
@@ -215,4 +215,4 @@ def _forbidden(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np
     size = np.array([len(cells.loops[cell]) for cell in used])
     xy = np.array(cells.vertices)[np.concatenate([cells.loops[cell] for cell in used])]
     z = xy @ planes.coefficients[:, :2].T + planes.coefficients[:, 2]
-    return _FORBIDDEN * np.logical_or.reduceat(z < low, np.cumsum(size) - size, axis=0)
+    return FORBIDDEN * np.logical_or.reduceat(z < low, np.cumsum(size) - size, axis=0)

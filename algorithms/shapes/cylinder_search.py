@@ -17,7 +17,7 @@ from .cylinder_evidence import FACING, MOST_LOOKED_AT, CylinderEvidence, Points
 from .cylinder_fits import Cylinder, fit_cylinder, upward
 from .hough_planes import PlaneDirections
 from .searched_points import MeasuredPoints
-from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
+from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, RADII_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
 
 # Width of a bin of the Gaussian sphere, as a slope: 8°, about three times the error of a normal.
 _DIRECTION_BIN = 0.14
@@ -42,9 +42,6 @@ _LEAST_SPREAD = 0.005
 # Cylinders of one level may be thinner than its least radius and wider than its largest by this factor, so that those
 # between two levels are found in one of them.
 _WIDER = 1.1
-
-# Number of radii tried in one level, an octave at most: steps of up to 10 %, which the first fit bridges.
-_RADII = 8
 
 # Side of the bins for centers of circles (least radius of the level), as fine as the steps of the radius.
 _CENTER_BIN = 0.15
@@ -77,7 +74,7 @@ _LEAST_SAGITTA = 6.0
 @lru_cache(maxsize=64)
 def _radii(low: float, high: float) -> np.ndarray:
     """Return the radii (m) that are tried in a level."""
-    return np.geomspace(low, high, _RADII)
+    return np.geomspace(low, high, RADII_OF_LEVEL)
 
 
 @dataclass(frozen=True)
@@ -236,14 +233,14 @@ class CylinderSearch:
         signed = np.concatenate([radii, -radii])
         cell, reach = _CENTER_BIN * low, WINDOW * low / 2 + _WIDER * high
         side = int(np.ceil(2 * reach / cell)) + 2
-        number = np.tile(np.arange(_RADII), 2)
+        number = np.tile(np.arange(RADII_OF_LEVEL), 2)
         index = [
             np.floor((position + signed * way + reach) / cell).astype(np.int64)
             for position, way in ((positions[:, k, None], toward[:, k, None]) for k in (0, 1))
         ]
         inside = (index[0] >= 0) & (index[0] < side) & (index[1] >= 0) & (index[1] < side)
         key = (number * side + index[0]) * side + index[1]
-        votes = np.bincount(key[inside], minlength=_RADII * side * side).reshape(_RADII, side, side)
+        votes = np.bincount(key[inside], minlength=RADII_OF_LEVEL * side * side).reshape(RADII_OF_LEVEL, side, side)
         votes = votes[:, 1:] + votes[:, :-1]
         votes = votes[:, :, 1:] + votes[:, :, :-1]
         radius, i, j = np.unravel_index(int(np.argmax(votes)), votes.shape)

@@ -14,7 +14,7 @@ from .cylinder_fits import explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
 from .searched_points import SEARCH_IN, MeasuredPoints, SearchedCloud, SearchTunables, Shape, search_shapes
-from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, WINDOW, level_of, levels
+from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, RADII_OF_LEVEL, WINDOW, level_of, levels
 from .surface_normals import NORMAL_POINTS
 
 CENTER_FIRST, _FOUR_DIMENSIONS = METHODS = ("center first", "four dimensions")
@@ -26,9 +26,6 @@ _FIELDS = (
     Field("rms", float, "root mean square distance of the points from the sphere", "m"),
     Field("seen", float, "share of the sphere that has points, 0 to 1"),
 )
-
-# Bins of radii in one level.
-_RADII = 8
 
 # Side of the bins of centers, as a share of the least radius of the level.
 _CENTER_BIN = 0.25
@@ -117,7 +114,7 @@ class SphereSearch:
     def _seed(self, rows: np.ndarray, low: float, high: float) -> Optional[tuple[np.ndarray, float]]:
         """Return the sphere for which most points of a window vote: each along its normal, to both sides."""
         middle = self.xyz[rows].mean(axis=0)
-        radii = np.geomspace(low, high, _RADII)
+        radii = np.geomspace(low, high, RADII_OF_LEVEL)
         signed = np.concatenate([radii, -radii])
         centers = (self.xyz[rows] - middle)[:, None] + signed[:, None] * self.normals[rows][:, None]
         cell, reach = _CENTER_BIN * low, WINDOW * low / 2 + 1.1 * high
@@ -125,13 +122,13 @@ class SphereSearch:
         index = np.floor((centers + reach) / cell).astype(np.int64)
         inside = ((index >= 0) & (index < side)).all(axis=2)
         position = (index[..., 0] * side + index[..., 1]) * side + index[..., 2]
-        number = np.broadcast_to(np.tile(np.arange(_RADII), 2), inside.shape)
+        number = np.broadcast_to(np.tile(np.arange(RADII_OF_LEVEL), 2), inside.shape)
         if self.centers_first:
             best = int(np.argmax(np.bincount(position[inside])))
             of_center = inside & (position == best)
-            radius = float(radii[np.argmax(np.bincount(number[of_center], minlength=_RADII))])
+            radius = float(radii[np.argmax(np.bincount(number[of_center], minlength=RADII_OF_LEVEL))])
         else:
-            best, k = divmod(int(np.argmax(np.bincount((position * _RADII + number)[inside]))), _RADII)
+            best, k = divmod(int(np.argmax(np.bincount((position * RADII_OF_LEVEL + number)[inside]))), RADII_OF_LEVEL)
             radius = float(radii[k])
         center = middle + (np.array([best // side**2, best // side % side, best % side]) + 0.5) * cell - reach
         return self._fitted(rows, center, radius, low, high)

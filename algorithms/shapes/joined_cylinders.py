@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from ..packages import spatial
+from .cylinder_evidence import EVIDENCE
 from .cylinder_fits import SECTORS, Cylinder, fit_cylinder
 from .cylinder_search import Found
 
@@ -30,9 +31,6 @@ _CAP_RADIUS = 0.7
 
 # Two cylinders stay apart if the cap between them holds this share of the points expected from its area.
 _CAP_SHARE = 0.3
-
-# A sector of the circumference is seen if it has this share of the points that it would have if they were even.
-_STRAY = 0.3
 
 
 def without_nested(found: list[Found]) -> list[Found]:
@@ -179,7 +177,7 @@ def _seen(cylinder: Cylinder, pieces: tuple[Found, Found], xyz: np.ndarray, spac
         angle = cylinder.angle(cylinder.local(xyz[piece.points])[2])
         sector = np.minimum(((angle / (2 * np.pi) + 0.5) * sectors).astype(np.int64), sectors - 1)
         even = len(piece.points) / (sectors * piece.seen)
-        is_seen |= np.bincount(sector, minlength=sectors) >= _STRAY * even
+        is_seen |= np.bincount(sector, minlength=sectors) >= EVIDENCE.seen * even
     return float(is_seen.mean())
 
 

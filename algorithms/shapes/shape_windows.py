@@ -17,6 +17,9 @@ THINNING = 0.15
 # Factors by which the radius of a fit may lie outside the range of its level; the adjacent levels find it, too.
 LEAST_OF_LEVEL, MOST_OF_LEVEL = 0.8, 1.25
 
+# Radii that are tried in one level, an octave at most: steps of up to 10 %, which the first fit bridges.
+RADII_OF_LEVEL = 8
+
 
 @dataclass(frozen=True)
 class Level:

@@ -20,7 +20,7 @@ from ..neighborhoods.covariance import (
 from ..packages import spatial
 from ..params import SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..sampling.surface_noise import ON_PLANE, SURFACES, plane_roughness, surface_density
+from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE, SURFACES, plane_roughness, surface_density
 from ..segmentation.candidate_points import NO_OBJECTS
 from ..stage import Monitor, stage, tunable
 from ..threads import n_threads
@@ -28,9 +28,6 @@ from .surroundings import CELL
 
 # Radius of the neighborhood of a normal (times the roughness): large enough for an error of a few degrees.
 _REACH_DEVIATIONS = SURFACES.reach
-
-# Least number of points of a normal that is set automatically.
-_LEAST_NEIGHBORS = 8
 
 # Largest number of points of a normal that is set automatically: more would reach around corners.
 _MOST_NEIGHBORS = 30
@@ -159,11 +156,11 @@ def classify_walls(
 def _neighbors(xyz: np.ndarray, roughness: float) -> int:
     """Return the number of neighbors for the normal of a wall: few if walls are precise or thinly covered."""
     if not len(xyz):
-        return _LEAST_NEIGHBORS
+        return LEAST_NEIGHBORS
     # Use the density of walls, not of the cloud: from above and under eaves, walls have far fewer points.
     facade_density = surface_density(xyz)
     reached = np.pi * (_REACH_DEVIATIONS * roughness) ** 2 * facade_density
-    return int(np.clip(reached, _LEAST_NEIGHBORS, _MOST_NEIGHBORS))
+    return int(np.clip(reached, LEAST_NEIGHBORS, _MOST_NEIGHBORS))
 
 
 def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: float) -> np.ndarray:
