@@ -91,7 +91,7 @@ def test_doubt_changes_no_decision():
 
 def test_no_building_of_such_a_cloud_is_sure(rng, monkeypatch):
     """1,065 points over 1.4 km² were "1 building, 16,977 m², 0 doubtful"."""
-    xyz, _ = houses(rng, side=200.0, density=0.3)
+    xyz, _ = houses(rng, side=120.0, density=0.3)
     monitor, pipeline = Monitor(), PIPELINES["detect_buildings"]
     results = run_pipeline(pipeline, create_cloud({"xyz": xyz}), monitor=monitor)
     said = [one for one in monitor.warnings if "can hardly show buildings" in one]
