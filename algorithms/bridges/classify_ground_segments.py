@@ -153,6 +153,7 @@ def _bare_earth(
     n = len(segments)
     n_border = np.bincount(number, border, n)
     area = np.bincount(number, minlength=n) * cell**2
+    # The border includes the edge of the cloud.
     is_object = np.bincount(number, raised, n) >= MAJORITY * np.maximum(n_border, 1)
     is_object &= area <= max_object_area
     is_large = area >= min_area

@@ -155,6 +155,7 @@ def _searched(
     found: list[tuple[Facade, list[Opening]]] = []
     for done, facade in enumerate(sorted(facades, key=lambda facade: -facade.area), start=1):
         monitor.progress((done - 1) / len(facades))
+        # What fills openings of others is no facade: panes, curtains, shop fronts.
         if is_filling[facade.points].mean() >= MAJORITY:
             continue
         openings = find_openings(facade, xyz, _near(facade, xyz, max(max_depth, BEFORE)), max_depth, min_size)
@@ -232,6 +233,7 @@ def drawn_once(found: Found, xyz: np.ndarray, max_depth: float) -> Found:
         frame = found[own][0].frame
         ring, faces_as = frame.space(opening.ring), normals @ frame.normal >= _SAME_WAY
         others = [wall for k, wall in enumerate(walls) if k != own and faces_as[k]]
+        # It is one of the others, seen through a second wall.
         is_drawn = taken[opening.points].mean() >= MAJORITY
         if not is_drawn and not any(wall.hides(ring, max_depth) for wall in others):
             kept[own].append(opening)

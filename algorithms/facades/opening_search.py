@@ -200,6 +200,7 @@ def _opening(
     cells = len(np.unique(np.column_stack(raster.cell(behind[:, :2])), axis=0)) * raster.size**2
     seen = min(1.0, cells / (share * float(np.prod(box[1] - box[0]))))
     is_tall = box[1, 1] - box[0, 1] > _TALL and beside[3] < MAJORITY
+    # An opening has wall next to at least half of its outline, without the sill of a door.
     is_open = enclosed < MAJORITY or enclosed + beside.mean() < MAJORITY + _EDGED
     if is_open or seen < _SEEN or is_tall:
         return None

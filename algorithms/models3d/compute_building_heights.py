@@ -330,6 +330,7 @@ def _are_roof(xyz: np.ndarray, planes: RoofPlanes, spacing: float) -> np.ndarray
     """Return the mask of the roof's points (n, 3), m: on planes with most of their points on top."""
     near = spatial.cKDTree(xyz[:, :2]).query(xyz[:, :2], min(_BESIDE, len(xyz)))[1]
     is_under, is_on = xyz[near, 2].max(axis=1) > xyz[:, 2] + RULES.below, planes.label >= 0
+    # With fewer points on planes it is a dome or a wreck.
     if is_on.mean() < MAJORITY:
         return ~is_under
     count, under = (np.bincount(planes.label[one], minlength=len(planes)) for one in (is_on, is_on & is_under))

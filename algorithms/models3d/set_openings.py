@@ -96,6 +96,7 @@ def _cut_back(rings: list[np.ndarray], flat: np.ndarray):
     low, high = outer.min(axis=0) + _MARGIN, outer.max(axis=0) - _MARGIN
     inner = np.clip(flat, low, high)
     kept = np.ptp(inner, axis=0).prod() / max(np.ptp(flat, axis=0).prod(), 1e-9)
+    # An opening is cut to its wall only if most of it lies there.
     if kept < MAJORITY or not are_inside(inner, outer).all():
         return None
     closed = np.concatenate([inner[::-1], inner[-1:]])

@@ -131,6 +131,7 @@ def local_planes(
         planes.neighbors[rows] = neighbors[:, 1:]
         offsets = (xyz[neighbors] - own[:, None]).astype(np.float32)
         chosen = inliers(offsets, near, tolerance)
+        # With less, the other side of an edge could be the plane.
         enough = chosen.sum(axis=1) >= np.maximum(LEAST_POINTS, MAJORITY * near.sum(axis=1))
         store_planes(planes, rows[enough], *fit_planes(offsets[enough], chosen[enough]))
 

@@ -66,6 +66,7 @@ def joined_planes(
     # A plane across a ridge loses most of its points to the roofs on both sides.
     kept = np.bincount(nearest.plane[nearest.plane >= 0], minlength=len(planes)) / planes.count
     area = np.bincount(group, pieces.area, len(planes)) * np.minimum(kept, 1)
+    # A plane across others keeps less when each point goes to its nearest plane.
     large = (area >= min_area) & (kept >= MAJORITY)
     is_large = large[group]
     group = (np.cumsum(large) - 1)[group[is_large]]

@@ -315,6 +315,7 @@ class CylinderSearch:
             return None
         seen, filled = self.evidence.coverage(along, cylinder.angle(away), cylinder)
         sagitta = cylinder.radius * (1 - np.cos(np.pi * min(seen, 0.5)))
+        # Half of the cells of its surface hold points at least, and a flatter arc is a plane.
         if seen < self.min_seen or filled < MAJORITY or sagitta < _LEAST_SAGITTA * self.noise:
             return None
         rms = float(np.sqrt(((distance - cylinder.radius) ** 2).mean()))

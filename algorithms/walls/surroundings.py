@@ -110,6 +110,7 @@ class Surroundings:
             roof = self._at(along + distance * outward)[1]
             is_beside |= (roof > 0) & (roof != number)
         count = np.bincount(side, minlength=len(sides))
+        # A side is a party wall if another roof begins next to at least half of it.
         return np.bincount(side, is_beside, len(sides)) >= MAJORITY * np.maximum(count, 1)
 
 

@@ -172,6 +172,7 @@ def find_lines(
         if line is None or len(line.points) < least:
             break
         start, end = line.along.min(), line.along.max()
+        # A line is a wall where at least half of it has points.
         if end - start < min_length or scale.covered(line.along, start, end) < MAJORITY:
             break
         lines.append(line)
