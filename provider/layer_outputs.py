@@ -48,8 +48,10 @@ def write_layer(given: Given, name: str, layer: Layer, features: LayerFeatures, 
         if Path(target.split("|")[0]).suffix.lower() == GPKG:
             store_styles(target, layer_style(layer), layer.fields)
     target = final(target)
-    styler = Styler(layer_style(layer), layer.fields, run=given.as_text())
-    show_on_load(given.context, target, layer.geometry, styler)
+    if given.context.willLoadLayerOnCompletion(target):
+        # For the text QGIS tries to open each input as a layer of any kind, and its libraries print what they can't.
+        styler = Styler(layer_style(layer), layer.fields, run=given.as_text())
+        show_on_load(given.context, target, layer.geometry, styler)
     if not len(features):
         switch_off(given.context, [target])
         if layer.on_demand:

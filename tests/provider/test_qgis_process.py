@@ -45,6 +45,15 @@ def test_a_laz_goes_through(qgis_process, field, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["out.laz"]
 
 
+def test_a_layer_comes_without_words_of_other_libraries(qgis_process, field, tmp_path):
+    """QGIS must not be asked to open the cloud as a layer: it tries all kinds, and libraries print what they can't."""
+    given = {"INPUT": str(field), "OUTPUT": str(tmp_path / "out.laz"), "PLANES": str(tmp_path / "planes.geojson")}
+    done = qgis_process("--json", "run", "lidarbuildings:segmentplaneshough", "-", stdin=json.dumps({"inputs": given}))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "planes.geojson").is_file()
+    assert "Unable to load" not in done.stdout + done.stderr
+
+
 def test_help_names_every_parameter_and_output(qgis_process):
     done = qgis_process("help", "lidarbuildings:detectbuildings")
     assert done.returncode == 0, done.stderr
