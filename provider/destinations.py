@@ -27,7 +27,7 @@ class Made:
     #: "output" for a cloud, "report" for a page; a text file has the name of the output
     declared: Declared
     optional: bool = True
-    by_default: bool = True  #: Whether the dialog makes it unless told otherwise
+    by_default: bool = True  #: Whether the dialog makes it by default
     only_with: tuple[str, ...] = ()  #: Names of layers, or of the reference, of which one must be given
 
     @property

@@ -62,7 +62,7 @@ def installation_text() -> str:
 
 
 def show_installation(iface: Any) -> None:
-    """Show what is installed, and offer to install what is missing."""
+    """Show the installed versions, and offer to install missing packages."""
     InstallationDialog(iface.mainWindow()).exec()
 
 

@@ -119,7 +119,7 @@ def open_dialog(iface: Any) -> None:
 
 
 def _is_wanted(iface: Any, parameters: dict[str, Any]) -> bool:
-    """Tell how much of a cloud on the web a run reads; return whether the user wants it, where it is over the limit."""
+    """Say how much of a cloud on the web a run reads; if it is over the limit, return whether the user wants it."""
     try:
         size = _size_of_view(parameters)
         if size is None:

@@ -13,7 +13,7 @@ from qgis.PyQt.QtWidgets import QMessageBox, QPushButton, QWidget
 def question_box(parent: Optional[QWidget], title: str, text: str) -> QMessageBox:
     """Return the window of a question whose text is shown as it is, character by character; No is the default.
 
-    Qt would take an address or a path with markup in it for HTML, and not show a part of what is asked for.
+    Qt would take an address or a path with markup for HTML and hide a part of it.
     """
     buttons = QMessageBox.StandardButton
     box = QMessageBox(QMessageBox.Icon.Question, title, text, buttons.Yes | buttons.No, parent)

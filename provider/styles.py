@@ -204,7 +204,7 @@ def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:
 
 
 def show_on_load(context: QgsProcessingContext, target: str, kind: str, styler: Styler) -> None:
-    """Have the result ``target`` styled, and put at its place among the others, when and if it is loaded.
+    """Have the result ``target`` styled and ordered among the others if and when it is loaded.
 
     ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer.
     """

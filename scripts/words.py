@@ -33,16 +33,16 @@ class Form(NamedTuple):
 
 
 FORMS = {
-    "so many, so much, so far": Form(r"\bso (?:many|much|far)\b", 0.1),
-    "stands, for a state": Form(r"\bstands?\b(?! (?:for|in the way))", 0.1),
-    "tells": Form(r"\btells?\b|\btold\b", 0.1),
-    "place for a position": Form(r"\b(?:at|of) (?:the |a |its |one |each )?places?\b", 0.1),
-    "let go, hears": Form(r"\blet go\b|\bhears?\b", 0.1),
-    "none as a predicate": Form(r"(?-i:\b(?:is|are|be) none\b)", 0.1),
-    "what is, for a noun": Form(r"\bwhat is\b(?! (?:missing|wrong|normal|new))", 0.1),
+    "so many, so much, so far": Form(r"\bso (?:many|much|far)\b", 0.05),
+    "stands, for a state": Form(r"\bstands?\b(?! (?:for|in the way))", 0.05),
+    "tells": Form(r"\btells?\b|\btold\b", 0.05),
+    "place for a position": Form(r"\b(?:at|of) (?:the |a |its |one |each )?places?\b", 0.05),
+    "let go, hears": Form(r"\blet go\b|\bhears?\b", 0.05),
+    "none as a predicate": Form(r"(?-i:\b(?:is|are|be) none\b)", 0.05),
+    "what is, for a noun": Form(r"\bwhat is\b(?! (?:missing|wrong|normal|new))", 0.05),
     "return which, for a mask": Form(r"\breturns? which\b", 0.05),
-    "beside, for next to": Form(r"\bbeside\b", 0.1),
-    "that of, those of": Form(r"\b(?:that|those) of\b", 0.2),
+    "beside, for next to": Form(r"\bbeside\b", 0.05),
+    "that of, those of": Form(r"\b(?:that|those) of\b", 0.1),
 }
 SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.01
 

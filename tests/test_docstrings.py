@@ -73,3 +73,7 @@ def test_the_body_of_a_stage_is_near_its_name():
 def test_a_stage_has_an_example_that_runs():
     """The doctests of its module run it."""
     assert not [name for name, stage in ALL.items() if ">>>" not in stage.section("Examples")]
+
+
+def test_headings_of_sections_are_on_lines_of_their_own():
+    assert not [name for name, node in functions() if re.search(r"\w -{3,}|-{3,} \w", ast.get_docstring(node) or "")]

@@ -96,9 +96,9 @@ def refine_buildings(
 
     The classes at hand are the labels of a logistic regression. On one half of the scene it learns how points of
     buildings differ from all others in shape, height, returns and intensity. It then gives a probability to each point
-    of the other half, and the reverse. Points up to 2 m from the edge of a building then get new classes,
-    all together: those that contradict the probabilities, the classes so far and each other least. A minimum cut in the
-    graph of nearest neighbors finds them. Nothing comes from outside the cloud.
+    of the other half, and the reverse. Points up to 2 m from the edge of a building then get new classes, all together:
+    the ones that contradict the probabilities, the present classes and each other least. A minimum cut in the graph of
+    nearest neighbors finds them. Nothing comes from outside the cloud.
 
     Parameters
     ----------
@@ -130,8 +130,8 @@ def refine_buildings(
         Points that look like buildings become 6, points of buildings that don't become 1; ground, water, bridge decks,
         noise and points up to 0.5 m above the ground never change.
     cluster_id : ndarray of shape (n,), int32
-        Buildings from 1 without gaps; points that become building get the nearest one, and those of
-        reviewed buildings that were deleted keep theirs.
+        Buildings from 1 without gaps; points that become building get the nearest one, and points of deleted reviewed
+        buildings keep their number.
     confidence : ndarray of shape (n,), float32, or None
         Points that change get their probability, other points of buildings the geometric mean of theirs and it; None
         where not given.

@@ -76,7 +76,7 @@ class ReviewedBuildings:
         height : ndarray of shape (n,)
             Heights above ground, m.
         found : tuple of four ndarrays of shape (n,)
-            What is returned, so far; confidences and reasons may be None.
+            The values before the decisions; confidences and reasons may be None.
         monitor : Monitor
             Receives progress.
         """

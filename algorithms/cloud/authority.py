@@ -56,7 +56,7 @@ class Authority(Protocol):
     def to_radians(self, plane: str, positions: np.ndarray) -> tuple[np.ndarray, Optional[Area]]:
         """Return longitude and latitude (n, 2), radians, of positions (n, 2) in a plane, and the area it is made for.
 
-        They are infinite where there are none; the area is None where it is not known.
+        Positions that the plane can't map are infinite; an unknown area is None.
         """
 
 
@@ -91,7 +91,7 @@ def use_authority(authority: Authority) -> None:
 
 
 def authority_here() -> Optional[Authority]:
-    """Return what makes systems in this process: what the host program uses, else pyproj where it is installed."""
+    """Return the authority of this process: the host program's, else pyproj if it is installed, else None."""
     return _of_host[0] if _of_host else _pyproj()
 
 

@@ -104,8 +104,8 @@ CrsReader = Callable[[Header], Crs]
 def read_crs(header: Header, authority: Optional[Authority] = None, given: str = "") -> Crs:
     """Return the coordinate reference system of a file.
 
-    WKT counts before GeoKeys, but in formats 0 to 5 whose header names GeoKeys. A file that names no system has that
-    of the virtual point cloud which it is a tile of, else the given one.
+    WKT counts before GeoKeys, but in formats 0 to 5 whose header names GeoKeys. A file that names no system takes the
+    system of the virtual point cloud that lists it, else the given one.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def _on_the_ground(crs: Crs, header: Header, authority: Authority) -> Crs:
     is_within = area is None or area.holds(*np.degrees(radians[0]))
     if is_within and high / low > _LARGEST_DISTORTION:
         raise ValueError(
-            f"The map of {crs.title} stretches lengths by direction here; reproject the cloud to a system of the place."
+            f"The map of {crs.title} stretches lengths by direction here; reproject the cloud to a local system."
         )
     scale = round(np.sqrt(high * low) / _STEP) * _STEP
     here = f"A meter on the ground is {scale:.4f} m on the map of {crs.title} here"

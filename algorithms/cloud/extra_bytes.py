@@ -34,8 +34,8 @@ def _parsed(raw: bytes) -> Any:
 class ExtraField:
     """One extra dimension of a file.
 
-    ``raw`` is its descriptor as in the file, 192 bytes, or None for bytes without a descriptor; ``dtype`` is that of a
-    record, before scale and offset.
+    ``raw`` is its descriptor as in the file, 192 bytes, or None for bytes without a descriptor; ``dtype`` is the type
+    in a record, before scale and offset.
     """
 
     name: str

@@ -28,7 +28,7 @@ def split_address(address: str) -> SplitResult:
     Raises
     ------
     ValueError
-        If it is none, or has a user name or password in it, which logs and histories would keep.
+        If the text is no address, or has a user name or password in it, which logs and histories would keep.
     """
     try:
         parts = urlsplit(address)
@@ -74,7 +74,7 @@ def redirected(address: str, location: str) -> str:
     Raises
     ------
     ValueError
-        If it is none, or leads from a public address to one of this computer or its network.
+        If the text is no address, or leads from a public address to one of this computer or its network.
     """
     leads = urljoin(address, location)
     try:

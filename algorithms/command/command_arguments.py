@@ -28,7 +28,7 @@ def find_algorithm(word: str) -> Pipeline:
     Raises
     ------
     ValueError
-        If there is none.
+        If no algorithm has the name.
     """
     name = SHORT_NAMES.get(word, word.replace("-", "_"))
     if name in PIPELINES:

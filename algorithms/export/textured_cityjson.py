@@ -48,7 +48,7 @@ def cityjson_pieces(models: Collection[ExportedModel], called: str, frame: MapFr
 
 
 class _Look:
-    """The image of all faces with textures, and the places in it that corners were given so far."""
+    """The image of all faces with textures, and the positions in it that corners have been given."""
 
     def __init__(self, faces: Sequence[Face]) -> None:
         images = [face.texture.image for face in faces if face.texture is not None]
@@ -57,7 +57,7 @@ class _Look:
         self._number = {id(face): number for number, face in enumerate(faces)}
 
     def of(self, face: Face) -> list[list[Optional[int]]]:
-        """Return the texture of each ring of a face: number of the image, then of the places; None without one."""
+        """Return the texture of each ring of a face: number of the image, then of the positions; None without one."""
         if self.atlas is None or id(face) not in self._number:
             return [[None] for _ in face.rings]
         across, down = self.atlas.coordinates(self._number[id(face)], face.texture, face.corners).T

@@ -21,7 +21,7 @@ _EQUATORIAL, _POLAR = 6_378_137.0, 6_356_752.314245
 # Buildings in a file, at most: about 1 MB.
 _BUILDINGS = 100
 
-# Divisions of the quadtree, at most: where buildings lie at one place, dividing ends.
+# Deepest level of the quadtree: it ends the division of buildings at one position.
 _DEEPEST = 16
 
 # Rounding (m) of vertices to 24 bits, which stay within their box.

@@ -1,4 +1,4 @@
-"""Tell doors from windows by the approach: ground, a landing or steps before the opening."""
+"""Distinguish doors from windows by the approach: ground, a landing or steps before the opening."""
 
 from __future__ import annotations
 

@@ -103,14 +103,14 @@ def extract_openings(
 
     Notes
     -----
-    The paper states that size, position and arrangement of the elements of a facade are obtained (section 4), and
-    not how. Points within three times the rms of the plane are wall; points up to the maximum depth behind it
-    are of openings. Both are laid on cells of 1.2 spacings of the wall. Cells behind that lie within 0.3 m of each
-    other with no wall between are one opening. It must have wall within 0.15 m along half of its outline, where the
-    sill of a door does not count, and points in a tenth of its area. The share of its outline and that of its sides
-    along which the wall has an edge add up to 0.83 at least. Its sides are the edges of the wall
-    where these lie within 0.3 m of the points. It is a rectangle unless the convex hull of its points fills less than
-    three quarters of it, as of a triangular window. Panes with at most 0.15 m between them are one window.
+    The paper states that size, position and arrangement of the elements of a facade are obtained (section 4), and not
+    how. Points within three times the rms of the plane are wall; points up to the maximum depth behind it are of
+    openings. Both are laid on cells of 1.2 spacings of the wall. Cells behind that lie within 0.3 m of each other with
+    no wall between are one opening. It must have wall within 0.15 m along half of its outline, where the sill of a door
+    does not count, and points in a tenth of its area. The share of its outline and the share of its sides along which
+    the wall has an edge add up to 0.83 at least. Its sides are the edges of the wall where these lie within 0.3 m of
+    the points. It is a rectangle unless the convex hull of its points fills less than three quarters of it, as of a
+    triangular window. Panes with at most 0.15 m between them are one window.
 
     A door is 1.8 m high at least, or 1.5 m where no wall is seen above it. Ground, a landing or steps up to ``BEFORE``
     m before the wall rise to within 0.4 m of its sill, with no wall seen further down. Where nothing is seen before the

@@ -25,7 +25,7 @@ from ..stage import Monitor, stage, tunable
 
 
 class _Described:
-    """What the features (m,) of the neighborhoods of m points are computed from. What is undefined is NaN.
+    """Input of the features (m,) of the neighborhoods of m points. Undefined values are NaN.
 
     l1 >= l2 >= l3 are the eigenvalues (m, 3) of a covariance, m². Lengths are in m.
     """
@@ -207,9 +207,9 @@ def compute_features(
 
     Where the cloud has fewer points than a neighborhood asks for, it is made of all of them. Of several points equally
     far at the end of a neighborhood of 'nearest' or 'optimal', each counts in part, so that their order in the cloud
-    decides nothing. This holds as long as they are among the 1.3 (sqrt(k) + 1)² nearest; the features of extent are
-    those of all of them. 'optimal' tries the minimum of nearest points, then a step more, up to the maximum, and takes
-    the one with the least eigenentropy; of several that differ by rounding only, the smallest.
+    decides nothing. This holds as long as they are among the 1.3 (sqrt(k) + 1)² nearest; the features of extent count
+    all of them. 'optimal' tries the minimum of nearest points, then a step more, up to the maximum, and takes the one
+    with the least eigenentropy; of several that differ by rounding only, the smallest.
 
     References
     ----------

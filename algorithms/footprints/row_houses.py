@@ -321,7 +321,7 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[fl
     Parameters
     ----------
     pays : ndarray of shape (n,)
-        What a wall before each run pays, in whole steps; -inf where there can be none.
+        Value of a wall before each run, in whole steps; -inf if no wall is possible.
     length : ndarray of shape (n,), int64
         Nodes of each run.
     step : float
@@ -329,7 +329,7 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[fl
     """
     count, narrowest = len(pays), int(np.ceil(ROWS.narrowest / step))
     starts = range(0, count, narrowest)
-    # No more than one wall stands in each strip as wide as the narrowest house.
+    # Each strip as wide as the narrowest house has one wall at most.
     if np.maximum.reduceat(pays, starts).clip(0).sum() <= ROWS.row * STEPS_OF_LABELS:
         return 0.0, np.zeros(0, np.int64)
     area = np.concatenate([[0], np.cumsum(length)]) * step**2

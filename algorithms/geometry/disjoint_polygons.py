@@ -26,7 +26,7 @@ def divide_overlap(one: Rings, other: Rings, of_one: np.ndarray, of_other: np.nd
     Returns
     -------
     one, other : list of ndarray of shape (k, 2)
-        The lists given where nothing is lost; otherwise the rings of what is left, perhaps in several parts or none.
+        The lists given if nothing is lost; otherwise the rings of the remainder, perhaps in several parts or none.
         Pieces in which both have as many points stay in the first.
     """
     # Near the origin, where rounding is small.

@@ -126,7 +126,7 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
     widest = float((second[:, 1, 0] - second[:, 0, 0]).max())
     low = np.searchsorted(west, first[:, 0, 0] - widest)
     count = np.searchsorted(west, first[:, 1, 0], side="right") - low
-    # Each strip from south to north has many: those of a country do not fit in memory at once.
+    # Each strip from south to north has many pairs; the pairs of a country do not fit in memory at once.
     part, found = np.cumsum(count) // PAIRS_AT_ONCE, []
     for rows in np.split(np.arange(len(first)), np.flatnonzero(np.diff(part)) + 1):
         near, step = items(count[rows])

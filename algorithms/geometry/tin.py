@@ -31,7 +31,7 @@ class Tin:
     """Delaunay triangulation of ``nodes`` in plan, defined everywhere.
 
     Four far corners, each as high as the node nearest to it, surround the nodes, so that every
-    point lies in a facet; ``is_extrapolated`` returns which facets have such a corner.
+    point lies in a facet; ``is_extrapolated`` marks the facets with such a corner.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ class _Thinning:
         self.changed = np.zeros(len(cells), np.int32)
 
     def run(self, monitor: Monitor) -> np.ndarray:
-        """Remove voxels until nothing changes; return which are kept (m,)."""
+        """Remove voxels until nothing changes; return the mask (m,) of kept ones."""
         step, n_removed = 0, 1
         while n_removed:
             n_removed = 0

@@ -104,7 +104,7 @@ def classify_segments(
     Raises
     ------
     ValueError
-        If no point has a segment, or a picked number is not that of one. If the layer has no attribute id, heights are
+        If no point has a segment, or no segment has a picked number. If the layer has no attribute id, heights are
         limited without being known, or a minimum is above its maximum.
 
     Notes

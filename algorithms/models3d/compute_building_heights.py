@@ -143,8 +143,8 @@ def compute_building_heights(
     The ground is the ``GROUND_PERCENTILE``th percentile of the ground points nearest to the outline; heights are above
     the median of these. Eaves are looked for where no other footprint adjoins.
 
-    Where no point has class 6, roofs are the planes among the unclassified points 2 m or more above the
-    ground, and those clearly above them or next to them are vegetation.
+    Where no point has class 6, roofs are the planes among the unclassified points ``LASER.lowest_roof`` m or more
+    above the ground, and those clearly above them or next to them are vegetation.
 
     References
     ----------

@@ -105,8 +105,8 @@ def merge_clouds(
     millions of meters, give nine decimals or more.
 
     Clouds that lie apart are merged all the same; a warning names a cloud whose bounding box is more than ``_APART`` m
-    away from those of all the others. Ids of segments and clusters stay as they are, so that two clouds may have the
-    same ones. The order of points is kept; withheld points are left out.
+    away from all others. Ids of segments and clusters stay as they are, so that two clouds may have the same ones. The
+    order of points is kept; withheld points are left out.
 
     References
     ----------

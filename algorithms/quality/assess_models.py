@@ -34,8 +34,8 @@ _UPRIGHT = 1e-3
 # Slope (°) of the steepest plane of a roof; steeper ones are walls.
 _MAX_SLOPE = 75.0
 
-# Largest angle (°) between the normals of a point and of its plane: those of a dozen points with 3 cm of noise vary by
-# less than half.
+# Largest angle (°) between the normals of a point and of its plane: normals of a dozen points with 3 cm of noise vary
+# by less than half.
 _FACING = 25.0
 
 # Percentile of the fields and measures named p95.

@@ -227,7 +227,7 @@ def _height_changes(
 
 
 def _numbers(values: Any) -> Optional[np.ndarray]:
-    """Return the values (n,) of an attribute, NaN where there is none; None if it is absent or has other values."""
+    """Return the values (n,) of an attribute, NaN if missing; None if it is absent or has other values."""
     try:
         found = np.array(values, float)
     except (TypeError, ValueError):

@@ -67,7 +67,8 @@ def _update_in_windows(
 ) -> tuple[LayerFeatures, LayerFeatures, Report]:
     """Update a map square by square of a side (m), with the points that ``read`` returns in a box (2, 2), m.
 
-    These are of the survey, and of the earlier one. What is usual of the map is measured on all outlines, before.
+    These are the points of the survey, and of the earlier one. The usual shift and overhang of the map are measured
+    on all outlines before.
     """
     # Refuses an attribute that the map does not have.
     feature_names(old_map, id_field)

@@ -64,7 +64,7 @@ class CloudSampling:
     corner : ndarray of shape (2,), optional
         Least easting and northing of the whole, m, where cells begin; of ``points``, unless given.
     has_colors : bool
-        Whether points have colors, as those of images have.
+        Whether points have colors, as in clouds of images.
 
     Attributes
     ----------

@@ -107,9 +107,9 @@ def segment_roofs(
 
     Notes
     -----
-    The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which
-    a point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². Noise over that of the
-    ground points is of crowns and does not count. This is the "more robust segmentation" that the paper names as future
+    The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which a
+    point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². Noise in excess of the
+    ground's comes from crowns and does not count. This is the "more robust segmentation" that the paper names as future
     work.
 
     In clouds of matched images, walls and other points below the surface seen from above are left out, and planes are

@@ -122,8 +122,8 @@ def segment_voxels(
         Segments from 1, in the order of their first points; 0 is noise, and points of voxels that were empty by count,
         removed by the operation, or of segments that are too small.
     voxels : LayerFeatures
-        Centers of voxels, from west to east, then south to north, then upward. With *Skeleton only* those of the
-        skeleton; distances are those before thinning.
+        Centers of voxels, from west to east, then south to north, then upward. With *Skeleton only* the centers of the
+        skeleton; distances are measured before thinning.
 
     Raises
     ------

@@ -24,8 +24,8 @@ class EVIDENCE:
     #: Least share of the points within the tolerance, of those that face the axis within twice the tolerance. It is
     #: 0.97 of plates that protrude by one to two standard deviations, 0.82 of elbows, 0.5 without a surface.
     close: float = 0.9
-    #: Largest median angle (°) between normals and the directions away from the axis, in addition to that of uneven
-    #: points: the rounded normals of an edge have more
+    #: Largest median angle (°) between normals and the directions away from the axis, in addition to the angle of
+    #: uneven points: the rounded normals of an edge have more
     median_angle: float = 10.0
     #: Median angle (°, times point spacing over radius) by which normals are off because points are uneven. The center
     #: of random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that there.

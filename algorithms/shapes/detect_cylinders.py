@@ -64,10 +64,10 @@ def detect_cylinders(
     most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes
     along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least
     squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over
-    enough of its circumference, without a bend and with little inside. The surface must end at the visible arc, unlike
-    that of a kerb, which goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that
-    a flange or the shadow of another object separates are put together, if one cylinder lies as close to the
-    points of each as its own one.
+    enough of its circumference, without a bend and with little inside. The surface must end at the visible arc; the
+    surface of a kerb goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that a
+    flange or the shadow of another object separates are put together, if one cylinder lies as close to the points of
+    each as its own one.
 
     Parameters
     ----------

@@ -106,7 +106,7 @@ _INTERVAL = re.compile(r"(?:(?P<opens>[\[(])(?P<low>\S+), (?P<high>[^\s\])]+)(?P
 
 
 def _bound(text: Optional[str]) -> Optional[float]:
-    """Return the number of a bound, None for an infinite one and where there is none."""
+    """Return the number of a bound, None for an infinite or missing one."""
     value = float(text or "inf")
     return None if math.isinf(value) else int(value) if value.is_integer() else value
 

@@ -49,8 +49,8 @@ def _largest_building(terrain: str) -> float:
 _GRANULARITIES = {"coarse": 2.0, "medium": 1.0, "fine": 1.0, "extra fine": 0.5}
 
 # Least distance (m) around a part of a cloud within which points decide on its ground. In blocks of Delft with this
-# much around them, buildings are those of the whole cloud on 99.8 % of the points, and on no more with twice as much:
-# the rest depends on where cells begin.
+# reach, buildings agree with the whole cloud on 99.8 % of the points, and on no more with twice the reach: the rest
+# depends on where cells begin.
 _REACH = 40.0
 
 

@@ -28,7 +28,7 @@ _DEPTH_SPACINGS = 0.4
 # Least depth in standard deviations of the ground around, if that is more: rough ground has true hollows.
 _DEPTH_DEVIATIONS = 6.0
 
-# Above this deviation (m) the ground around is too rough to tell a pit.
+# Above this deviation (m) the ground around is too rough to show a pit.
 _ROUGH = 0.25
 
 # A group of this many points needs no more than the least depth.

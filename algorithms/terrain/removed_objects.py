@@ -154,7 +154,7 @@ class ObjectRemoval:
 class _Side:
     """The cells of a surface and those next to them on one side."""
 
-    #: here, beside: slices that select the cells and their neighbors on this side
+    #: here, beside: Slices of the cells and of their neighbors on this side
     here: tuple[slice, ...]
     beside: tuple[slice, ...]
     joins: np.ndarray  #: (of the shape selected), bool: whether a cell joins the one next to it without a step

@@ -53,8 +53,8 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     is_occupied[row, column] = True
     is_far = ndimage.distance_transform_edt(~has_ground) > radius
     opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
-    # On a slope a point may lie higher than the lowest one of its cell, but not higher than that of the next cell
-    # uphill.
+    # On a slope a point may lie higher than the lowest one of its cell, but not higher than the lowest one of the next
+    # cell uphill.
     highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
     is_above = is_ground & (xyz[:, 2] > highest[row, column] + LASER.foot)
     above = np.zeros(lowest.shape, bool)

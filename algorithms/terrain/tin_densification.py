@@ -53,7 +53,7 @@ class JoinRules:
 
     def limits(self, nodes: np.ndarray) -> tuple[float, float]:
         """Return the largest distance (m) and angle (°) at which a point joins the TIN of ``nodes``."""
-        # Roughness is that of a sample; of fewer nodes it is that of all, as the angle is.
+        # Roughness and angle are measured on a sample, or on all nodes if they are fewer.
         fits = node_fits(nodes) if self.estimates_angle and 3 < len(nodes) < 2 * SURFACES.sample else None
         return self.distance(nodes, fits), self.angle(nodes, fits)
 

@@ -57,19 +57,14 @@ def side_of_blocks(density: float, halo: float, most_points: float = MOST_POINTS
     return float(min(max(fits, least), _LEAST_SIDE))
 
 
-def memory_of_window(density: float, side: float, halo: float, points: float) -> float:
-    """Return the bytes that a worker needs for a block and what is around it.
+def points_of_window(density: float, side: float, halo: float) -> float:
+    """Return the points of a block (``side``, m) and up to ``halo`` (m) around it, ``density`` of them per m²."""
+    return density * (side + 2 * halo) ** 2
 
-    Parameters
-    ----------
-    density : float
-        Points per m².
-    side, halo : float
-        Side of a block, and distance around it within which points are read, m.
-    points : float
-        Points of the whole survey, which a window has at most.
-    """
-    return _BYTES_PER_POINT * min(density * (side + 2 * halo) ** 2, points)
+
+def memory_of(points: float) -> float:
+    """Return the bytes that a worker needs for a window of ``points``."""
+    return _BYTES_PER_POINT * points
 
 
 def larger_blocks(density: float, side: float, halo: float, memory: float, extent: float) -> Optional[str]:
@@ -90,7 +85,7 @@ def larger_blocks(density: float, side: float, halo: float, memory: float, exten
     now, then = ((1 + 2 * halo / one) ** 2 for one in (side, larger))
     if now < _WORTH_SAYING * then:
         return None
-    needed = _BYTES_PER_POINT * density * (larger + 2 * halo) ** 2
+    needed = memory_of(points_of_window(density, larger, halo))
     return (
         f"Each point is worked on {now:.1f} times. With {larger:.0f} m as 'Side of a block' it would be {then:.1f} "
         f"times, and each process would need {needed / 1e9:.1f} GB of memory."

@@ -22,7 +22,7 @@ from ..cloud.web_file import file_at, is_on_web
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
-from .block_plan import blocks_of, larger_blocks, memory_of_window, side_of_blocks
+from .block_plan import blocks_of, larger_blocks, memory_of, points_of_window, side_of_blocks
 from .block_result import BlockResult, flat
 from .blocks import MOST_HALOS, Block, BlockTask, feature_boxes, take_features, work_on_block
 from .cutting import cut_into_tiles
@@ -103,7 +103,7 @@ def check_can_be_tiled(pipeline: Pipeline) -> None:
 
 
 class _Plan(NamedTuple):
-    """How a survey is sampled, by step that asks, the side of its blocks (m), and what is read around each (m).
+    """The samplings of a survey by step, the side of its blocks (m), and the distance (m) read around each.
 
     ``memory`` is what a process needs for a block (bytes).
     """
@@ -157,7 +157,8 @@ class _Run:
         samplings = samplings_of(working, self.survey, settings.tunables, self.monitor.part(0.0, SAMPLED))
         density = samplings[""].density
         side = settings.options.block_side or side_of_blocks(density, halo)
-        plan = _Plan(samplings, side, halo, memory_of_window(density, side, halo, len(self.survey)))
+        points = min(points_of_window(density, side, halo), len(self.survey))
+        plan = _Plan(samplings, side, halo, memory_of(points))
         self.monitor.resolved(sampling=samplings[""])
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
         workers = settings.options.workers

@@ -174,7 +174,7 @@ def _shared_in_space(
 
 
 def _tolerance(features: LayerFeatures, layer: Layer) -> np.ndarray:
-    """Return the distances (n,), m, up to which another plane is the same as that of a feature."""
+    """Return the distances (n,), m, within which another plane is the same as a feature's."""
     return DEVIATIONS * np.asarray(features.columns[layer.deviation], float) + _LEAST
 
 

@@ -318,7 +318,7 @@ def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
 
 
 def _named_files(paths: Iterable[Union[str, Path]]) -> dict[Path, Named]:
-    """Return the files that files, virtual point clouds and folders of files name, each once, and what is said of each.
+    """Return the files named by files, virtual point clouds and folders, each once, with the facts stated about each.
 
     Raises
     ------

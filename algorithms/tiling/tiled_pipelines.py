@@ -61,7 +61,7 @@ class TiledPipeline:
 
     @property
     def group(self) -> str:
-        """The group of the toolbox: the composites in tiles stand together."""
+        """The group of the toolbox for the composites in tiles."""
         return "Models in tiles"
 
     @property

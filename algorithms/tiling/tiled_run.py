@@ -33,7 +33,7 @@ TakeFile = Callable[[Survey, str, FileContent], None]
 
 @dataclass(frozen=True)
 class TilesOptions:
-    """How a survey is read, worked on and written in tiles, and who gives and takes what is no point."""
+    """How a survey is read, processed and written in tiles, and the functions that pass layers, rasters and files."""
 
     #: Processes of this machine, by default one for each core
     workers: Workers = Workers()

@@ -98,7 +98,7 @@ class Workers:
         return min(count, _MOST_PROCESSES) if os.name == "nt" else count
 
     def memory(self, count: int) -> float:
-        """Return the bytes of memory that each of so many processes may take."""
+        """Return the bytes of memory for each of ``count`` processes."""
         return _SHARE_OF_MEMORY * installed_memory() / count
 
     @contextmanager

@@ -1,4 +1,4 @@
-"""Find the planes that are roofs, join those of each building, and split blocks at party walls."""
+"""Find the planes that are roofs, join the roofs of each building, and split blocks at party walls."""
 
 from __future__ import annotations
 

@@ -81,8 +81,8 @@ def classify_walls(
 ):
     """Find the points of walls below roofs: lower than roofs, upright, and inside the grown hull of a roof.
 
-    Each wall point gets the number of the roof above it (WallOf) and becomes building (class 6); ClusterID stays that
-    of roofs only, so that both can be distinguished.
+    Each wall point gets the number of the roof above it (WallOf) and becomes building (class 6); only roofs keep a
+    ClusterID, so that both can be distinguished.
 
     Parameters
     ----------

@@ -232,7 +232,7 @@ class _Outlined:
     parts: list[list[list[WallEdge]]]  #: Rings of each part, of walls or of the roof
 
     def redrawn(self, rings: list[np.ndarray]) -> list[list[list[WallEdge]]]:
-        """Return the parts within other rings (k, 2), m, with what is seen of their edges."""
+        """Return the parts within other rings (k, 2), m, with the seen share of their edges."""
         plan = [ring - self.house.origin for ring in rings]
         return _parts([[self._edge(start, end) for start, end in zip(ring, ring[1:])] for ring in plan])
 
