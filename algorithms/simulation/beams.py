@@ -1,4 +1,4 @@
-"""Beams and the surfaces that they meet: ground, solids, leaves, wires, exactly or to 0.01 mm."""
+"""Intersections of beams with ground, solids, leaves and wires, exact or to 0.01 mm."""
 
 from __future__ import annotations
 
@@ -13,49 +13,51 @@ from .pairs import rank
 from .relief import Relief
 from .scene import Scene
 
-# A wire this near (m) to the middle of the beam is in the beam, which is 0.2 m wide.
+# Largest distance (m) of a wire from the axis of a beam that it reflects: the radius of the beam.
 _WIRE_REACH = 0.1
 
-# Share of the wires in a beam that send something back: they cover a small part of it.
+# Probability that a wire in a beam returns an echo: it covers a small part of the beam.
 _WIRE_CHANCE = 0.7
 
-# Leaves on the way of a beam through one ellipsoid: the echoes of more would come too late to be recorded.
+# Most leaves that a beam meets in one ellipsoid: the echoes of more would come too late to be recorded.
 _LEAVES = 8
 
-# Ranges are found to this precision (m).
+# Precision of ranges (m).
 _PRECISION = 1e-5
 
 
 @dataclass(frozen=True)
 class Beams:
-    """Beams of one strip."""
+    """Beams of a scanner."""
 
-    pulse: np.ndarray  #: (n,): the pulse that each belongs to
-    #: origin, direction, (n, 3): where they start (m), and unit vectors
+    pulse: np.ndarray  #: (n,): number of the pulse
+    #: origin, direction, (n, 3): start (m) and unit vector
     origin: np.ndarray
     direction: np.ndarray
-    aim: np.ndarray  #: (n, 2): where they meet the plane that the ground follows (m)
+    #: (n, 2): coordinates in which candidates are searched: from the air, position on the plane of the ground (m); from
+    #: a drone or vehicle, azimuth and elevation (rad)
+    aim: np.ndarray
 
     def __len__(self) -> int:
         return len(self.aim)
 
     def take(self, which: np.ndarray) -> Beams:
-        """Return some of the beams, by index or mask."""
+        """Return the beams of a mask or at indices."""
         return Beams(self.pulse[which], self.origin[which], self.direction[which], self.aim[which])
 
     def at(self, which, ranges: np.ndarray) -> np.ndarray:
-        """Return the points (n, 3) of beams at ranges (m)."""
+        """Return the points (n, 3) at ranges (m) along beams."""
         return self.origin[which] + ranges[:, None] * self.direction[which]
 
     def echoes(self, which, ranges: np.ndarray, classification: np.ndarray, object_id: np.ndarray) -> Echoes:
-        """Return the surfaces that beams meet at ranges (m)."""
+        """Return the echoes of beams at ranges (m)."""
         numbers = object_id.astype(np.int32)
         return Echoes(self.pulse[which], ranges, self.direction[which], classification.astype(np.uint8), numbers)
 
 
 @dataclass(frozen=True)
 class Echoes:
-    """Things on the way of pulses: number of the pulse, range (m), direction (n, 3), class and object id."""
+    """Echoes of pulses: number of the pulse, range (m), direction (n, 3), class and object id."""
 
     pulse: np.ndarray
     range: np.ndarray
@@ -67,26 +69,26 @@ class Echoes:
         return len(self.pulse)
 
     def take(self, which: np.ndarray) -> Echoes:
-        """Return some of them, by index or mask."""
+        """Return the echoes of a mask or at indices."""
         return Echoes(*(getattr(self, field.name)[which] for field in fields(self)))
 
     def in_order(self) -> Echoes:
-        """Return them by pulse, then by range."""
+        """Return the echoes sorted by pulse, then by range."""
         return self.take(np.lexsort((self.range, self.pulse)))
 
     def first(self) -> Echoes:
-        """Return the nearest of each pulse."""
+        """Return the nearest echo of each pulse."""
         echoes = self.in_order()
         return echoes.take(rank(echoes.pulse) == 0)
 
 
 def join(parts: Sequence[Echoes]) -> Echoes:
-    """Return echoes of several kinds as one."""
+    """Concatenate echoes."""
     return Echoes(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Echoes)))
 
 
 class World:
-    """A scene as arrays, ready for beams. Columns of ``crowns`` and ``wires`` are as in :class:`.scene.Scene`."""
+    """A scene as arrays for ray casting. Columns of ``crowns`` and ``wires`` are as in :class:`.scene.Scene`."""
 
     def __init__(self, scene: Scene) -> None:
         self.relief: Relief = scene.relief
@@ -95,7 +97,7 @@ class World:
         self.wires: np.ndarray = np.array(scene.wires, float).reshape(-1, 7)
 
     def boxes(self, kind: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return lower and upper corners (m, 3) of the boxes around "solids", "crowns" or "wires"."""
+        """Return the lower and upper corners (m, 3) of the bounding boxes of "solids", "crowns" or "wires"."""
         if kind == "solids":
             return self.solids.low, self.solids.high
         if kind == "crowns":
@@ -105,13 +107,13 @@ class World:
         return ends.min(axis=1) - _WIRE_REACH, ends.max(axis=1) + _WIRE_REACH
 
     def surfaces(self, beams: Beams, beam: np.ndarray, solid: np.ndarray) -> Echoes:
-        """Return the end of each beam, in order: on ground, water or a solid that it may meet (pairs beam, solid)."""
+        """Return the last echo of each beam, in order: ground, water or a solid (candidates: pairs beam, solid)."""
         ranges = self.ground(beams)
         x, y, _ = beams.at(slice(None), ranges).T
         classes = np.where(self.relief.is_water(x, y), PointClass.WATER, PointClass.GROUND)
         objects = np.zeros(len(beams), np.int32)
         entered = self.solids.enter(solid, beams.origin[beam], beams.direction[beam])
-        # The nearest solid of each beam, then whether it is before the ground.
+        # The nearest solid of each beam counts if it is nearer than the ground.
         order = np.lexsort((entered, beam))
         order = order[rank(beam[order]) == 0]
         order = order[entered[order] < ranges[beam[order]]]
@@ -121,18 +123,18 @@ class World:
         return beams.echoes(slice(None), ranges, classes, objects)
 
     def ground(self, beams: Beams) -> np.ndarray:
-        """Return the ranges (n,) (m) at which beams meet ground or water, each exactly once.
+        """Return the ranges (n,) (m) at which beams meet ground or water.
 
-        The height of a beam over the ground falls all the way, so a bracket around the only zero shrinks by regula
-        falsi. The Illinois rule (halve the value at the end that stays) keeps it from creeping.
+        The clearance of a beam over the ground decreases along the beam, so it has a single zero. Regula falsi shrinks
+        a bracket around it; the Illinois rule (halve the value at the end that stays) keeps the convergence fast.
         """
         middle = np.linalg.norm(beams.aim - beams.origin[:, :2], axis=1)
         middle = np.hypot(middle, beams.origin[:, 2] - self.relief.plane(*beams.aim.T))
-        # Beams lean by at most 30° and the ground is within ``spread`` of its plane, so both ends are beyond the zero.
+        # Beams are at most 30° off the vertical, the ground is within ``spread`` of its plane: a bracket of the zero.
         margin = 3.0 * (self.relief.spread + 1.0)
         found, active = np.zeros(len(beams)), np.arange(len(beams))
         near, far = middle - margin, middle + margin
-        # Columns lie together in memory.
+        # Contiguous columns are faster.
         start, way = np.ascontiguousarray(beams.origin.T), np.ascontiguousarray(beams.direction.T)
         above, below = self._clearance(start, way, near), self._clearance(start, way, far)
         while len(active):
@@ -154,7 +156,7 @@ class World:
         return z - self.relief.surface(x, y)
 
     def leaves(self, beams: Beams, beam: np.ndarray, crown: np.ndarray, rng: np.random.Generator) -> Echoes:
-        """Return the leaves on the way of beams through ellipsoids (pairs beam, crown): a Poisson process."""
+        """Return echoes of leaves along beams through ellipsoids (pairs beam, crown), drawn by a Poisson process."""
         center, radius = self.crowns[crown, :3], self.crowns[crown][:, [3, 3, 4]]
         start, way = (beams.origin[beam] - center) / radius, beams.direction[beam] / radius
         # |start + t way| = 1, a quadratic equation.
@@ -173,10 +175,10 @@ class World:
         return beams.echoes(beam, ranges, vegetation_class(height), self.crowns[crown, 6])
 
     def strands(self, beams: Beams, beam: np.ndarray, wire: np.ndarray, rng: np.random.Generator) -> Echoes:
-        """Return the wires that beams touch (pairs beam, wire)."""
+        """Return the echoes of wires within beams (candidates: pairs beam, wire)."""
         start, along = self.wires[wire, :3], self.wires[wire, 3:6] - self.wires[wire, :3]
         origin, direction = beams.origin[beam], beams.direction[beam]
-        # The common perpendicular of two lines: both ends of it from the two scalar products.
+        # Both ends of the common perpendicular of two lines.
         apart = start - origin
         length2, lean = dot(along, along), dot(along, direction)
         on_beam, on_wire = dot(apart, direction), dot(apart, along)
@@ -189,11 +191,11 @@ class World:
 
 
 def is_vegetation(classification: np.ndarray) -> np.ndarray:
-    """Return the mask of classes that are low, medium or high vegetation."""
+    """Return the mask of low, medium and high vegetation."""
     return (classification >= PointClass.LOW_VEGETATION) & (classification <= PointClass.HIGH_VEGETATION)
 
 
 def vegetation_class(height: np.ndarray) -> np.ndarray:
-    """Return low (under 0.5 m), medium (under 2 m) or high vegetation by height over the ground (m)."""
+    """Return the vegetation class by height above ground (m): low under 0.5 m, medium under 2 m, otherwise high."""
     steps = np.array([PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION], np.uint8)
     return steps[np.searchsorted([0.5, 2.0], height, side="right")]

@@ -1,4 +1,4 @@
-"""Bridges and objects that look like them, each on a lot: terrain, decks, parapets, piers, quays, cars and trees."""
+"""Sites with bridges and similar objects, one per lot: terrain, decks, parapets, piers, quays, cars and trees."""
 
 from __future__ import annotations
 
@@ -14,66 +14,66 @@ from .scene import Scene
 # Side of a lot (m): the ramps of a fly-over are 46 m long on both sides of its span.
 LOT = 140.0
 
-# Obstacles end this far (m) before the border of their lot: neighbors do not meet.
+# Distance (m) of obstacles from the border of their lot, so that neighbors do not touch.
 _MARGIN = 4.0
 
-# Length (m) over which obstacles rise to the land at their ends.
+# Length (m) over which the bottom of an obstacle rises to the land at its ends.
 _FADE = 12.0
 
-# Vertical walls that are terrain are this steep (tangent): beams up to 30° off the vertical meet them once.
+# Slope of terrain walls, a tangent (60°): beams up to 30° off the vertical meet such ground once.
 _WALL = 1.7
 
-# Thickness of a deck (m): as of short concrete bridges.
+# Thickness of a deck (m), usual for short concrete bridges.
 _THICKNESS = 0.9
 
-# Height of parapets (m), as codes ask for.
+# Height of parapets (m), as building codes require.
 _PARAPET = 1.0
 
 # Width of parapets (m).
 _PARAPET_WIDTH = 0.25
 
-# Length (m) of a deck on the land at each end.
+# Length (m) of a deck that rests on the land at each end.
 _SEAT = 0.5
 
-# Length, width and height of a car (m): of a middle class.
+# Length, width and height of a mid-size car (m).
 _CAR = (4.3, 1.8, 1.45)
 
-# Way from one car to the next (m), in slow traffic.
+# Distance between cars (m), as in slow traffic.
 _CARS = 15.0
 
-# Slope of the ramps of a fly-over: steeper than roads, to keep lots small.
+# Slope of the ramps of a fly-over, a tangent: steeper than real roads, to keep lots small.
 _RAMP = 0.12
 
 # Height of a fly-over (m): trucks pass below.
 _FLY_OVER = 5.5
 
-# Slope of embankments and cuttings, two to three, as usual.
+# Slope of embankments and cuttings, a tangent: the usual 2 : 3.
 _BANK = 0.67
 
 
 @dataclass(frozen=True)
 class Kind:
-    """What a lot holds."""
+    """Kind of crossing: an obstacle and the decks over it."""
 
     half_width: float  #: Half the width of the obstacle between its edges, m
-    depth: float  #: Its depth under the land, m; negative where it rises above it
+    depth: float  #: Depth of the obstacle below the land, m; negative if it rises above the land
     bank: float  #: Slope of its banks, a tangent; they lie within ``half_width``
-    is_water: bool = False  #: Whether it holds water
-    decks: tuple[float, ...] = (9.0,)  #: Widths of the decks side by side, m; none where nothing crosses it
-    arch: float = 0.0  #: Height of the middle of a deck over its ends, m
+    is_water: bool = False  #: Whether the obstacle holds water
+    decks: tuple[float, ...] = (9.0,)  #: Widths of the decks side by side, m; empty without a bridge
+    arch: float = 0.0  #: Rise of the middle of a deck over its ends, m
 
     @property
     def width(self) -> float:
-        """Width (m) of all decks with the gaps of 1.5 m between them."""
+        """Total width (m) of the decks with gaps of 1.5 m between them."""
         return sum(self.decks) + 1.5 * (len(self.decks) - 1)
 
     @property
     def behind(self) -> float:
-        """How far (m) the slope to the bottom lies behind the edges: vertical quays are in front of it."""
+        """Distance (m) of the slope to the bottom behind the edges, which vertical quays hide."""
         return self.depth / _WALL if self.is_water and self.bank == _WALL else 0.0
 
 
-# What the lots hold, by the names of their kinds.
+# Kinds of crossings by name.
 KINDS = {
     "canal": Kind(9.0, 3.0, _WALL, True, (8.0,)),
     "arch": Kind(9.0, 3.0, _WALL, True, (6.0,), 0.9),
@@ -90,19 +90,16 @@ KINDS = {
 # Depth of the water (m).
 _WATER = 1.0
 
-# Half the length of the tunnel (m), over which the land goes on.
+# Half the length of the tunnel (m).
 _TUNNEL = 30.0
 
-# Slope of the road down to the mouths of the tunnel: steep, so that it begins within the lot.
+# Slope of the road down to the tunnel, a tangent: steep, so that it begins within the lot.
 _ROAD = 0.16
 
 
 @dataclass(frozen=True)
 class Lot:
-    """One kind at one site.
-
-    Its middle (m), the direction (rad) across the obstacle, and the angle (rad) of decks to it, the shortest way.
-    """
+    """A lot: kind of crossing, center (m), direction across the obstacle (rad), angle of the decks to it (rad)."""
 
     kind: str
     x: float
@@ -116,36 +113,36 @@ class Lot:
 
     @property
     def frame(self) -> Rect:
-        """The directions across the obstacle, as the length of a rectangle, and along it."""
+        """Frame of the lot: length across the obstacle, width along it."""
         return Rect(self.x, self.y, 1.0, 1.0, self.turn)
 
     def height(self, x, y) -> np.ndarray:
-        """Return the elevation (m) of the land, of the bottom under water."""
+        """Return the elevation (m) of the terrain; under water, of the bottom."""
         u, v = self.frame.local(x, y)
         obstacle = KINDS[self.kind]
         if self.kind == "fly-over":
             return self._embankment(u, v)
         fade = np.clip((LOT / 2 - _MARGIN - np.abs(v)) / _FADE, 0, 1)
         if self.kind == "ramp":
-            # A road that climbs along the lot and ends over a wall, as loading ramps do.
+            # A road climbs along the lot and ends at a wall, like a loading ramp.
             climb = np.clip((v + 35) * _RAMP, 0, -obstacle.depth) * (v < 5)
             side = (obstacle.half_width + 2 - np.abs(u)) * _WALL
             return np.clip(np.minimum(np.minimum(climb, side), np.maximum(5 - v, 0) * _WALL), 0, None)
         depth = np.clip((obstacle.half_width + obstacle.behind - np.abs(u)) * obstacle.bank, 0, obstacle.depth)
         if self.kind == "tunnel":
-            # The road comes down to both mouths between walls, and the land goes on over it between them.
+            # The road descends to both portals between walls; the land continues over the tunnel between them.
             down = np.clip((LOT / 2 - _MARGIN - np.abs(v)) * _ROAD, 0, obstacle.depth)
             return -np.minimum(np.minimum(depth, down), np.clip((np.abs(v) - _TUNNEL) * _WALL, 0, None))
         return -depth * fade
 
     def _embankment(self, u, v) -> np.ndarray:
-        """Return the height (m) of the ramps of a fly-over, which lie along its deck."""
+        """Return the elevation (m) of the embankments of a fly-over, in line with its deck."""
         cos, sin = np.cos(self.skew), np.sin(self.skew)
         along, across = u * cos + v * sin, v * cos - u * sin
         past = np.abs(along) - self.span / 2
         top = _FLY_OVER - np.clip(past - 2, 0, None) * _RAMP
         bank = (KINDS[self.kind].decks[0] / 2 + 8 - np.abs(across)) * _BANK
-        # Abutments follow the road below; the deck begins where they have its height.
+        # Abutments are parallel to the road below; the deck begins where they reach its height.
         wall = np.minimum(past, np.abs(u) - KINDS[self.kind].half_width) * _WALL + _FLY_OVER
         foot = np.minimum(bank, wall)
         return np.clip(np.minimum(top, foot), 0, None)
@@ -158,24 +155,24 @@ class Lot:
 
     @property
     def water_level(self) -> float:
-        """Elevation (m) of the water, -inf without any."""
+        """Elevation (m) of the water, -inf without water."""
         obstacle = KINDS[self.kind]
         return _WATER - obstacle.depth if obstacle.is_water else -np.inf
 
 
 @dataclass(frozen=True)
 class BridgeRelief(Relief):
-    """Level land with the obstacles of lots."""
+    """Level land with an obstacle per lot."""
 
     lots: tuple[Lot, ...] = field(default=())  #: Each fills a square of :data:`LOT` around its middle
 
     @property
     def spread(self) -> float:
-        """Largest height (m) of the land above or below the plane."""
+        """Upper bound (m) of the vertical distance from the ground to the plane."""
         return max(max(kind.depth, _FLY_OVER) for kind in KINDS.values())
 
     def ground(self, x, y) -> np.ndarray:
-        """Elevation (m) of the land, under water of the bottom."""
+        """Return the elevation (m) of the terrain; under water, of the bottom."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         z = np.zeros(x.shape)
         for lot in self.lots:
@@ -184,11 +181,11 @@ class BridgeRelief(Relief):
         return z
 
     def surface(self, x, y) -> np.ndarray:
-        """Elevation (m) of land or water, whichever is higher."""
+        """Return the elevation (m) of terrain or water, whichever is higher."""
         return np.maximum(self.ground(x, y), self._level(x, y))
 
     def is_water(self, x, y) -> np.ndarray:
-        """Return whether there is water at positions."""
+        """Return the mask of positions with water."""
         return self._level(x, y) > self.ground(x, y)
 
     def _level(self, x, y) -> np.ndarray:
@@ -201,7 +198,7 @@ class BridgeRelief(Relief):
 
 @dataclass(frozen=True)
 class Deck:
-    """A deck: its number, kind, angle (°) and rectangle."""
+    """A deck: object id, kind of crossing, angle (°) and footprint."""
 
     object_id: int
     kind: str
@@ -210,7 +207,7 @@ class Deck:
 
 
 def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the elevation (m) of the land of a site with its quays, of the bottom under water, at positions (n,)."""
+    """Return the elevation (m) of terrain and quays at positions (n,); under water, of the bottom."""
     z = np.array(scene.relief.ground(x, y))
     for lot in scene.relief.lots if isinstance(scene.relief, BridgeRelief) else ():
         kind = KINDS[lot.kind]
@@ -221,16 +218,16 @@ def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, seed: int) -> tuple[Scene, list[Deck]]:
-    """Return a site with a lot for each of ``kinds``, and its true decks, all at one angle to the shortest way across.
+    """Return a site with a lot for each of ``kinds``, and its true decks.
 
     Parameters
     ----------
     kinds : tuple of str
-        Kinds of crossings, a lot for each.
+        Kinds of crossings, one per lot.
     angle : float
-        Angle of the decks to the shortest way across, °.
+        Angle of the decks to the perpendicular of the obstacle, °.
     cars, trees : bool
-        Whether there are cars on the decks, and trees.
+        Whether to add cars on the decks, and trees.
     seed : int
         The same seed gives the same site.
     """
@@ -254,7 +251,7 @@ def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, se
 
 
 def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
-    """Put the decks of a lot with parapets, piers under long ones, and cars."""
+    """Add the decks of a lot with parapets, cars, and piers under long decks."""
     obstacle = KINDS[lot.kind]
     top = _FLY_OVER if lot.kind == "fly-over" else 0.05
     decks, at = [], -obstacle.width / 2
@@ -280,7 +277,7 @@ def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
 
 
 def _deck_top(rect: Rect, top: float, arch: float) -> np.ndarray:
-    """Return the planes of a deck whose ends are ``top`` (m) high, level or with a middle ``arch`` (m) higher."""
+    """Return the top planes of a deck with ends at elevation ``top`` (m) and a rise ``arch`` (m) in the middle."""
     if not arch:
         return flat(rect, top)
     half = rect.length / 2
@@ -294,7 +291,7 @@ def _deck_top(rect: Rect, top: float, arch: float) -> np.ndarray:
 
 
 def _cars(scene: Scene, deck: Rect, top: float) -> None:
-    """Put cars on both lanes of a deck."""
+    """Add cars on both lanes of a deck."""
     length, width, height = _CAR
     for side in (-1, 1):
         for along in np.arange(-deck.length / 2 + 5 + 3 * side, deck.length / 2 - 4, _CARS):
@@ -303,7 +300,7 @@ def _cars(scene: Scene, deck: Rect, top: float) -> None:
 
 
 def _quays(scene: Scene, lot: Lot) -> None:
-    """Put vertical walls along a canal, and a jetty into it where nothing crosses it; both are terrain."""
+    """Add vertical quays along a canal, and a jetty if no deck crosses it; both are terrain."""
     obstacle = KINDS[lot.kind]
     long = LOT - 2 * (_MARGIN + _FADE)
     for side in (-1, 1):
@@ -315,7 +312,7 @@ def _quays(scene: Scene, lot: Lot) -> None:
 
 
 def _trees(scene: Scene, lot: Lot, rng: np.random.Generator) -> None:
-    """Plant trees on the land at some distance from decks."""
+    """Add trees on the land away from decks."""
     obstacle = KINDS[lot.kind]
     for u, v in rng.uniform(-LOT / 2 + 8, LOT / 2 - 8, (24, 2)):
         x, y = lot.frame.at(u, v)

@@ -1,4 +1,4 @@
-"""A drone's photographs of a scene, matched: points where the rays of a few oblique views first meet something."""
+"""Matched drone images of a scene by ray casting: vertical and oblique views, one point per ray."""
 
 from __future__ import annotations
 
@@ -14,43 +14,43 @@ from .pairs import in_boxes
 from .relief import Relief
 from .scene import Scene
 
-# Rays worked on at once, which bounds memory.
+# Rays per block, which bounds memory.
 _BLOCK = 50_000
 
-# Height (m) over the ground from which rays start: over all trees.
+# Height (m) over the ground at which rays start: above all trees.
 _HEIGHT = 80.0
 
-# Width (m) of the strip around the scene into which rays are aimed, too: oblique ones meet walls before the ground.
+# Width (m) of the margin into which rays are aimed, too: oblique rays meet walls before the ground.
 _MARGIN = 10.0
 
-# Kinds of objects that views show: wires are thinner than a pixel.
+# Kinds of objects that images show: wires are thinner than a pixel.
 _SEEN = ("solids", "crowns")
 
 
 def photograph(
     scene: Scene, *, density: float, oblique: float, seed: int, monitor: Optional[Monitor] = None
 ) -> tuple[np.ndarray, Echoes]:
-    """Return what straight down and four oblique views see of a scene.
+    """Return the points that a vertical view and four oblique views see of a scene.
 
     Parameters
     ----------
     scene : Scene
-        The scene that is photographed.
+        The scene.
     density : float
         Points per square meter of open ground, all views together.
     oblique : float
         Angle of the oblique views to the vertical, degrees.
     seed : int
-        Start of the random numbers.
+        The same seed gives the same points.
     monitor : Monitor, optional
         Receives progress.
 
     Returns
     -------
     xyz : ndarray of shape (n, 3)
-        Exact positions (m), within the square of the scene in plan.
+        Exact positions (m) within the square of the scene.
     seen : Echoes
-        Objects that are seen, in the same order.
+        Class and object of each point, in the same order.
     """
     monitor = monitor or Monitor()
     rng = np.random.default_rng([seed, 3])
@@ -71,7 +71,7 @@ def photograph(
 
 
 def _blocks(size: float, density: float) -> Iterator[tuple[np.ndarray, np.ndarray, int]]:
-    """Yield the corners (m) of squares and how many rays are aimed into each."""
+    """Yield the lower and upper corner (m) of squares, and the number of rays aimed into each."""
     n = max(1, int(np.ceil((size + 2 * _MARGIN) * np.sqrt(density / _BLOCK))))
     side = (size + 2 * _MARGIN) / n
     for row, column in itertools.product(range(n), range(n)):
@@ -80,20 +80,20 @@ def _blocks(size: float, density: float) -> Iterator[tuple[np.ndarray, np.ndarra
 
 
 def _rays(relief: Relief, aim: np.ndarray, tilt: float, heading: float) -> Beams:
-    """Return parallel rays that lean by ``tilt`` toward ``heading`` (rad) and meet the ground's plane at ``aim``."""
+    """Return parallel rays tilted by ``tilt`` toward ``heading`` (rad) that meet the plane of the ground at ``aim``."""
     direction = np.array([np.sin(tilt) * np.cos(heading), np.sin(tilt) * np.sin(heading), -np.cos(tilt)])
     end = np.column_stack([aim, relief.plane(*aim.T)])
     return Beams(np.arange(len(aim)), end - _HEIGHT / np.cos(tilt) * direction, np.tile(direction, (len(aim), 1)), aim)
 
 
 def _met(world: World, kind: str, rays: Beams) -> tuple[np.ndarray, np.ndarray]:
-    """Return the pairs (ray, thing) that may meet: the ray is aimed into the shadow of the thing's box."""
+    """Return the candidate pairs (ray, object): rays aimed into the shadow of the object's bounding box."""
     low, high = world.boxes(kind)
     direction = rays.direction[0]
     shadows = []
     for corner in itertools.product(*zip(low.T, high.T)):
         x, y, z = corner
-        # How far along the ray the corner's shadow falls on the plane.
+        # Distance along the ray from the corner to its shadow on the plane.
         fall = direction[2] - np.dot(world.relief.plane_gradient, direction[:2])
         way = (world.relief.plane(x, y) - z) / fall
         shadows.append(np.column_stack([x, y]) + way[:, None] * direction[:2])

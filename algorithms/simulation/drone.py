@@ -1,4 +1,4 @@
-"""A drone with two line scanners: its flight, its beams, and what they meet first."""
+"""A drone with two line scanners: its flight, its beams and their first echoes."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ LINE_RATE = tunable(40.0, "Scan lines of each scanner.", within="[1, 500] 1/s", 
 
 ANGULAR_STEP = tunable(0.25, "Angle between neighboring beams of a scanner.", within="[0.02, 5]°", advanced=True)
 
-# Number of each scanner, which is the source id of its points.
+# Point source id of each scanner.
 SCANNERS = {"horizontal": 1, "vertical": 2}
 
-# A scanner looks everywhere but into the quarter behind it (°).
+# Field of view of a scanner (°): all but the quarter behind it.
 FIELD = 270.0
 
-# Least range (m) of a scanner, as in its data sheet.
+# Minimum range (m) of a scanner, as in its data sheet.
 _NEAREST = 0.1
 
-# Position in the street from which the drone starts, from the middle of the site (m).
+# Take-off position relative to the middle of the site (m).
 _START = (0.8, 3.0)
 
-# Height of the scanners over the ground before the start (m).
+# Height of the scanners over the ground before take-off (m).
 _STANDING = 0.4
 
-# Share of the flight in which the drone climbs.
+# Share of the flight spent on the climb.
 _CLIMB = 0.2
 
-# Share of the flight in which it lands; between climb and landing it turns once.
+# Share of the flight spent on the landing; between climb and landing the drone makes one turn.
 _LANDING = 0.2
 
-# Largest deviation from the path by wind and control (m).
+# Largest deviation from the path due to wind and control (m).
 _DRIFT = 0.3
 
 # Largest deviation from level (°).
@@ -49,36 +49,36 @@ _TILT = 2.0
 # Largest deviation from the heading (°).
 _YAW = 0.5
 
-# Periods of these deviations (s).
+# Periods of the deviations (s).
 _PERIODS = (3.1, 5.3, 11.7)
 
-# Time in which they grow after take-off and fade before landing (s).
+# Time in which the deviations grow after take-off and fade before landing (s).
 _SETTLING = 2.0
 
-# The beams of small scanners are wide: some leaf sends an echo after this share of the way that a thin beam goes.
+# Mean path to the next leaf, as a share of a thin beam's: the wide beams of small scanners meet leaves sooner.
 _WIDE = 0.3
 
-# Most pulses worked on at once, which bounds memory.
+# Most pulses per block, which bounds memory.
 _BLOCK = 50_000
 
-# Longest time of the flight worked on at once (s): the drone must not go far in it.
+# Longest time of a block (s): the drone must not move far within it.
 _BLOCK_TIME = 1.0
 
 
 @dataclass(frozen=True)
 class LineScan:
-    """Settings of scanners that turn a mirror and record the first echo."""
+    """Settings of line scanners with a rotating mirror that record the first echo."""
 
-    line_rate: float  #: Lines per second
+    line_rate: float  #: Scan lines per second
     angular_step: float  #: Angle between pulses, °
-    max_range: float  #: Reach of the scanner, m
-    range_noise: float  #: Standard deviation of distances, m
-    seed: int  #: The same seed makes the same points
+    max_range: float  #: Maximum range, m
+    range_noise: float  #: Standard deviation of ranges, m
+    seed: int  #: The same seed gives the same points
 
     def times(self, n_lines: int, pulses: np.ndarray, most: float) -> Iterator[np.ndarray]:
-        """Yield the times (s) of the pulses of some lines each, of ``most`` (s) together.
+        """Yield the times (s) of the pulses, in blocks of whole scan lines of at most ``most`` (s).
 
-        A turn of the mirror is a line, of which ``pulses`` (k,) are sent after some shares.
+        Each turn of the mirror is a scan line; ``pulses`` (k,) are the times of its pulses as shares of a turn.
         """
         step = max(1, min(_BLOCK // len(pulses), int(most * self.line_rate)))
         for line in range(0, n_lines, step):
@@ -90,10 +90,10 @@ class LineScan:
 class Flight:
     """Position and attitude of a drone over time: it climbs, turns once and lands."""
 
-    foot: np.ndarray  #: (3,): where its scanners are before it takes off (m)
-    climb: float  #: How far it climbs (m)
-    duration: float  #: From take-off to landing (s)
-    phases: np.ndarray  #: (6, 3): phases (rad) of the waves that it sways in: east, north, up, roll, pitch, heading
+    foot: np.ndarray  #: (3,): position of the scanners before take-off (m)
+    climb: float  #: Height of the climb (m)
+    duration: float  #: Time from take-off to landing (s)
+    phases: np.ndarray  #: (6, 3): phases (rad) of the sway: east, north, up, roll, pitch, heading
 
     def positions(self, time: np.ndarray) -> np.ndarray:
         """Return the positions (n, 3) (m) of the scanners at times (n,) (s)."""
@@ -104,7 +104,7 @@ class Flight:
         return made
 
     def axes(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the directions that are forward, left and up for the drone, (n, 3) each, at times (n,) (s)."""
+        """Return the forward, left and up axes of the drone, (n, 3) each, at times (n,) (s)."""
         turn = np.clip((time / self.duration - _CLIMB) / (1 - _CLIMB - _LANDING), 0.0, 1.0)
         roll, pitch, yaw = np.deg2rad([_TILT, _TILT, _YAW])[:, None] * self._sway(time, slice(3, 6)).T
         yaw = yaw + 2 * np.pi * turn
@@ -114,14 +114,14 @@ class Flight:
         return forward, left, np.cross(forward, left)
 
     def _sway(self, time: np.ndarray, which: slice) -> np.ndarray:
-        """Return the deviations (n, 3) at times (n,), from -1 to 1 of the largest."""
+        """Return the deviations (n, 3) at times (n,), as shares of the largest, -1 to 1."""
         waves = np.sin(2 * np.pi * time[:, None, None] / np.array(_PERIODS) + self.phases[which]).mean(axis=-1)
         return waves * np.clip(np.minimum(time, self.duration - time) / _SETTLING, 0.0, 1.0)[:, None]
 
     def scanned(
         self, scene: Scene, scanners: tuple[str, ...], scan: LineScan, monitor: Monitor
     ) -> dict[str, np.ndarray]:
-        """Return the dimensions of a scene scanned by some of the scanners, by name, in the order of time."""
+        """Return the dimensions of the points by name, sorted by time, of a scene scanned by ``scanners``."""
         world, parts = DroneWorld(scene, scan.max_range), []
         pulses = np.arange(pulses_per_line(scan.angular_step)) * (scan.angular_step / 360.0)
         times = list(scan.times(int(self.duration * scan.line_rate), pulses, _BLOCK_TIME))
@@ -131,7 +131,7 @@ class Flight:
             rng = generators[name]
             beams, left = self._pulses(name, time, scan.line_rate)
             echoes = first_met(world, beams, rng)
-            # The noise of the range lies along the beam.
+            # Range noise is along the beam.
             ranges = echoes.range + scan.range_noise * rng.standard_normal(len(echoes))
             part = recorded(echoes, left, SCANNERS[name], rng)
             part["gps_time"] = time[echoes.pulse]
@@ -141,7 +141,7 @@ class Flight:
         return in_time_order(parts)
 
     def _pulses(self, scanner: str, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-        """Return the beams of pulses, and directions to the left of the drone (n, 3)."""
+        """Return the beams of pulses, and the left axes (n, 3) of the drone."""
         forward, left, up = self.axes(time)
         angle = np.deg2rad(np.mod(time * line_rate, 1.0) * 360.0 - FIELD / 2)[:, None]
         ahead = forward if scanner == "horizontal" else -up
@@ -150,18 +150,18 @@ class Flight:
 
 
 def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flight:
-    """Return a flight over the middle of a site, ``height`` (m) over the ground at most but for the sway.
+    """Return a flight over the middle of a site.
 
     Parameters
     ----------
     scene : Scene
         The site.
     height : float
-        Greatest height over the ground, m.
+        Greatest height over the ground without sway, m.
     duration : float
         Duration, s.
     seed : int
-        The same seed makes the same flight.
+        The same seed gives the same flight.
     """
     x, y = (SIZE / 2 + part for part in _START)
     foot = np.array([x, y, float(scene.relief.ground(x, y)) + _STANDING])
@@ -170,7 +170,7 @@ def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flig
 
 
 class DroneWorld(World):
-    """Surroundings of a drone: beams go in all directions, and the ground is a plane."""
+    """A scene for beams in all directions; its ground is a plane."""
 
     def __init__(self, scene: Scene, reach: float) -> None:
         super().__init__(scene)
@@ -178,19 +178,19 @@ class DroneWorld(World):
         self.crowns[:, 5] *= _WIDE
 
     def ground(self, beams: Beams) -> np.ndarray:
-        """Return the ranges (n,) (m) at which beams meet the ground, beyond reach where they don't."""
+        """Return the ranges (n,) (m) at which beams meet the ground, twice the reach for those that do not."""
         x, y, z = beams.origin.T
         clearance = z - self.relief.plane(x, y)
         east, north = self.relief.plane_gradient
         x, y, z = beams.direction.T
         sinking = east * x + north * y - z
-        # Level and rising beams never come down; a range just out of reach keeps them apart from all that is met.
+        # Level and rising beams never meet the ground; a range out of reach excludes them.
         return np.where(
             sinking * self.reach > clearance, clearance / np.where(sinking > 0, sinking, 1.0), 2 * self.reach
         )
 
     def met(self, kind: str, beams: Beams) -> tuple[np.ndarray, np.ndarray]:
-        """Return the pairs (beam, object) that may meet: the beam aims at the ball around the object's box."""
+        """Return the candidate pairs (beam, object): beams toward the sphere around the object's bounding box."""
         low, high = self.boxes(kind)
         middle = beams.origin.mean(axis=0)
         away = (low + high) / 2 - middle
@@ -199,7 +199,7 @@ class DroneWorld(World):
         near = np.flatnonzero(distance - radius < self.reach)
         middles = np.column_stack(bearing(away[near]))
         half = _half_widths(middles[:, 1], radius[near], distance[near])
-        # Seen all around, the azimuth goes on after a full turn.
+        # Azimuths are periodic.
         turn = np.repeat([-2 * np.pi, 0.0, 2 * np.pi], len(near))[:, None] * [1.0, 0.0]
         middles, half = np.tile(middles, (3, 1)) + turn, np.tile(half, (3, 1))
         beam, target = in_boxes(beams.aim, middles - half, middles + half)
@@ -207,35 +207,35 @@ class DroneWorld(World):
 
 
 def bearing(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return azimuth, from east, and elevation (rad) of directions (n, 3) of any length."""
+    """Return azimuth from east and elevation (rad) of vectors (n, 3) of any length."""
     x, y, z = direction.T
     return np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
 
 
 def _half_widths(elevation: np.ndarray, radius: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Return half of the angles that balls take up in azimuth and elevation (n, 2) (rad)."""
+    """Return half the angular extents (n, 2) of spheres in azimuth and elevation (rad)."""
     half = np.arcsin(np.minimum(radius / distance, 1.0))
     high = np.where(radius < distance, half, np.pi)
-    # Balls that hide the zenith, the nadir or the drone are in every azimuth: half a turn to both sides.
+    # Spheres around the zenith, the nadir or the drone extend over all azimuths.
     share = np.sin(half) / np.maximum(np.cos(elevation), 1e-9)
     wide = np.where(np.abs(elevation) + high < np.pi / 2, np.arcsin(np.minimum(share, 1.0)), np.pi)
     return np.column_stack([wide, high])
 
 
 def in_time_order(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Return the dimensions of all parts of a scan, in the order of time."""
+    """Join the dimensions of the parts of a scan, sorted by time."""
     made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     order = np.argsort(made["gps_time"], kind="stable")
     return {name: values[order] for name, values in made.items()}
 
 
 def pulses_per_line(angular_step: float) -> int:
-    """Return the number of pulses in the scanner's field of view, one every ``angular_step`` (°)."""
+    """Return the number of pulses in the field of view, one per ``angular_step`` (°)."""
     return int(FIELD / angular_step + 1e-9) + 1
 
 
 def first_met(world: DroneWorld, beams: Beams, rng: np.random.Generator) -> Echoes:
-    """Return the first hit of each beam that meets anything within reach, in the order of the beams."""
+    """Return the first echo of each beam within reach, in the order of the beams."""
     ends = world.surfaces(beams, *world.met("solids", beams))
     leaves = world.leaves(beams, *world.met("crowns", beams), rng)
     echoes = join([ends, leaves])
@@ -250,9 +250,9 @@ def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Gener
     echoes : Echoes
         The echoes.
     left : ndarray of shape (n, 3)
-        Directions to the left of the drone.
+        Left axis of the drone for each pulse.
     number : int
-        Number of the scanner.
+        Point source id of the scanner.
     rng : numpy.random.Generator
         Source of random numbers.
     """

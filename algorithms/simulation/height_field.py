@@ -1,4 +1,4 @@
-"""A scene as a camera sees it from above: the height, the class and the object of fine cells."""
+"""A scene seen from above: height, class and object of the visible surface in fine cells."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from .beams import vegetation_class
 from .bodies import Body
 from .scene import Scene
 
-# Side of a cell, m: finer than the points of a drone's cloud lie apart.
+# Side of a cell, m: finer than the point spacing of drone clouds.
 CELL = 0.1
 
-# Unevenness of the ground (gardens, kerbs, ruts): wavelengths (m), and the share of each in the standard deviation.
-# The squares of these add up to about one.
+# Unevenness of the ground (gardens, curbs, ruts): wavelength (m) and share of the standard deviation. The squares of
+# the shares add up to about one.
 _UNEVEN = ((2.5, 0.25), (8.0, 0.97))
 
-# Lumps of crowns: their width and height (m).
+# Lumps of crowns: wavelength and standard deviation (m).
 _LUMPS = ((1.2, 0.35), (0.5, 0.15))
 
 
 @dataclass
 class HeightField:
-    """The highest surface of each cell."""
+    """The visible surface of each cell."""
 
     #: ground, top, (rows, columns): elevation of the ground and of the visible surface, m
     ground: np.ndarray
@@ -35,12 +35,12 @@ class HeightField:
     object_id: np.ndarray
 
     def at(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return row and column of the cells of positions (n, 2), m."""
+        """Return the row and column of the cells at positions (n, 2), m."""
         column, row = np.floor(xy / CELL).astype(np.int64).T
         return np.clip(row, 0, self.top.shape[0] - 1), np.clip(column, 0, self.top.shape[1] - 1)
 
     def beside(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return row and column (rows, columns) of the nearest cell that is not ground."""
+        """Return, for each cell, the row and column of the nearest cell that is not ground."""
         is_ground = self.classification == PointClass.GROUND
         if is_ground.all():
             row, column = np.indices(is_ground.shape)
@@ -50,7 +50,7 @@ class HeightField:
 
 
 def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) -> HeightField:
-    """Return the surface of a scene, crowns as closed lumpy bodies, on ground of the given unevenness (m)."""
+    """Return the visible surface of a scene, with closed lumpy crowns, on ground of the given unevenness (m)."""
     n = round(scene.size / CELL)
     middle = (np.arange(n) + 0.5) * CELL
     x, y = np.meshgrid(middle, middle)
@@ -68,9 +68,9 @@ def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) ->
 
 
 def smooth_noise(shape: tuple[int, int], wavelength: float, rng: np.random.Generator) -> np.ndarray:
-    """Return a random field (rows, columns) of standard deviation 1 with waves of about the given length (m)."""
+    """Return a smooth random field (rows, columns) of standard deviation 1 with about the given wavelength (m)."""
     sigma = wavelength / CELL / 4
-    # Made on coarse cells and interpolated: as smooth, and faster for long waves.
+    # Computed on coarse cells and interpolated: as smooth, and faster for long waves.
     step = max(1, int(sigma))
     coarse = rng.standard_normal((shape[0] // step + 8, shape[1] // step + 8))
     smooth = ndimage.gaussian_filter(coarse, sigma / step)
@@ -82,7 +82,7 @@ def smooth_noise(shape: tuple[int, int], wavelength: float, rng: np.random.Gener
 def _window(
     field: HeightField, low: np.ndarray, high: np.ndarray
 ) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
-    """Return the cells between two positions (m), and the easting and northing of their middles."""
+    """Return the cells between two positions (m), and the easting and northing of their centers."""
     shape = field.top.shape
     first = np.clip(np.floor(low / CELL).astype(int), 0, [shape[1], shape[0]])
     last = np.clip(np.ceil(high / CELL).astype(int), 0, [shape[1], shape[0]])
@@ -108,7 +108,7 @@ def _add_crown(field: HeightField, crown: tuple, lumps: np.ndarray) -> None:
     x0, y0, z0, radius, half, _, number = crown
     reach = 1.2 * radius
     where, x, y = _window(field, np.array([x0 - reach, y0 - reach]), np.array([x0 + reach, y0 + reach]))
-    # Small crowns have small lumps.
+    # Lumps of small crowns are smaller.
     lump = lumps[where] * min(1.0, radius / 1.5)
     inside = 1 - np.hypot(x - x0, y - y0) ** 2 / (radius + 0.4 * lump) ** 2
     z = z0 + half * np.sqrt(np.maximum(inside, 0.0)) + lump

@@ -1,4 +1,4 @@
-"""What dense matching of a drone's images makes of a surface: rounded edges, waves, holes, spikes, and colors."""
+"""Effects of dense image matching on a surface: rounded edges, waves, holes, spikes, and colors."""
 
 from __future__ import annotations
 
@@ -12,96 +12,96 @@ from ..packages import ndimage
 from .beams import is_vegetation
 from .height_field import CELL, HeightField, smooth_noise
 
-# Waves of matching (m): their length, and their share of the whole; the whole is a tunable.
+# Correlated errors of matching: wavelength (m) and relative standard deviation; the total is a tunable.
 _WAVES = ((0.6, 0.4), (1.5, 0.5), (4.0, 0.6), (9.0, 0.7))
 
-# Distance over which the rounding of edges varies, m.
+# Wavelength of the variation of the rounding of edges, m.
 _ROUNDING_CHANGES = 8.0
 
-# Crowns are matched worse than roofs, since leaves move and differ from view to view: length and standard deviation of
-# these errors (m). With these, simulated crowns are as rough over 0.75 to 2 m as in a real suburb.
+# Additional errors on crowns, whose leaves move and differ from view to view: wavelength and standard deviation (m).
+# With these, simulated crowns are as rough over 0.75 to 2 m as in a real suburb.
 _LEAF_NOISE = ((0.6, 0.25), (1.6, 0.3))
 
-# Standard deviation (m) of the heights of single points of crowns from their neighbors'.
+# Standard deviation (m) of the uncorrelated error of heights on crowns.
 _LEAF_SCATTER = 0.08
 
-# Some crowns are matched better than others: least and greatest multiple of the errors of leaves.
+# Least and greatest factor of the errors of a crown: some crowns are matched better than others.
 _LEAF_NOISE_FACTORS = (0.4, 1.6)
 
-# Plants of this height (m) and more have the full errors of leaves.
+# Height (m) from which plants have the full errors of crowns.
 _FULL_LEAF_NOISE = 2.0
 
-# The sun: its azimuth from east, counterclockwise, and its elevation (rad), as on a morning in summer.
+# Azimuth of the sun, counterclockwise from east, and its elevation (rad), as on a summer morning.
 _SUN = (np.radians(130.0), np.radians(38.0))
 
-# How far shadows are looked for (m): trees and houses of 20 m cast them.
+# Length of the longest shadows (m), cast by trees and houses of 20 m.
 _SHADOW_REACH = 25.0
 
-# Light of the sky alone (red, green, blue), as a share of sunlight.
+# Diffuse light of the sky (red, green, blue), as a share of sunlight.
 _SHADE = np.array([0.38, 0.42, 0.5])
 
-# Brightness of asphalt (red, green, blue, of 255, as below).
+# Color of asphalt (red, green, blue, 0 to 255, as below).
 _ASPHALT = (128, 126, 122)
 
-# Brightness of grass.
+# Color of grass.
 _GRASS = (104, 124, 62)
 
-# Brightness of bare soil.
+# Color of bare soil.
 _SOIL = (150, 128, 100)
 
-# Brightness of leaves: two green plants, a yellow and a red one.
+# Colors of plants: two green, one yellow, one red.
 _LEAVES = np.array([(62, 92, 40), (84, 110, 50), (92, 98, 44), (120, 74, 60)])
 
-# Brightness of roofs: tiles, slate and metal, bright and dark.
+# Colors of roofs: tiles, slate and metal, bright and dark.
 _ROOFS = np.array([(150, 76, 56), (112, 66, 56), (96, 97, 102), (132, 110, 92), (222, 222, 218), (60, 60, 64)])
 
-# Brightness of cars, bright and dark.
+# Colors of cars, bright and dark.
 _CARS = np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (170, 172, 176)])
 
-# Brightness (of 255) below which matching is difficult: shadows have no texture.
+# Brightness (0 to 255) below which matching is difficult: shadows have no texture.
 _DARK = 32.0
 
-# Brightness (of 255) above which matching is difficult: the images are saturated.
+# Brightness (0 to 255) above which matching is difficult: the images are saturated.
 _BRIGHT = 205.0
 
-# Share of difficult surfaces on which matching fails.
+# Share of difficult surfaces where matching fails.
 _FAILS = 0.35
 
-# Share of cars, which mirror, on which matching fails.
+# Share of cars, which reflect like mirrors, where matching fails.
 _FAILS_ON_CARS = 0.35
 
-# Share of everything else on which matching fails.
+# Share of other surfaces where matching fails.
 _FAILS_ELSEWHERE = 0.005
 
-# Where matching fails it finds nothing, or spikes where smooth noise of unit deviation exceeds this (16 % of cells).
+# Where matching fails, there is a spike if smooth noise of unit deviation exceeds this (16 %), otherwise a hole.
 _SPIKES_ABOVE = 1.0
 
-# Deviation (m) of these spikes.
+# Standard deviation (m) of the heights of spikes.
 _SPIKE = 0.5
 
 
 @dataclass(frozen=True)
 class Matched:
-    """The surface that matching makes."""
+    """The matched surface."""
 
     top: np.ndarray  #: (rows, columns): elevations, m
     colors: np.ndarray  #: (rows, columns, 3): red, green and blue, 0 to 255
-    is_hole: np.ndarray  #: (rows, columns), bool: cells in which nothing is found
+    is_hole: np.ndarray  #: (rows, columns), bool: cells without points
 
 
 def match(field: HeightField, rounding: float, waves: float, rng: np.random.Generator) -> Matched:
-    """Return what matching makes of a surface.
+    """Return the surface that matching reconstructs.
 
     Parameters
     ----------
     field : HeightField
-        The surface.
+        The true surface.
     rounding : float
-        Distance (m) over which edges are rounded, on the average; from half to one and a half times this.
+        Mean distance (m) over which edges are rounded; it varies from half to one and a half times this.
     waves : float
-        Standard deviation (m) of the errors that neighboring points share.
+        Standard deviation (m) of correlated errors.
     rng : Generator
-        Random numbers.
+        Source of random numbers.
     """
     shape = field.top.shape
     colors = _lit(field, _materials(field, rng), rng)
@@ -118,7 +118,7 @@ def match(field: HeightField, rounding: float, waves: float, rng: np.random.Gene
 
 
 def _fails(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Return the cells in which matching fails: patches of about a meter."""
+    """Return the mask of cells where matching fails: patches of about a meter."""
     brightness = colors.mean(axis=2)
     is_difficult = (brightness < _DARK) | (brightness > _BRIGHT)
     is_car = field.classification == PointClass.UNCLASSIFIED
@@ -128,10 +128,10 @@ def _fails(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> 
 
 
 def _rounded(top: np.ndarray, rounding: float, rng: np.random.Generator) -> np.ndarray:
-    """Return the surface with edges rounded, in places more and in others less."""
+    """Return the surface with rounded edges; the radius varies over the site."""
     if not rounding:
         return top
-    # A step smeared by a normal distribution rises by most of its height over 2.5 deviations.
+    # A step smoothed by a Gaussian rises by most of its height over 2.5 standard deviations.
     sigma = rounding / 2.5 / CELL
     sharp, soft = (ndimage.gaussian_filter(top, factor * sigma) for factor in (0.5, 1.5))
     share = np.clip(0.5 + 0.35 * smooth_noise(top.shape, _ROUNDING_CHANGES, rng), 0.0, 1.0)
@@ -139,16 +139,16 @@ def _rounded(top: np.ndarray, rounding: float, rng: np.random.Generator) -> np.n
 
 
 def _leaf_noise(field: HeightField, rng: np.random.Generator) -> np.ndarray:
-    """Return the errors (rows, columns), m, of crowns, 0 elsewhere; each crown has its own multiple of them."""
+    """Return the errors (rows, columns), m, of crowns, 0 elsewhere; each crown has its own factor."""
     factor = rng.uniform(*_LEAF_NOISE_FACTORS, int(field.object_id.max()) + 1)[field.object_id]
     errors = sum(deviation * smooth_noise(field.top.shape, length, rng) for length, deviation in _LEAF_NOISE)
-    # A low plant is not rougher than it is high.
+    # The roughness of a low plant is limited by its height.
     height = np.clip((field.top - field.ground) / _FULL_LEAF_NOISE, 0.0, 1.0)
     return np.where(is_vegetation(field.classification), factor * height * errors, 0.0)
 
 
 def _materials(field: HeightField, rng: np.random.Generator) -> np.ndarray:
-    """Return the color (rows, columns, 3) of each cell in even light."""
+    """Return the colors (rows, columns, 3) of cells in uniform light."""
     shape, number = field.top.shape, field.object_id
     grass, soil = smooth_noise(shape, 25.0, rng), smooth_noise(shape, 12.0, rng)
     ground = np.where((grass > 0.1)[..., None], _GRASS, np.where((soil > 0.8)[..., None], _SOIL, _ASPHALT))
@@ -164,7 +164,7 @@ def _materials(field: HeightField, rng: np.random.Generator) -> np.ndarray:
 
 
 def _lit(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Return colors in the light of a low sun: slopes by their angle to it, shadows in the light of the sky."""
+    """Return colors under direct light by angle of incidence, and diffuse light."""
     azimuth, elevation = _SUN
     sun = np.array([np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)])
     north, east = np.gradient(field.top, CELL)
@@ -177,7 +177,7 @@ def _lit(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np
 
 
 def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
-    """Return the mask of cells that lie in the shadow of others toward the sun."""
+    """Return the mask of cells in the shadow of others."""
     shadowed = np.zeros(top.shape, bool)
     for away in np.arange(0.2, _SHADOW_REACH, 0.2):
         rows, columns = (round(away / CELL * part) for part in (np.sin(azimuth), np.cos(azimuth)))
@@ -186,7 +186,7 @@ def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
 
 
 def _moved(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Return the value some rows and columns farther on for each cell, beyond the edge the edge's."""
+    """Return the raster shifted by rows and columns; beyond the edge, values of the edge repeat."""
     row = np.clip(np.arange(values.shape[0]) + rows, 0, values.shape[0] - 1)
     column = np.clip(np.arange(values.shape[1]) + columns, 0, values.shape[1] - 1)
     return values[np.ix_(row, column)]
@@ -195,34 +195,34 @@ def _moved(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
 def sample(
     field: HeightField, matched: Matched, density: float, walls: float, noise: float, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return points of a matched surface.
+    """Sample points on a matched surface.
 
     Parameters
     ----------
     field, matched
-        The surface and what matching makes of it.
+        The true and the matched surface.
     density : float
-        Points per square meter, seen from above.
+        Points per square meter in plan.
     walls : float
-        Share of the density that steep faces have for their area.
+        Density on steep faces, as a share of the density in plan.
     noise : float
-        Standard deviation of each point by itself, m.
+        Standard deviation of uncorrelated errors, m.
     rng : Generator
-        Random numbers.
+        Source of random numbers.
 
     Returns
     -------
     xyz : ndarray of shape (n, 3)
         Points (m).
     row, column : ndarray of shape (n,)
-        The cell that each is of.
+        Cell of each point.
     """
     rows, columns = field.top.shape
     count = round(density * rows * columns * CELL**2)
     xy = rng.uniform(0.0, [columns * CELL, rows * CELL], (count, 2))
     row, column = field.at(xy)
     kept = ~matched.is_hole[row, column]
-    # The elevation between the middles of cells.
+    # Elevations are interpolated between the centers of cells.
     z = ndimage.map_coordinates(matched.top, (xy / CELL - 0.5).T[::-1], order=1, mode="nearest")
     is_leaf = field.classification[row, column] == PointClass.HIGH_VEGETATION
     z += np.where(is_leaf, _LEAF_SCATTER, 0.0) * rng.standard_normal(count)
@@ -235,14 +235,14 @@ def sample(
 
 
 def _faces(matched: Matched, density: float, rng: np.random.Generator) -> np.ndarray:
-    """Return points (n, 3), m, on steep faces between a cell and the next, which are smeared walls, by their area."""
+    """Sample points (n, 3), m, by area on the steep faces between neighboring cells: smeared walls."""
     parts = []
     for axis in (0, 1):
-        # The last cell has no next one.
+        # At the last cell the step is 0.
         low = matched.top
         high = _moved(low, 1, 0) if axis == 0 else _moved(low, 0, 1)
         drop = np.abs(high - low)
-        # Seen from above, gentle slopes have their points already; walls are often missing over meters.
+        # Gentle slopes are sampled from above; walls are often missing over meters.
         drop = np.where((drop > CELL) & ~matched.is_hole, drop - CELL, 0.0)
         seen = smooth_noise(drop.shape, 6.0, rng) > -0.3
         count = rng.poisson(drop * seen * CELL * density)

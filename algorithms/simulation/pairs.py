@@ -1,4 +1,4 @@
-"""Which points lie in which boxes, and which echo of a pulse is which."""
+"""Pairs of points and boxes, and the order of echoes within their pulses."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from ..geometry.groups import items, run_starts
 
 
 def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the numbers (k,) of points (n, 2), and of boxes (m, 2) to (m, 2), with the point in the box."""
+    """Return the pairs (point, box), indices (k,) each, of points (n, 2) inside boxes (m, 2) to (m, 2)."""
     if not len(points) or not len(low):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
     first, last = points.min(axis=0), points.max(axis=0)
     box = np.flatnonzero((low <= last).all(axis=1) & (high >= first).all(axis=1))
-    # Cells of eight points: a column of cells within a box is one run of the sorted points.
+    # Cells hold eight points on average; the cells of a box in one row are one run of the sorted points.
     cell = max(float(np.sqrt(np.prod(last - first + 0.1) * 8 / len(points))), 1e-3)
     shape = ((last - first) // cell).astype(np.int64) + 1
     row, column = (((at - start) // cell).astype(np.int64) for at, start in zip(points.T, first))
@@ -35,5 +35,5 @@ def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.
 
 
 def rank(owner: np.ndarray) -> np.ndarray:
-    """Return the number of each among its owner's, from 0; ``owner`` (n,) is sorted."""
+    """Return the position (n,) of each item among those with the same owner, from 0; ``owner`` (n,) is sorted."""
     return items(np.diff(run_starts(owner), append=len(owner)))[1]

@@ -1,4 +1,4 @@
-"""The layout of a simulated plant: racks of pipes, tanks, spheres and clutter on bays with aisles between them."""
+"""Layout of a simulated plant: racks of pipes, tanks, spheres and clutter in bays with aisles between them."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ import numpy as np
 
 from .plant_parts import PlantPart, beam, cylinder, disk, elbow, grating, heap, plate, sphere
 
-# Distance between the middles of bays (m): a rack and an aisle.
+# Distance between the centers of bays (m): a rack and an aisle.
 PITCH = 10.0
 
-# Greatest length of the pipes of a rack (m), a common one of delivery.
+# Greatest length of the pipes of a rack (m), a common delivery length.
 _LENGTH = 6.0
 
 # Heights of the levels of a rack (m).
 _LEVELS = (1.2, 2.4, 3.6)
 
-# Width (m) that the pipes of a level may take.
+# Width of a rack (m).
 _WIDTH = 4.6
 
 # Least and greatest gap between neighboring pipes (m).
@@ -29,13 +29,13 @@ PIPES = (0.05, 0.6)
 # Least and greatest diameter of tanks (m).
 TANKS = (5.0, 30.0)
 
-# Radius of the axis of an elbow (diameters): the common long one.
+# Radius of the axis of an elbow (pipe diameters): the common long-radius elbow.
 _BEND = 1.5
 
-# Share of the pipes of the lowest and the highest level that turn down or up at their end.
+# Probability that a pipe of the lowest or highest level turns down or up at its end.
 _TURNING = 0.6
 
-# Share of the pipes that have a flange.
+# Probability that a pipe has a flange.
 _FLANGED = 0.3
 
 # The direction of the zenith.
@@ -44,27 +44,27 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass
 class Plant:
-    """Parts, and the stations of the scanner, positions (3,), m."""
+    """Parts of a plant, and the positions (3,), m, of the scanner's stations."""
 
     parts: list[PlantPart] = field(default_factory=list)
     stations: list[np.ndarray] = field(default_factory=list)
 
 
 def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.random.Generator) -> Plant:
-    """Return a plant with given numbers of straight pipes, tanks and spherical vessels.
+    """Return a plant with straight pipes, tanks and spherical vessels.
 
     Parameters
     ----------
     pipes, tanks, spheres : int
         Numbers of straight pipes, of tanks and of spherical vessels.
     clutter : bool
-        Whether there is clutter.
+        Whether to add beams, gratings and heaps.
     rng : numpy.random.Generator
         Source of random numbers.
     """
     plant, bay = Plant(), 0
     remaining = pipes
-    # With some 35 pipes on a rack, bays make about four times as many columns as rows.
+    # With about 35 pipes per rack, there are about four times as many columns of bays as rows.
     columns = max(1, int(np.ceil(np.sqrt(max(1, pipes / 9)))))
     while remaining > 0:
         corner = np.array([bay % columns, bay // columns, 0.0]) * PITCH
@@ -80,7 +80,7 @@ def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.ran
 
 
 def _rack(plant: Plant, middle: np.ndarray, most: int, clutter: bool, rng: np.random.Generator) -> int:
-    """Add a rack with at most a number of pipes; return how many it has."""
+    """Add a rack with at most ``most`` pipes; return their number."""
     turn = rng.uniform(0, np.pi)
     along, across = np.array([np.cos(turn), np.sin(turn), 0.0]), np.array([-np.sin(turn), np.cos(turn), 0.0])
     made = 0
@@ -103,8 +103,8 @@ def _rack(plant: Plant, middle: np.ndarray, most: int, clutter: bool, rng: np.ra
 def _pipe_run(
     plant: Plant, center: np.ndarray, along: np.ndarray, radius: float, level: int, most: int, rng: np.random.Generator
 ) -> int:
-    """Add a pipe of a rack, perhaps with a flange, and an elbow with another pipe up or down; return how many."""
-    # Some pipes fall by up to one in twenty.
+    """Add a pipe, possibly with a flange and an elbow to a second pipe up or down; return the number of pipes."""
+    # Some pipes have a slope of up to 5 %.
     along = along + rng.choice([0.0, 0.0, rng.uniform(-0.05, 0.05)]) * _UP
     along /= np.linalg.norm(along)
     low, high = -_LENGTH / 2 + rng.uniform(0, 0.5), _LENGTH / 2 - rng.uniform(0, 0.5)
@@ -129,7 +129,7 @@ def _pipe_run(
 
 
 def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarray) -> None:
-    """Add the columns and the beams that carry a rack, and a grating next to it."""
+    """Add the columns and beams of a rack, and a grating next to it."""
     for share in (-0.35, 0.35):
         position = middle + share * _LENGTH * along
         for side in (-1, 1):
@@ -144,7 +144,7 @@ def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarr
 
 
 def _stations(plant: Plant, corner: np.ndarray) -> None:
-    """Add stations of the scanner at the four corners of a bay, low and high in turn, where no station is yet."""
+    """Add stations at the four corners of a bay, alternately low and high, unless they exist already."""
     for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
         position = corner + PITCH * np.array([i, j, 0.0])
         high = round(position[0] / PITCH + position[1] / PITCH) % 2
@@ -154,7 +154,7 @@ def _stations(plant: Plant, corner: np.ndarray) -> None:
 
 
 def _tanks(plant: Plant, count: int, depth: float, rng: np.random.Generator) -> float:
-    """Add tanks west of the racks with stations around them; return where they end in the west."""
+    """Add tanks west of the racks with stations around them; return the easting (m) of their western end."""
     edge = -4.0
     for number in range(count):
         share = number / (count - 1) if count > 1 else 0.3

@@ -1,4 +1,4 @@
-"""The parts of an industrial plant: surfaces that are sampled with points, each with its kind."""
+"""Parts of an industrial plant: surfaces with a kind, which can be sampled."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry.polygons import axes_across
 from ..shapes.searched_points import Shape
 
-# What a surface gives: positions (k, 3) and outward normals (k, 3) of k random points on it.
+# Draws positions (k, 3) and outward normals (k, 3) of k random points on a surface.
 Sampler = Callable[[np.random.Generator, int], tuple[np.ndarray, np.ndarray]]
 
 # Distance between the bars of a grating (m).
@@ -25,24 +25,24 @@ class PlantPart:
     """One surface of a plant."""
 
     kind: str  #: "pipe", "tank", "sphere", "elbow", "flange", "beam", "grating", "roof", "floor" or "clutter"
-    shape: int  #: Its value of the dimension ``shape``
-    area: float  #: Its area, m²
-    middle: np.ndarray  #: (3,): a position in its middle (m)
-    sample: Sampler  #: Draws points on it
+    shape: int  #: Value of the dimension ``shape``
+    area: float  #: Area, m²
+    middle: np.ndarray  #: (3,): center (m)
+    sample: Sampler  #: Draws points on the surface
     #: (2, 3): ends of the axis of a pipe or tank, or the center of a sphere in both rows (m)
     axis: Optional[np.ndarray] = None
     radius: float = 0.0  #: Radius of a pipe, tank or sphere (m), otherwise 0
 
 
 def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> PlantPart:
-    """Return the side of a cylinder between two positions (3,), m.
+    """Return the lateral surface of a cylinder.
 
     Parameters
     ----------
     kind : str
         Kind of the part.
     start, end : ndarray of shape (3,)
-        Middles of both ends, m.
+        Centers of both ends, m.
     radius : float
         Radius, m.
     """
@@ -61,7 +61,7 @@ def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Pl
 
 
 def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer: float) -> PlantPart:
-    """Return a ring or disk across a normal (3,), between two radii (m).
+    """Return a disk or an annulus.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer:
 
 
 def sphere(center: np.ndarray, radius: float) -> PlantPart:
-    """Return a sphere around a center (3,), m, of a radius (m)."""
+    """Return a sphere with a center (3,) and radius, m."""
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         away = rng.normal(size=(count, 3))
@@ -98,21 +98,21 @@ def sphere(center: np.ndarray, radius: float) -> PlantPart:
 
 
 def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float, radius: float) -> PlantPart:
-    """Return a quarter of a torus that turns a pipe from one direction (3,) to another across it.
+    """Return a quarter of a torus that connects two perpendicular pipes.
 
     Parameters
     ----------
     start : ndarray of shape (3,)
-        Where the pipe ends (m).
+        End of the first pipe (m).
     along, toward : ndarray of shape (3,)
-        Directions of the pipe before and after, unit vectors.
+        Directions of the first and second pipe, unit vectors.
     bend, radius : float
         Radii of the bent axis and of the pipe, m.
     """
     center, side = start + bend * toward, np.cross(along, toward)
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
-        # The outside of a bend is longer: points are kept by the area around them, of three times as many as needed.
+        # The outside of a bend is longer: rejection sampling by area, from three times as many points as needed.
         turn, around, keep = rng.uniform(0, 1, (3, 3 * count))
         turn, around = turn * np.pi / 2, around * 2 * np.pi
         kept = np.flatnonzero(keep * (bend + radius) <= bend + radius * np.cos(around))[:count]
@@ -125,14 +125,14 @@ def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float,
 
 
 def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> PlantPart:
-    """Return a parallelogram that is seen from both sides, from a corner (3,) along two edges (3,), m.
+    """Return a thin plate, visible from both sides.
 
     Parameters
     ----------
     kind : str
         Kind of the part.
     corner, first, second : ndarray of shape (3,)
-        A corner, and the two edges from it, m.
+        A corner and the edges from it, m.
     """
     across = np.cross(first, second)
     area = float(np.linalg.norm(across))
@@ -149,12 +149,12 @@ def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) 
 
 
 def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np.ndarray) -> list[PlantPart]:
-    """Return the web and the two flanges of an I-beam between two positions (3,), m; its web lies along ``up``.
+    """Return the web and the two flanges of an I-beam.
 
     Parameters
     ----------
     start, end : ndarray of shape (3,)
-        Middles of both ends, m.
+        Centers of both ends, m.
     height, width : float
         Height of the profile and width of the flanges, m.
     up : ndarray of shape (3,)
@@ -185,7 +185,7 @@ def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> PlantP
 
 
 def heap(center: np.ndarray, size: float) -> PlantPart:
-    """Return clutter in a ball of a radius ``size`` (m): surfaces of random directions, as of hoses and bushes."""
+    """Return clutter in a ball of radius ``size`` (m): surfaces with random normals, like hoses and bushes."""
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         away, normal = rng.normal(size=(2, count, 3))

@@ -1,4 +1,4 @@
-"""Trees, bushes and hedges as ellipsoids of leaves, with stems."""
+"""Trees, bushes and hedges: ellipsoids of leaves, and stems."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from .scene import Scene
 # Share of the trees outside the forest that grow in clumps.
 _CLUMP_SHARE = 0.4
 
-# Trees of a clump.
+# Trees per clump.
 _CLUMP_SIZE = 4
 
-# Standard deviation of the trees of a clump around its middle, along each axis (m).
+# Standard deviation of the positions of trees around the center of their clump, along each axis (m).
 _CLUMP_SPREAD = 2.5
 
-# Distance between the trees of the forest (m).
+# Distance between trees of the forest (m).
 _FOREST_SPACING = 4.5
 
-# Largest displacement of a tree of the forest along each axis, in these distances.
+# Largest displacement of a tree of the forest along each axis (share of the distance).
 _DISPLACED = 0.35
 
-# Shares of the positions in the forest that have a tree, and that have a bush: some have both.
+# Shares of positions in the forest with a tree, and with a bush; some have both.
 _WITH_TREE, _WITH_BUSH = 0.9, 0.3
 
 # Share of the trees that are conifers.
@@ -33,7 +33,7 @@ _CONIFERS = 0.3
 # Least distance of plants from buildings (m).
 _FROM_BUILDINGS = 1.5
 
-# Times that positions for all trees are drawn: a town that is all houses or all forest has no room for them.
+# Attempts to draw positions for all trees: a town full of houses or forest has no room for them.
 _DRAWS = 20
 
 # Least and greatest height of trees in gardens (m).
@@ -51,7 +51,7 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     scene : Scene
         Receives the objects.
     per_hectare, forest : float
-        Trees per hectare outside the forest, and share that is forest.
+        Trees per hectare outside the forest, and share of the area that is forest.
     rng : numpy.random.Generator
         Source of random numbers.
     monitor : Monitor
@@ -72,15 +72,15 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
 
 
 def in_forest(scene: Scene, positions: np.ndarray, share: float) -> np.ndarray:
-    """Which points (n, 2) (m) lie in the forest: the eastern ``share`` of the square, behind a wavy edge."""
+    """Return the mask of points (n, 2), m, in the forest: the eastern ``share`` of the square, with a wavy edge."""
     size = scene.size
-    # The wave covers two whole periods, so that it takes nothing from the share; it is flat where there is no room.
+    # Two whole periods keep the share; the amplitude vanishes as the share approaches 0 or 1.
     wave = 0.2 * size * share * (1 - share) * np.sin(4 * np.pi * positions[:, 1] / size)
     return positions[:, 0] > size * (1 - share) + wave
 
 
 def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor: Monitor) -> None:
-    """Plant trees and bushes over a share of the scene, one about every few meters where there is room."""
+    """Plant trees and bushes on a jittered grid over the forest, except near buildings and water."""
     steps = np.arange(_FOREST_SPACING / 2, scene.size, _FOREST_SPACING)
     positions = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     positions = positions + rng.uniform(-_DISPLACED, _DISPLACED, positions.shape) * _FOREST_SPACING
@@ -96,12 +96,12 @@ def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor:
 
 
 def _feet(scene: Scene, positions: np.ndarray) -> list[tuple[float, float, float]]:
-    """Return x, y and elevation of the ground (m) at positions (n, 2)."""
+    """Return easting, northing and elevation of the ground (m) at positions (n, 2)."""
     return [(float(x), float(y), float(z)) for (x, y), z in zip(positions, scene.relief.ground(*positions.T))]
 
 
 def _open_positions(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
-    """Return up to ``count`` random positions (m) where a tree can grow outside the forest."""
+    """Return up to ``count`` random free positions (m) outside the forest."""
     positions = np.zeros((0, 2))
     for _ in range(_DRAWS):
         tries = rng.uniform(0.0, scene.size, (count, 2))
@@ -118,7 +118,7 @@ def _is_free(scene: Scene, positions: np.ndarray) -> np.ndarray:
 
 
 def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:
-    """Plant a broadleaf or a conifer, with its stem, at x, y and elevation of the ground (m).
+    """Plant a broadleaf tree or a conifer, with its stem.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def _conifer(scene: Scene, foot: tuple, height: float, number: int, rng: np.rand
 
 
 def _broadleaf(scene: Scene, foot: tuple, height: float, number: int, rng: np.random.Generator) -> None:
-    """Plant a round crown of one large and some small ellipsoids, which make it lumpy."""
+    """Plant a round lumpy crown of one large and five small ellipsoids."""
     x, y, ground = foot
     radius, middle = height * rng.uniform(0.22, 0.32), ground + 0.64 * height
     scene.crowns.append((x, y, middle, 0.8 * radius, 0.3 * height, 1.7, number))

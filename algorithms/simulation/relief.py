@@ -1,4 +1,4 @@
-"""The ground of a made-up town: a slope with hills, terraces and a river valley, as a formula."""
+"""Terrain of a simulated town in closed form: a slope with hills, terraces and a river valley."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 
 from .bodies import Rect
 
-# Half the width (m) of the level floor of the valley of a small regulated river.
+# Half the width (m) of the level valley floor of a small regulated river.
 VALLEY = 16.0
 
-# Half the width (m) of its channel between the upper edges of the banks.
+# Half the width (m) of the channel between the upper edges of the banks.
 CHANNEL = 9.6
 
-# Depth (m) of the channel under the floor of the valley.
+# Depth (m) of the channel below the valley floor.
 _CHANNEL_DEPTH = 4.5
 
 # Slope of the banks, a tangent.
@@ -27,7 +27,7 @@ _WATER_DEPTH = 1.5
 # Distance between terraces (m).
 _TERRACE_LENGTH = 45.0
 
-# Beams lean by at most 30°; with gradients below 1 / tan 30° each of them meets the ground exactly once.
+# Largest gradient of the ground: beams up to 30° off the vertical meet ground below 1 / tan 30° = 1.73 exactly once.
 _STEEPEST = 1.7
 
 
@@ -35,26 +35,26 @@ _STEEPEST = 1.7
 class Relief:
     """Ground and water as functions of position.
 
-    All coordinates are in the frame of the town, which is turned against east and north. *across* is the
-    direction in which the ground rises and the streets run, *along* the river's, both from the town's center.
+    The frame of the town is rotated against east and north, with its origin at the town's center. The ground rises and
+    streets run in the direction *across*; the river flows in the direction *along*.
     """
 
     size: float  #: Side of the town, a square from (0, 0) to (size, size), m
     angle: float = 0.0  #: Direction of *across*, radians from east
-    gradient: float = 0.0  #: Rise per meter, tangent of the slope
-    hills: float = 0.0  #: Height between the deepest hollow and the highest hill, about, m
-    terrace_height: float = 0.0  #: Rise of the steps in the slope, m
+    gradient: float = 0.0  #: Tangent of the mean slope
+    hills: float = 0.0  #: Approximate height difference between hollows and hills, m
+    terrace_height: float = 0.0  #: Rise of the terraces, m
     river: Optional[float] = None  #: Position of the river's axis across the town, m; None for no river
     #: (k, 3): hills: wave numbers across and along (rad/m) and phase (rad)
     waves: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 
     @property
     def frame(self) -> Rect:
-        """The town as a rectangle: length across the street, width along it."""
+        """The town as a rectangle: length in the direction *across*, width *along*."""
         return Rect(self.size / 2, self.size / 2, self.size, self.size, self.angle)
 
     def plane(self, x, y) -> np.ndarray:
-        """Elevation (m) of the plane that the ground follows on the whole."""
+        """Return the elevation (m) of the mean plane of the ground."""
         return self.gradient * (self.frame.local(x, y)[0] - (self.river or 0.0))
 
     @property
@@ -69,11 +69,11 @@ class Relief:
 
     @property
     def water_level(self) -> float:
-        """Elevation of the river (m)."""
+        """Elevation of the water (m)."""
         return _WATER_DEPTH - _CHANNEL_DEPTH
 
     def ground(self, x, y) -> np.ndarray:
-        """Elevation (m) of the ground, under water of the river bed."""
+        """Return the elevation (m) of the ground; under water, of the river bed."""
         return self._ground(*self.frame.local(x, y))
 
     def _ground(self, across, along) -> np.ndarray:
@@ -85,31 +85,31 @@ class Relief:
         return z if self.river is None else z - np.clip((CHANNEL - np.abs(distance)) * _BANK_SLOPE, 0.0, _CHANNEL_DEPTH)
 
     def surface(self, x, y) -> np.ndarray:
-        """Elevation (m) of ground or water, whichever is higher."""
+        """Return the elevation (m) of ground or water, whichever is higher."""
         across, along = self.frame.local(x, y)
         z = self._ground(across, along)
         return z if self.river is None else np.where(self._is_water(across), self.water_level, z)
 
     def is_water(self, x, y) -> np.ndarray:
-        """Whether positions are in the river."""
+        """Return the mask of positions with water."""
         return np.zeros(np.shape(x), bool) if self.river is None else self._is_water(self.frame.local(x, y)[0])
 
     def _is_water(self, across) -> np.ndarray:
-        # The channel's profile decides: over level ground it is below the water this far from the axis.
+        # Half the width of the water surface, from the profile of the channel.
         return np.abs(across - self.river) < CHANNEL - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
 
     def tangent(self, x: float, y: float) -> np.ndarray:
-        """Return (a, b, c) of the plane z = a x + b y + c that touches the ground at a point (m)."""
+        """Return the tangent plane (a, b, c), z = a x + b y + c, of the ground at a point (m)."""
         step = np.array([0.0, 1.0, -1.0, 0.0, 0.0])
         z, east, west, north, south = self.ground(x + step, y + step[[0, 3, 4, 1, 2]])
         a, b = (east - west) / 2, (north - south) / 2
         return np.array([a, b, z - a * x - b * y])
 
     def _terrace(self, rise):
-        """Height (m) of steep steps, whose treads fall slightly, so that the mean slope stays the same."""
+        """Return the height (m) of terraces: steep risers and slightly falling treads, which keep the mean slope."""
         if not self.terrace_height:
             return 0.0
-        # Per meter, the waves of the hills rise by at most 0.04 of the height of these.
+        # The gradient of the hills is at most 0.04 of their height.
         riser = self.terrace_height / (min(1.0, _STEEPEST - self.gradient - 0.04 * self.hills))
         at = np.mod(rise, _TERRACE_LENGTH)
         return self.terrace_height * np.minimum(at / riser, (_TERRACE_LENGTH - at) / (_TERRACE_LENGTH - riser))
@@ -118,7 +118,7 @@ class Relief:
         if not self.hills:
             return 0.0
         total = sum(np.sin(kx * across + ky * along + phase) for kx, ky, phase in self.waves)
-        # The valley floor is level, as the river is.
+        # Hills fade toward the level valley floor.
         fade = 1.0 if self.river is None else np.minimum(np.abs(rise) / 60.0, 1.0)
         return self.hills / (2 * len(self.waves)) * total * fade
 
@@ -126,16 +126,16 @@ class Relief:
 def make_relief(
     size: float, slope: float, hills: float, terrace_height: float, river: bool, rng: np.random.Generator
 ) -> Relief:
-    """Return the ground of a town, drawn at random.
+    """Return a random terrain.
 
     Parameters
     ----------
     size, hills, terrace_height : float
-        Side of the square, height from hollows to hills, and rise of the terraces, m.
+        Side of the square, height difference between hollows and hills, and rise of the terraces, m.
     slope : float
-        Slope of the ground, °.
+        Mean slope of the ground, °.
     river : bool
-        Whether there is a river.
+        Whether to add a river.
     rng : numpy.random.Generator
         Source of random numbers.
     """

@@ -1,4 +1,4 @@
-"""An airborne scanner: strips, patterns of pulses, and the returns of each pulse."""
+"""An airborne laser scanner: strips, scan patterns, and the returns of each pulse."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from .pairs import in_boxes, rank
 from .relief import Relief
 from .scene import Scene
 
-# How a scanner may lay its pulses on the ground.
+# Scan patterns.
 PATTERNS = ("lines", "zigzag", "random")
 
-# The dimensions that scanners record, and the true class and object of each point.
+# Dimensions of simulated scans: those that scanners record, and the true class and object.
 RECORDED = (
     "xyz",
     "classification",
@@ -33,17 +33,17 @@ RECORDED = (
 
 PULSE_DENSITY = tunable(
     8.0,
-    "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
+    "Mean density of laser pulses. A pulse gives one point on open ground, several in trees, and rarely one on water.",
     label="Pulse density",
     within="[0.5, 100] pulses/m²",
 )
 
-RANGE_NOISE = tunable(0.02, "Standard deviation of the measured distances.", within="[0, 0.2] m", advanced=True)
+RANGE_NOISE = tunable(0.02, "Standard deviation of measured ranges.", within="[0, 0.2] m", advanced=True)
 
-# Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.
+# Most pulses: at about 100 bytes each they fit into the memory of an office computer.
 MAX_PULSES = 5e7
 
-# Largest number of points of matched images: at about 200 bytes each they fit into the memory of an office computer.
+# Most points of matched images: at about 200 bytes each they fit into the memory of an office computer.
 MAX_POINTS = 3e7
 
 # Height of a survey flight over the ground (m).
@@ -52,43 +52,43 @@ _HEIGHT = 600.0
 # Speed of a survey flight (m/s).
 _SPEED = 60.0
 
-# Time from the end of one strip to the start of the next (s).
+# Duration of the turn between two strips (s).
 _TURN = 300.0
 
 # Radius of the beam at the ground (m): 0.35 mrad from 600 m.
 _BEAM_RADIUS = 0.1
 
-# Pulses worked on at once, which bounds memory.
+# Pulses per block, which bounds memory.
 _BLOCK = 50_000
 
-# Least distance of echoes that the scanner separates (m): half the length of a pulse.
+# Range resolution (m): the scanner separates echoes at least half the length of a pulse apart.
 _DEAD_ZONE = 0.7
 
-# Most echoes of a pulse that the scanner records.
+# Most returns per pulse.
 _MAX_RETURNS = 5
 
-# Share of the pulses that a leaf lets on.
+# Probability that a pulse continues behind a leaf.
 _THROUGH = 0.7
 
-# Share of the pulses straight down that water sends back.
+# Probability that water returns a vertical pulse.
 _WATER_CHANCE = 0.25
 
-# Angle (rad) to the vertical at which water sends back 1/e of what it does straight down: it mirrors.
+# Incidence angle (rad) at which this probability drops to 1/e: water reflects like a mirror.
 _WATER_SLANT = np.deg2rad(12.0)
 
-# Least and greatest height of birds over the ground (m).
+# Least and greatest height of birds above the ground (m).
 _BIRDS = (30.0, 120.0)
 
-# Least and greatest depth of multipath points under the ground (m).
+# Least and greatest depth of multipath points below the ground (m).
 _MULTIPATH = (2.0, 15.0)
 
-# Intensity of a single return of a material that reflects all light: the brightest roofs stay below the largest number.
+# Intensity of a single return of a perfect reflector: the brightest roofs stay below 65,535.
 _WHITE = 60_000
 
-# Standard deviation of intensities, as a share of them.
+# Relative standard deviation of intensities.
 _SPECKLE = 0.08
 
-# Share of the light that a material reflects, by class.
+# Reflectance by class.
 _REFLECTANCE = np.full(256, 0.3)
 _REFLECTANCE[[PointClass.GROUND, PointClass.BUILDING, PointClass.WATER]] = (0.35, 0.45, 0.06)
 _REFLECTANCE[[PointClass.LOW_NOISE, PointClass.HIGH_NOISE, PointClass.WIRE_CONDUCTOR]] = 0.05
@@ -96,7 +96,7 @@ _REFLECTANCE[[PointClass.LOW_NOISE, PointClass.HIGH_NOISE, PointClass.WIRE_CONDU
 
 @dataclass(frozen=True)
 class _Strip:
-    """One flight line: its number, where it runs (m north), and the part of the town that it scans."""
+    """A flight line: number, northing (m), and lowest and highest northing (m) of the scanned swath."""
 
     number: int
     y: float
@@ -106,7 +106,7 @@ class _Strip:
 
 @dataclass(frozen=True)
 class _Block:
-    """Some scan lines of a strip that are worked on at once: the first line, how many, and of which strip."""
+    """Scan lines of a strip that are processed together: first line, number of lines, and sizes of the strip."""
 
     strip: _Strip
     line: int
@@ -121,16 +121,16 @@ class _Block:
 
 @dataclass(frozen=True)
 class AirSurvey:
-    """How a scanner flies over a scene and what it records: tunables of :func:`.simulate_town.simulate_town`."""
+    """Settings of an airborne survey: tunables of :func:`.simulate_town.simulate_town`."""
 
     density: float = 8.0  #: Pulses per m²
     pattern: str = "lines"  #: Scan pattern, one of :data:`PATTERNS`
     max_scan_angle: float = 20.0  #: Angle to the vertical at the edge of a strip, °
-    overlap: float = 0.3  #: Share of a strip that the next one scans, too
-    range_noise: float = 0.02  #: Standard deviation of distances, m
+    overlap: float = 0.3  #: Share of a strip that the next strip overlaps
+    range_noise: float = 0.02  #: Standard deviation of ranges, m
     returns: bool = True  #: Whether all returns are recorded
     noise_points: float = 10.0  #: Noise points per hectare
-    seed: int = 1  #: The same seed makes the same points
+    seed: int = 1  #: The same seed gives the same points
 
 
 def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses", most: float = MAX_PULSES) -> None:
@@ -139,15 +139,15 @@ def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses", most
     Parameters
     ----------
     count : float
-        How many there would be.
+        Number of pulses or points.
     what : str
-        What would have them, for the sentence.
+        Subject of the message.
     remedy : str
-        What to do.
+        Advice at the end of the message.
     unit : str
-        Pulses or points.
+        "pulses" or "points".
     most : float
-        How many of them fit.
+        Largest number accepted.
     """
     if count > most:
         raise ValueError(f"{what} has {count / 1e6:.0f} million {unit}, more than {most / 1e6:.0f} million; {remedy}.")
@@ -161,26 +161,26 @@ def refuse_large(
     Parameters
     ----------
     what : str
-        What it is called, for the sentence.
+        Name of the site in the message.
     size : float
-        Its side, m.
+        Side of the site, m.
     density : float
         Pulses or points per m².
     remedy : str
-        What to do.
+        Advice at the end of the message.
     unit : str
-        Pulses or points.
+        "pulses" or "points".
     most : float
-        How many of them fit.
+        Largest number accepted.
     """
     refuse_many(density * size**2, f"{what} of {size:g} m with {density:g} {unit} per m²", remedy, unit, most)
 
 
 def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> dict[str, np.ndarray]:
-    """Return the dimensions of a scene scanned from the air by name, in the order of time, then of return.
+    """Scan a scene from the air; return the dimensions of the points by name, sorted by time, then by return.
 
-    In addition to those that scanners record there is ``pulse``, the number of the pulse. The same scene and survey
-    give the same points.
+    In addition to :data:`RECORDED` there is ``pulse``, the number of the pulse. The same scene and survey give the same
+    points.
     """
     monitor = monitor or Monitor()
     rng = np.random.default_rng([survey.seed, 1])
@@ -194,7 +194,7 @@ def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> 
         first, last = np.searchsorted(noisy, firsts[i : i + 2])
         noise = _noise_echoes(world, pulses.take(noisy[first:last] - firsts[i]), heights[first:last])
         echoes = _replaced(_recorded_echoes(world, pulses, block.strip, survey.returns, rng), noise)
-        # The noise of the range lies along the beam.
+        # Range noise is along the beam.
         ranges = echoes.range + survey.range_noise * rng.standard_normal(len(echoes))
         part = _recorded(echoes, time, block.strip, survey.returns, rng)
         part["xyz"] = pulses.origin[echoes.pulse] + ranges[:, None] * echoes.direction
@@ -205,9 +205,9 @@ def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> 
 
 
 def _strips(relief: Relief, max_scan_angle: float, overlap: float) -> list[_Strip]:
-    """Return the flight lines, from west to east and back, so that two of them meet in the middle of the town."""
+    """Return the flight lines, alternately east and west, so that two of them overlap in the middle of the town."""
     tangent, rise = np.tan(np.deg2rad(max_scan_angle)), relief.plane_gradient[1]
-    # On a slope the swath is narrower uphill.
+    # On a slope the swath is narrower on the uphill side.
     up, down = _HEIGHT * tangent / (1 + rise * tangent), _HEIGHT * tangent / (1 - rise * tangent)
     spacing = (up + down) * (1 - overlap)
     start = (relief.size + spacing + down - up) / 2
@@ -221,8 +221,8 @@ def _strips(relief: Relief, max_scan_angle: float, overlap: float) -> list[_Stri
 
 
 def _blocks(strips: list[_Strip], size: float, density: float) -> Iterator[_Block]:
-    """Cut strips into blocks; together they have ``density`` pulses per m² of the town."""
-    # Where strips overlap there are more pulses than elsewhere, as in every survey.
+    """Divide strips into blocks; together they have ``density`` pulses per m² of the town."""
+    # Overlaps have more pulses than the rest, as in every survey.
     cell = sum(strip.high - strip.low for strip in strips) / size / density
     for strip in strips:
         width = strip.high - strip.low
@@ -234,7 +234,7 @@ def _blocks(strips: list[_Strip], size: float, density: float) -> Iterator[_Bloc
 
 
 def _pulses(relief: Relief, block: _Block, pattern: str, rng: np.random.Generator) -> tuple[Beams, np.ndarray]:
-    """Return the beams of a block, aimed at the plane that the ground follows, and their times (s)."""
+    """Return the beams of a block, aimed at the mean plane of the ground, and their times (s)."""
     strip, size = block.strip, relief.size
     line = np.repeat(np.arange(block.line, block.line + block.n_lines), block.pulses_per_line)
     share = np.tile((np.arange(block.pulses_per_line) + 0.5) / block.pulses_per_line, block.n_lines)
@@ -245,7 +245,7 @@ def _pulses(relief: Relief, block: _Block, pattern: str, rng: np.random.Generato
     elif pattern == "zigzag":
         forth, across = ahead, np.where(line % 2 == 0, share, 1 - share)
     else:  # "lines"
-        # Pulses of neighboring lines are not in step.
+        # Pulses of neighboring lines have different phases.
         phase = np.repeat(rng.random(block.n_lines) - 0.5, block.pulses_per_line) / block.pulses_per_line
         forth, across = line + 0.5, share + phase
     way = ahead * size / block.lines_of_strip
@@ -258,25 +258,25 @@ def _pulses(relief: Relief, block: _Block, pattern: str, rng: np.random.Generato
 
 
 def _aimed(relief: Relief, pulse: np.ndarray, origin: np.ndarray, aim: np.ndarray) -> Beams:
-    """Return the beams from points (n, 3) to points (n, 2) of the plane."""
+    """Return the beams from points (n, 3) to positions (n, 2) on the mean plane of the ground."""
     direction = np.column_stack([aim, relief.plane(*aim.T)]) - origin
     return Beams(pulse, origin, direction / np.linalg.norm(direction, axis=1)[:, None], aim)
 
 
 def _beside(relief: Relief, beams: Beams, rng: np.random.Generator) -> Beams:
-    """Return for each beam a ray to another position in its footprint."""
+    """Return for each beam a ray to a random position in its footprint on the ground."""
     turn, out = rng.uniform(0.0, 2 * np.pi, len(beams)), _BEAM_RADIUS * np.sqrt(rng.random(len(beams)))
     shift = np.column_stack([out * np.cos(turn), out * np.sin(turn)])
     return _aimed(relief, beams.pulse, beams.origin, beams.aim + shift)
 
 
 def _met(world: World, kind: str, beams: Beams, strip: _Strip) -> tuple[np.ndarray, np.ndarray]:
-    """Return the pairs (beam, object) that may meet: the beam is aimed into the shadow of the object's box."""
+    """Return the candidate pairs (beam, object): beams aimed into the shadow of the object's bounding box."""
     low, high = world.boxes(kind)
     corners = np.stack([low, high])
     planes = world.relief.plane(corners[:, None, :, 0], corners[None, :, :, 1]).reshape(4, -1)
-    # Lowest and highest height (m) of each box over the plane, and the northings (m) at which rays from the scanner
-    # past its edges at these heights meet the plane.
+    # Least and greatest height (m) of each box over the plane. Rays from the scanner past the edges of the box at these
+    # heights meet the plane at the northings ``shadow`` (m).
     lift = np.stack([low[:, 2] - planes.max(axis=0), high[:, 2] - planes.min(axis=0)])
     shadow = strip.y + (corners[:, None, :, 1] - strip.y) * _HEIGHT / (_HEIGHT - lift[None])
     shadow = shadow.reshape(4, -1)
@@ -296,20 +296,20 @@ def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, 
         ]
     )
     porous = porous.take(porous.range < ends.range[porous.pulse])
-    # Near solids a second ray counts where it ends on something else: at the edge of a roof.
+    # Near solids, such as at the edge of a roof, a second ray within the beam adds an echo if it ends elsewhere.
     beside = _beside(world.relief, pulses.take(np.unique(beam)), rng)
     others = world.surfaces(beside, *_met(world, "solids", beside, strip))
     others = others.take(np.abs(others.range - ends.range[others.pulse]) > _DEAD_ZONE)
     echoes = join([porous, ends, others]).in_order()
     kept = _separate(echoes, len(pulses), rng) if returns else rank(echoes.pulse) == 0
-    # Water mirrors: what doesn't come from below is lost.
+    # Water reflects like a mirror: pulses at large incidence angles are lost.
     slant = np.arccos(-echoes.direction[:, 2])
     lost = rng.random(len(echoes)) > _WATER_CHANCE * np.exp(-((slant / _WATER_SLANT) ** 2))
     return echoes.take(kept & ~((echoes.classification == PointClass.WATER) & lost))
 
 
 def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.ndarray:
-    """Return the mask of echoes, in order, that a scanner separates before the pulse is used up."""
+    """Return the mask of sorted echoes that a scanner separates until the energy of the pulse is used up."""
     pulse = echoes.pulse
     number = rank(pulse)
     goes_on = ~is_vegetation(echoes.classification) | (rng.random(len(echoes)) < _THROUGH)
@@ -319,28 +319,28 @@ def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.nda
         at = np.flatnonzero(number == k)
         at = at[(echoes.range[at] - last[pulse[at]] > _DEAD_ZONE) & (recorded[pulse[at]] < _MAX_RETURNS)]
         kept[at] = True
-        # A pulse that does not go on is used up.
+        # A pulse that does not continue is used up.
         recorded[pulse[at]] += np.where(goes_on[at], 1, _MAX_RETURNS)
         last[pulse[at]] = echoes.range[at]
     return kept
 
 
 def _noise(n_pulses: int, n_noise: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return the indices of pulses of noise, in order, and their heights (m) over the ground: birds and multipath."""
+    """Return the sorted indices of noise pulses and their heights (m) above ground: birds and multipath."""
     which = np.sort(rng.choice(n_pulses, n_noise, replace=False, shuffle=False))
     is_bird = rng.permutation(n_noise) % 2 == 0
     return which, np.where(is_bird, rng.uniform(*_BIRDS, n_noise), -rng.uniform(*_MULTIPATH, n_noise))
 
 
 def _noise_echoes(world: World, pulses: Beams, height: np.ndarray) -> Echoes:
-    """Return the echoes of pulses that a bird or a detour returns, at a height (m) over the ground."""
+    """Return the echoes of noise pulses at heights (m) above ground: birds and multipath."""
     ranges = world.ground(pulses) + height / pulses.direction[:, 2]
     classes = np.where(height > 0, PointClass.HIGH_NOISE, PointClass.LOW_NOISE)
     return pulses.echoes(slice(None), ranges, classes, np.zeros(len(pulses)))
 
 
 def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
-    """Return the echoes, some pulses' replaced."""
+    """Return the echoes by pulse, with those of noise pulses replaced."""
     merged = join([echoes.take(~np.isin(echoes.pulse, noise.pulse)), noise])
     return merged.take(np.argsort(merged.pulse, kind="stable"))
 
@@ -348,11 +348,11 @@ def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
 def _recorded(
     echoes: Echoes, time: np.ndarray, strip: _Strip, returns: bool, rng: np.random.Generator
 ) -> dict[str, np.ndarray]:
-    """Return the dimensions of the echoes of a block except their position, ``pulse`` from 0."""
+    """Return the dimensions of the echoes of a block except position; ``pulse`` starts from 0."""
     pulse, n = echoes.pulse, len(echoes)
     count = np.bincount(pulse, minlength=len(time))[pulse]
     _, dy, dz = echoes.direction.T
-    # To the left of the flight the angle is negative; odd strips are flown to the east.
+    # Scan angles are negative to the left of the flight; odd strips are flown to the east.
     angle = np.rad2deg(np.arctan2(dy, -dz)) * (-1 if strip.number % 2 else 1)
     return {
         "classification": echoes.classification,
@@ -368,8 +368,8 @@ def _recorded(
 
 
 def brightness(echoes: Echoes, count: Union[int, np.ndarray], rng: np.random.Generator) -> np.ndarray:
-    """Return the intensity (n,), uint16, by material; the pulse's energy is shared by its ``count`` returns."""
-    # Every object has its own brightness, by up to 30 %: steps of the golden ratio spread their numbers evenly.
+    """Return the intensity (n,), uint16, by material; the ``count`` returns of a pulse share its energy."""
+    # Each object is up to 30 % brighter or darker: steps of the golden ratio distribute object ids evenly.
     bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
     intensity = _WHITE * bright / count * (1 + _SPECKLE * rng.standard_normal(len(echoes)))
     return np.clip(intensity, 1, 65_535).astype(np.uint16)

@@ -1,4 +1,4 @@
-"""A scene with known truth: its objects, before anything is scanned."""
+"""A scene of objects with known truth, to be scanned."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .relief import CHANNEL, Relief
 
 @dataclass(frozen=True)
 class Building:
-    """One building: its kind, its outline, and the solids that it is made of."""
+    """A building: kind, outline and solids."""
 
-    object_id: int  #: The ``segment_id`` of its points
-    kind: str  #: Shape of its roof or its plan, such as "gable" or "L", or its use, such as "hall"
+    object_id: int  #: ``segment_id`` of its points
+    kind: str  #: Shape of its roof or plan, such as "gable" or "L", or its use, such as "hall"
     outline: np.ndarray  #: (m, 2): closed ring of the walls, counterclockwise (m)
-    solids: tuple[Body, ...]  #: Wings, dormers, chimneys; the roof is the highest of them
+    solids: tuple[Body, ...]  #: Wings, dormers, chimneys; the roof is the highest surface of all
 
     def roof(self, x, y) -> np.ndarray:
-        """Elevation of the roof (m), NaN outside the building."""
+        """Return the elevation of the roof (m), NaN outside the building."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         height = np.full(x.shape, -np.inf)
         for solid in self.solids:
@@ -32,29 +32,29 @@ class Building:
         return np.where(np.isfinite(height), height, np.nan)
 
     def contains(self, x, y) -> np.ndarray:
-        """Which points (m) lie over the building."""
+        """Return the mask of points (m) on the building in plan."""
         return ~np.isnan(self.roof(x, y))
 
     @property
     def area(self) -> float:
-        """Area inside the outline (m²)."""
+        """Area of the outline (m²)."""
         x, y = self.outline.T
         return float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])) / 2
 
 
 @dataclass
 class Scene:
-    """Everything that a scanner can see, with its truth."""
+    """All objects that a scanner can see, with their truth."""
 
     relief: Relief  #: Ground and water
-    #: The buildings; their object ids are unique among all objects
+    #: Buildings; their object ids are unique among all objects
     buildings: list[Building] = field(default_factory=list)
-    solids: list[Body] = field(default_factory=list)  #: All solids, the buildings' too
-    #: Ellipsoids that a beam gets through in part. Each has x, y, z of its center, horizontal and vertical radius (m),
-    #: mean way of a beam to the next leaf (m) and object id
+    solids: list[Body] = field(default_factory=list)  #: All solids, including those of buildings
+    #: Ellipsoids of leaves that beams penetrate. Each has x, y, z of its center, horizontal and vertical radius (m),
+    #: mean path of a beam to the next leaf (m) and object id
     crowns: list[tuple] = field(default_factory=list)
     wires: list[tuple] = field(default_factory=list)  #: Straight pieces: start and end (x, y, z each, m) and object id
-    objects: int = 0  #: Number of objects, which is the greatest object id
+    objects: int = 0  #: Number of objects, the greatest object id
 
     @property
     def size(self) -> float:
@@ -62,23 +62,23 @@ class Scene:
         return self.relief.size
 
     def new_id(self) -> int:
-        """Return the id of one more object."""
+        """Return the id of a new object."""
         self.objects += 1
         return self.objects
 
     def add_box(self, rect: Rect, bottom: float, top: float, classification: int, number: Optional[int] = None) -> None:
-        """Add a solid with a level top between two elevations (m), of an object of its own without ``number``."""
+        """Add a box between two elevations (m), with object id ``number`` or a new one."""
         number = self.new_id() if number is None else number
         self.solids.append(Body(rect, flat(rect, top), bottom, classification, number))
 
     def add_building(self, kind: str, outline: np.ndarray, solids: list[Body]) -> None:
-        """Add a building made of ``solids``, which carry its id; ``outline`` (m, 2) is open."""
+        """Add a building of ``solids``, the first of which has its id; ``outline`` (m, 2) is open."""
         building = Building(solids[0].object_id, kind, np.concatenate([outline, outline[:1]]), tuple(solids))
         self.buildings.append(building)
         self.solids.extend(solids)
 
     def near_building(self, positions: np.ndarray, margin: float) -> np.ndarray:
-        """Which points (n, 2) (m) lie within a margin (m) of a building."""
+        """Return the mask of points (n, 2), m, within a margin (m) of a building."""
         parts = rectangles([solid for building in self.buildings for solid in building.solids])
         reach = np.hypot(parts.length, parts.width) / 2 + margin
         center = np.column_stack([parts.x, parts.y])
@@ -87,14 +87,14 @@ class Scene:
         return mask_of(len(positions), position[rows.contains(positions[position, 0], positions[position, 1], margin)])
 
     def near_water(self, x, y) -> np.ndarray:
-        """Which points (m) lie in the channel of the river or on its banks."""
+        """Return the mask of points (m) in the channel of the river, including its banks."""
         if self.relief.river is None:
             return np.zeros(np.shape(x), bool)
         return np.abs(self.relief.frame.local(x, y)[0] - self.relief.river) < CHANNEL
 
 
 def footprint_layer(buildings: list[Building], corners: bool = False) -> LayerFeatures:
-    """Return the outlines of the walls with id, kind and area, and with the number of their corners if asked for."""
+    """Return the outlines of the walls with id, kind and area, and optionally the number of corners."""
     columns: dict[str, list] = {
         "id": [building.object_id for building in buildings],
         "kind": [building.kind for building in buildings],

@@ -1,4 +1,4 @@
-"""Bridges over water, roads and valleys, and what looks like them, scanned from the air."""
+"""Airborne scans of bridges over water, roads and valleys, and of similar objects."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, AirSurvey, refuse_lar
 
 _ALL = "all"
 
-# Height over the land (m) up to which points of a deck are ground: the deck lies on the land.
+# Points of a deck up to this height (m) above the land are ground: the deck rests on the land.
 _ON_LAND = 0.5
 
 _DECK_FIELDS = (
     Field("id", int, "number of the deck, as SegmentID of its points"),
     Field("kind", str, "kind of the crossing"),
-    Field("angle", float, "angle to the shortest way across", "°"),
+    Field("angle", float, "angle to the perpendicular of the obstacle", "°"),
     Field("width", float, "width", "m"),
     Field("length", float, "length", "m"),
 )
@@ -33,11 +33,11 @@ def simulate_bridges(
     kind: str = tunable(
         _ALL,
         "A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a "
-        "cutting, a bridge over a valley, a fly-over with ramps. Or no bridge: the mouths of a tunnel, a "
-        "jetty, a ramp that ends over a wall. 'all' lays them side by side.",
+        "cutting, a bridge over a valley, a fly-over with ramps. Without a bridge: the portals of a tunnel, a "
+        "jetty, a ramp that ends at a wall. 'all' places one of each side by side.",
         choices=(_ALL, *KINDS),
     ),
-    angle: float = tunable(0.0, "Angle of the decks to the shortest way across.", within="[0, 50]°"),
+    angle: float = tunable(0.0, "Angle of the decks to the perpendicular of the obstacle.", within="[0, 50]°"),
     density: float = PULSE_DENSITY,
     cars: bool = tunable(True, "Cars on the decks."),
     trees: bool = tunable(True, "Trees on the land."),
@@ -45,17 +45,17 @@ def simulate_bridges(
     seed: int = SEED,
     monitor=None,
 ):
-    """Scan made-up bridges from the air: decks with parapets, piers and cars, and the true class of every point.
+    """Simulate an airborne scan of bridges: decks with parapets, piers and cars, and the true class of every point.
 
-    Each kind lies on a lot of 140 m, turned at random. Nothing but decks is bridge deck (17), and only where they do
-    not lie on the land: the land over a tunnel, quays, jetties and ramps are ground.
+    Each kind is on a lot of 140 m, rotated at random. Only decks above the land are bridge deck (17). The land over a
+    tunnel, quays, jetties, ramps and the ends of decks on the land are ground.
 
     Returns
     -------
     xyz, return_number, number_of_returns, intensity, scan_angle, point_source_id, gps_time : ndarray of shape (n, ...)
-        As of :func:`.simulate_town.simulate_town`.
+        As for :func:`.simulate_town.simulate_town`.
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground with banks, embankments and quays; 9 water; 17 bridge decks with their sides; 1 parapets,
+        True class: 2 ground with banks, embankments and quays; 9 water; 17 bridge decks with their sides; 1 parapets,
         piers and cars; 3, 4, 5 trees.
     segment_id : ndarray of shape (n,), int32
         Number of the deck, car or tree; 0 for ground and water.
@@ -69,8 +69,9 @@ def simulate_bridges(
 
     Notes
     -----
-    Scanned as in 'Simulate town', with strips, lines and occlusion. Walls of terrain, such as at tunnel mouths
-    and abutments, rise at 60°, quays at 90°. Ramps rise at 12 %, steeper than roads, to keep lots small.
+    The scan is as in 'Simulate town', with strips, scan lines and occlusion. Terrain walls, such as at tunnel portals
+    and abutments, have a slope of 60°; quays are vertical. Ramps have a slope of 12 %, steeper than real roads, to keep
+    lots small.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A site photographed by a drone and matched as real images are: closed crowns, rounded edges, waves, holes, color."""
+"""A site from matched drone images with their errors: closed crowns, rounded edges, waves, holes, colors."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from .scene import Scene, footprint_layer
 from .town_houses import Site
 from .town_layout import CAR, MAX_BUILDINGS, TownPlan, build_town, park_car
 
-# Height above the ground (m) from which points of cells of ground are of an adjacent object, whose edge is smeared.
+# Height (m) above which points over cells of ground belong to the nearest object, whose edge is smeared.
 _SMEARED = 0.3
 
-# Height above the ground (m) below which points of plants and cars are ground.
+# Height (m) below which points of plants and cars are ground.
 _GROUND = 0.1
 
-# Distinguishes the random numbers of matching from other parts of the simulation with the same seed.
+# Number of the random stream of matching among the streams of one seed.
 _STREAM = 6
 
-# Height from hollows to hills, m.
+# Height difference between hollows and hills, m.
 _RELIEF = 2.0
 
 _FIELDS = (
@@ -45,13 +45,13 @@ _PARAPET_HEIGHT = 0.6
 # Width of parapets (m).
 _PARAPET_WIDTH = 0.35
 
-# Number of flat roofs that touch in a block.
+# Number of adjoining flat roofs in a block.
 _BLOCK_ROOFS = 4
 
 # Depth of a block (m).
 _BLOCK_DEPTH = 12.0
 
-# Largest difference of a roof of a block from the mean height of its roofs (m).
+# Largest deviation of a roof of a block from the mean height (m).
 _BLOCK_STEP = 0.8
 
 # Length and width of vans (m).
@@ -60,10 +60,10 @@ _VAN = (5.4, 2.0)
 # Least and greatest height of vans (m).
 _VAN_HEIGHT = (1.9, 2.6)
 
-# Vans and cars added per hectare.
+# Number of vans and cars per hectare.
 _VANS = 8
 
-# Positions that are tried for each object before it is left out.
+# Most attempts to find a free position for an object.
 _TRIES = 60
 
 # Least distance of an object from buildings (m).
@@ -80,54 +80,62 @@ def simulate_drone_site(
     *,
     size: float = tunable(150.0, "Side of the site, a square from (0, 0).", within="[40, 400] m"),
     density: float = tunable(
-        40.0, "Points on open ground, seen from above.", label="Point density", within="[5, 400] points/m²"
+        40.0, "Point density on open ground, in plan.", label="Point density", within="[5, 400] points/m²"
     ),
     slope: float = tunable(4.0, "Mean slope of the ground.", within="[0, 20]°"),
-    terrace_height: float = tunable(1.5, "Rise of steps in the slope.", label="Height of terraces", within="[0, 3] m"),
-    buildings: float = tunable(
-        16.0, "Houses on a hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha"
-    ),
+    terrace_height: float = tunable(1.5, "Rise of each terrace.", label="Height of terraces", within="[0, 3] m"),
+    buildings: float = tunable(16.0, "Houses per hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha"),
     trees: float = tunable(30.0, "Trees in gardens.", within="[0, 200] per ha"),
     halls: int = tunable(
-        2, "Flat roofs with parapets, 10 to 100 m long, where there is room.", label="Flat halls", within="[0, 20]"
+        2,
+        "Halls with flat roofs and parapets, 10 to 100 m long, if space permits.",
+        label="Flat halls",
+        within="[0, 20]",
     ),
     unevenness: float = tunable(
         0.12,
-        "Standard deviation of the ground from the slope: gardens, kerbs, ruts.",
+        "Standard deviation of the ground from the smooth slope, due to gardens, curbs and ruts.",
         label="Unevenness of the ground",
         within="[0, 0.5] m",
     ),
     rounding: float = tunable(
-        0.5, "Distance over which eaves and ridges are rounded.", label="Rounding of edges", within="[0, 2] m"
+        0.5, "Mean distance over which eaves and ridges are rounded.", label="Rounding of edges", within="[0, 2] m"
     ),
-    waves: float = tunable(0.03, "Standard deviation of errors that neighboring points share.", within="[0, 0.3] m"),
+    waves: float = tunable(
+        0.03, "Standard deviation of errors that are correlated between neighboring points.", within="[0, 0.3] m"
+    ),
     walls: float = tunable(
-        0.6, "Density of points on walls, as a share of that on open ground.", label="Share of walls", within="[0, 1]"
+        0.6,
+        "Point density on walls, as a share of the density on open ground.",
+        label="Share of walls",
+        within="[0, 1]",
     ),
-    noise: float = tunable(0.01, "Standard deviation of each point in every direction.", within="[0, 0.2] m"),
+    noise: float = tunable(
+        0.01, "Standard deviation of uncorrelated errors, the same in every direction.", within="[0, 0.2] m"
+    ),
     seed: int = SEED,
     monitor=None,
 ):
-    """Photograph a made-up site with a drone, match the images with all their errors, and store the true classes.
+    """Simulate a point cloud from matched drone images, with typical errors of matching and the true class of points.
 
-    Houses cut into slopes and terraces, sheds, rows, blocks of flat roofs, halls with parapets, cars and vans, trees,
-    hedges and bushes. Crowns are closed lumpy surfaces, edges rounded, walls smeared or missing, surfaces wavy; dark,
-    bright and shiny ones have holes and spikes. Every material has its color, in light and in shadow.
+    The site has houses on slopes and terraces, sheds, rows, blocks of flat roofs, halls with parapets, cars, vans,
+    trees, hedges and bushes. Crowns are closed lumpy surfaces. Edges are rounded, walls are smeared or missing, and
+    surfaces are wavy. Dark, bright and reflecting surfaces have holes and spikes. Colors depend on material and light.
 
     Returns
     -------
     xyz : ndarray of shape (n, 3), float64
         Coordinates (m).
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher; 6 buildings; 1 cars and the rest.
+        True class: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher; 6 buildings; 1 cars and vans.
     return_number, number_of_returns : ndarray of shape (n,), uint8
-        All 1.
+        Always 1.
     red, green, blue : ndarray of shape (n,), uint16
         Colors.
     segment_id : ndarray of shape (n,), int32
         Number of the object, the same for all points of a building; 0 for ground.
     footprints : LayerFeatures
-        The walls of every building.
+        Outlines of the walls of all buildings.
 
     Raises
     ------
@@ -136,15 +144,15 @@ def simulate_drone_site(
 
     Notes
     -----
-    The scene is a surface of cells of 0.1 m, and so are the errors: matching turns it into a smoother surface with
-    errors that neighbors share, on which points are drawn. Steps are smeared by normal distributions whose width
-    changes over the site from half to one and a half times the mean. Points that are smeared beyond the edge of an
-    object, ``_SMEARED`` m above the ground or more, are of the object.
+    The true surface is a raster with cells of 0.1 m. Matching makes it smoother and adds correlated errors; points are
+    sampled on the result. Steps are smoothed by Gaussians whose width varies over the site from half to one and a half
+    times the mean. Points smeared beyond the edge of an object, ``_SMEARED`` m above the ground or more, belong to the
+    object.
 
-    Unevenness of the ground, waves and the roughness of crowns are as in two real clouds, a suburb and a beach. Open
-    ground deviates from planes by 1 to 1.3 cm over 1 m and by 3 to 5 cm over 4 m.
+    Unevenness of the ground, waves and roughness of crowns match two real clouds, of a suburb and a beach. Open ground
+    deviates from planes by 1 to 1.3 cm over 1 m and by 3 to 5 cm over 4 m.
 
-    Not simulated: what lies under eaves, crowns and bridges, double surfaces, seams between blocks of images.
+    Not simulated: surfaces under eaves, crowns and bridges, double surfaces, seams between blocks of images.
 
     Examples
     --------
@@ -174,7 +182,7 @@ def simulate_drone_site(
 def _cells_of_objects(
     field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cells (n,) that points are of: those smeared beyond the edge of an object are of the object."""
+    """Return the cells (n,) of points; points smeared beyond the edge of an object belong to its nearest cell."""
     is_ground = field.classification[row, column] == PointClass.GROUND
     is_smeared = is_ground & (xyz[:, 2] > field.ground[row, column] + _SMEARED)
     row_beside, column_beside = field.beside()
@@ -185,7 +193,7 @@ def _cells_of_objects(
 
 
 def _truth(field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return class and object (n,) of points of cells; ground is drawn under the edges of crowns."""
+    """Return class and object (n,) of points by their cells; low points of plants and cars are ground."""
     classes, objects = field.classification[row, column], field.object_id[row, column]
     above = xyz[:, 2] - field.ground[row, column]
     is_ground = (classes != PointClass.BUILDING) & (above < _GROUND)
@@ -193,9 +201,9 @@ def _truth(field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndar
 
 
 def build_site(plan: TownPlan, halls: int) -> Scene:
-    """Return a made-up site: a town without wires, with flat halls, vans and a block; the same for the same plan."""
+    """Return a site: a town without wires, with flat halls, vans and a block; deterministic for a plan."""
     scene = build_town(plan)
-    # A camera doesn't see wires.
+    # Wires are not visible in images.
     scene.wires.clear()
     rng = np.random.default_rng([plan.seed, 5])
     for k in range(halls):
@@ -208,7 +216,7 @@ def build_site(plan: TownPlan, halls: int) -> Scene:
 
 
 def _free_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
-    """Return a free rectangle of these sides (m) anywhere on the site, None where none was found."""
+    """Return a free rectangle of given sides (m) at a random position, None without space."""
     reach = np.hypot(long, wide) / 2 + 1.0
     if 2 * reach >= scene.size:
         return None
@@ -223,7 +231,7 @@ def _free_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Gener
 
 
 def _clear(scene: Scene, rect: Rect) -> None:
-    """Remove plants and vehicles where a building is put."""
+    """Remove plants and vehicles from the footprint of a new building."""
     scene.crowns[:] = [row for row in scene.crowns if not rect.contains(row[0], row[1], row[3] + 0.5)]
     scene.solids[:] = [
         solid
@@ -233,9 +241,9 @@ def _clear(scene: Scene, rect: Rect) -> None:
 
 
 def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
-    """Put a flat roof with a parapet, the k-th of sides spread evenly from the least to the greatest."""
+    """Add the k-th hall, with a flat roof and a parapet; lengths are spread evenly over their range."""
     least, most = _HALL_SIZES
-    # Steps of the golden ratio spread the lengths evenly, whatever the number of halls.
+    # Steps of the golden ratio spread the lengths evenly for any number of halls.
     long = min(least * (most / least) ** float(np.mod(0.35 + 0.382 * k, 1.0)), 0.6 * scene.size)
     rect = _free_rectangle(scene, long, long * rng.uniform(0.5, 0.8), rng)
     if rect is None:
@@ -253,7 +261,7 @@ def _parapets(site: Site, rect: Rect) -> list[Body]:
 
 
 def _add_block(scene: Scene, rng: np.random.Generator) -> None:
-    """Put a block of touching flat roofs."""
+    """Add a block of adjoining flat roofs."""
     wide = rng.uniform(7.0, 11.0)
     rect = _free_rectangle(scene, _BLOCK_ROOFS * wide, _BLOCK_DEPTH, rng)
     if rect is None:
@@ -268,7 +276,7 @@ def _add_block(scene: Scene, rng: np.random.Generator) -> None:
 
 
 def _add_van(scene: Scene, rng: np.random.Generator) -> None:
-    """Park a van or a car where there is room."""
+    """Add a van or a car at a free position."""
     rect = _free_rectangle(scene, *_VAN, rng)
     if rect is None:
         return

@@ -1,4 +1,4 @@
-"""A drone's scan of a street of which everything is known, to learn, test and measure with."""
+"""A drone's laser scan of a street with known truth, for training, tests and measurements."""
 
 from __future__ import annotations
 
@@ -18,46 +18,45 @@ from .street_site import build_site
 def simulate_flight(
     *,
     height: float = tunable(
-        8.0, "How high over the street the drone climbs.", label="Flight height", within="[2, 25] m"
+        8.0, "Greatest height of the drone above the street.", label="Flight height", within="[2, 25] m"
     ),
     duration: float = tunable(
         190.0,
-        "From take-off to landing: a fifth of it each for the climb and the landing, the rest for one turn. "
+        "Time from take-off to landing: a fifth each for climb and landing, the rest for one turn. "
         "Longer flights have more points.",
         within="[5, 600] s",
     ),
     scanners: str = tunable(
         "both",
-        "Scanners whose points are wanted. Two runs with one scanner each give two clouds of one flight, to be merged.",
+        "Scanners to simulate. Two runs with one scanner each give two clouds of the same flight, which can be merged.",
         choices=("both", *SCANNERS),
     ),
     trees: int = tunable(4, "Trees along the street.", within="[0, 22]"),
-    slope: float = tunable(1.5, "Slope of the ground, which is a plane.", within="[0, 10]°"),
+    slope: float = tunable(1.5, "Slope of the ground, a plane.", within="[0, 10]°"),
     line_rate: float = LINE_RATE,
     angular_step: float = ANGULAR_STEP,
-    max_range: float = tunable(30.0, "How far the scanners see.", within="[1, 40] m", advanced=True),
+    max_range: float = tunable(30.0, "Maximum range of the scanners.", within="[1, 40] m", advanced=True),
     range_noise: float = RANGE_NOISE.with_default(0.03),
     seed: int = SEED,
     monitor=None,
 ):
-    """Scan a made-up street from a drone with two line scanners, with the true class of every point.
+    """Simulate a street scanned from a drone by two line scanners, with the true class of every point.
 
-    The drone takes off between houses with balconies, parked cars, lamps and trees, turns once around and lands where
-    it stood. One scanner looks along the horizon: it sees facades and crowns at the height of the drone, again and
-    again. The other looks in the plane across the drone: it sees the ground, too, and everything around while the
-    drone turns.
+    The drone takes off between houses with balconies, parked cars, lamps and trees, makes one turn and lands at the
+    same position. One scanner scans horizontally: it repeatedly sees facades and crowns at the height of the drone. The
+    other scans in the vertical plane across the drone: it also sees the ground, and all directions during the turn.
 
     Returns
     -------
     xyz, intensity, gps_time : ndarray of shape (n, ...)
-        As of :func:`.simulate_town.simulate_town`; the points of both scanners are in one frame.
+        As for :func:`.simulate_town.simulate_town`; both scanners have the same coordinate system.
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher (stems are 5); 6 buildings with their
+        True class: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher (stems are 5); 6 buildings with their
         balconies; 1 cars and lamps.
     return_number, number_of_returns : ndarray of shape (n,), uint8
-        1: the scanners record the first echo only.
+        Always 1: the scanners record the first echo only.
     scan_angle : ndarray of shape (n,), float32
-        Angle of the beam to the nadir (°), 90 along the horizon, negative to the left of the drone.
+        Angle of the beam to the nadir (°), 90 for horizontal beams, negative to the left of the drone.
     point_source_id : ndarray of shape (n,), uint16
         1 for the horizontal scanner, 2 for the vertical one.
     segment_id : ndarray of shape (n,), int32
@@ -70,14 +69,14 @@ def simulate_flight(
 
     Notes
     -----
-    The scanners are the publication's: 40 lines per second, a beam every 0.25° in all directions but a quarter
-    of the circle, behind the horizontal one and above the vertical one. They reach 30 m, with 3 cm of noise along the
-    beam. The drone sways by up to 0.3 m and 2°. Its position is known exactly: points lie on surfaces but for
-    the range noise. With nothing set there are 6.7 million points in 320,000 voxels of 0.1 m, about as many as in the
-    publication.
+    The scanners are as in the publication: 40 lines per second and a beam every 0.25° over 270°. The blind quarter of
+    the circle is behind the drone for the horizontal scanner and above it for the vertical one. The range is 30 m, with
+    3 cm of noise along the beam. The drone sways by up to 0.3 m and 2°. Its position is known exactly: points deviate
+    from surfaces by the range noise only. By default there are 6.7 million points in 320,000 voxels of 0.1 m, about as
+    many as in the publication.
 
-    Not simulated: parts of the drone in view, errors of the position, edges that mix two surfaces in one echo, windows,
-    and surfaces too dark or too slanted to return an echo.
+    Not simulated: parts of the drone in view, positioning errors, echoes that mix two surfaces at edges, windows, and
+    surfaces too dark or too oblique to return an echo.
 
     References
     ----------

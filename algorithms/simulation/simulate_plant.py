@@ -1,4 +1,4 @@
-"""An industrial plant scanned from stations on the ground, of which everything is known."""
+"""Terrestrial laser scans of an industrial plant with known truth."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from ..threads import n_threads
 from .plant_layout import Plant, build_plant
 
-# Most candidates for a point: at 44 bytes each they take 1.8 GB, which fits into the memory of an office computer.
+# Most candidate points: at 44 bytes each they take 1.8 GB, which fits into the memory of an office computer.
 _MAX_POINTS = 4e7
 
-# Candidates for a point: by three on average, few positions of a surface are left without one.
+# Candidates per point: with three on average, few parts of a surface are left without points.
 _CANDIDATES = 3.0
 
-# Candidates that are drawn at once: about 100 bytes each while they are drawn.
+# Candidates drawn per block: about 100 bytes each meanwhile.
 _DRAWN = 1_000_000
 
-# The floor is thinned to this share of the density of everything else: there is more of it than of pipes.
+# Density of the floor, as a share of the density of other surfaces: its area is larger than the area of pipes.
 _FLOOR = 0.05
 
 # Range of the scanner (m).
 _RANGE = 45.0
 
-# Distance (m) at which the points of a scan have the asked density.
+# Distance (m) from the scanner up to which surfaces have the full density.
 _FULL_DENSITY = 6.0
 
-# Least angle (°) between beam and surface at which the surface returns an echo.
+# Least angle (°) between beam and surface that returns an echo.
 _LEAST_INCIDENCE = 8.0
 
-# Surfaces at most this far (spacings) behind the first one in a beam are the same one.
+# Points up to this distance (spacings) behind the first one in a beam are on the same surface.
 _SAME = 2.0
 
 _AXIS_FIELDS = (
@@ -62,54 +62,54 @@ def simulate_plant(
     *,
     pipes: int = tunable(200, "Straight pipes with diameters of 5 to 60 cm, on racks.", within="[1, 2000]"),
     tanks: int = tunable(
-        3, "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.", within="[0, 20]"
+        3, "Upright tanks with diameters of 5 to 30 m; their sides and roofs are visible.", within="[0, 20]"
     ),
     spheres: int = tunable(4, "Spherical vessels with diameters of 1 to 3 m.", within="[0, 50]"),
     clutter: bool = tunable(
-        True, "What carries the pipes or lies near them and is no pipe.", label="Beams, gratings and clutter"
+        True, "Add objects other than pipes: supports, gratings and clutter.", label="Beams, gratings and clutter"
     ),
     density: float = tunable(
         4000.0,
-        "Density on surfaces up to 6 m from the scanner; farther ones have less. The floor has a twentieth.",
+        "Density on surfaces up to 6 m from the scanner; it decreases beyond. The floor has a twentieth of it.",
         label="Point density",
         within="[100, 100_000] points/m²",
     ),
-    noise: float = tunable(0.002, "Standard deviation of the distance of a point.", within="[0, 0.1] m"),
+    noise: float = tunable(0.002, "Standard deviation of measured ranges.", within="[0, 0.1] m"),
     seed: int = SEED,
     monitor=None,
 ):
-    """Scan a made-up industrial plant: points with their true surface, the axes of pipes and tanks, centers of spheres.
+    """Simulate scans of an industrial plant: points with true surfaces, axes of pipes and tanks, centers of spheres.
 
-    Racks carry pipes at three levels, some with flanges, some with elbows to a pipe that leads up or down; I-beams
-    carry the racks, gratings and heaps lie next to them. Upright tanks are in the west, spherical vessels in the east.
-    The scanner has stations at the corners of the racks and around tanks, and sees what nothing hides.
+    Racks of I-beams carry pipes at three levels, some with flanges, some with elbows to a pipe that leads up or down.
+    Gratings and heaps are next to the racks, upright tanks in the west, spherical vessels in the east. The scanner has
+    stations at the corners of the racks and around the tanks; occluded surfaces have no points.
 
     Returns
     -------
     xyz : ndarray of shape (n, 3), float64
         Coordinates (m).
     classification : ndarray of shape (n,), uint8
-        2 floor, 1 everything else.
+        True class: 2 floor, 1 other objects.
     segment_id : ndarray of shape (n,), int32
         Number of the part: a pipe, an elbow, a plate of a beam; 0 for clutter and gratings.
     shape : ndarray of shape (n,), uint8
-        1 plane, 2 cylinder, 3 sphere, 0 everything else.
+        1 plane, 2 cylinder, 3 sphere, 0 other surfaces.
     axes : LayerFeatures
-        Axes of pipes and tanks that have points.
+        Axes of pipes and tanks with points.
     centers : LayerFeatures
-        Centers of spheres.
+        Centers of spheres with points.
 
     Raises
     ------
     ValueError
-        If there would be more than 40 million candidates for a point.
+        If there would be more than 40 million candidate points.
 
     Notes
     -----
-    A station sees one point of each cell of directions, the nearest. The cells are as large as the density at
-    ``_FULL_DENSITY`` m asks for; farther surfaces have fewer points. Surfaces that are met at less than
-    ``_LEAST_INCIDENCE``° give none. Noise lies along the beam. The default of 200 pipes makes 3.6 million points in
-    about two minutes. Not simulated: points between two surfaces at edges, reflections, errors of the registration.
+    A station records one point per cell of directions, the nearest. The size of the cells follows from the density at
+    ``_FULL_DENSITY`` m; farther surfaces have fewer points. Surfaces at less than ``_LEAST_INCIDENCE``° to the beam
+    have none. Noise is along the beam. By default, 200 pipes give 3.6 million points in about two minutes. Not
+    simulated: points between two surfaces at edges, reflections, registration errors.
 
     Examples
     --------
@@ -140,18 +140,18 @@ def simulate_plant(
 
 @dataclass(frozen=True)
 class _Candidates:
-    """Positions on surfaces that a scanner may see."""
+    """Candidate points on surfaces, of which stations see some."""
 
     xyz: np.ndarray  #: (n, 3), float64: positions (m)
     normal: np.ndarray  #: (n, 3), float32: outward normals of the surfaces
-    part: np.ndarray  #: (n,), int32: numbers of the parts they lie on
-    #: (n,), float32: largest distance (m) of a station that looks at a position. The share of a surface that a station
-    #: samples falls with the square of its distance, as the density of its points does.
+    part: np.ndarray  #: (n,), int32: indices of the parts
+    #: (n,), float32: greatest distance (m) of a station that uses a candidate. It is drawn so that the density of the
+    #: candidates of a station decreases with the square of the distance, as the density of its points does.
     reach: np.ndarray
 
 
 def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor: Monitor) -> _Candidates:
-    """Return positions that may be seen, as densely as the station nearest to each asks for."""
+    """Return candidate points with the density that the nearest station needs."""
     stations = spatial.cKDTree(np.array(plant.stations))
     drawn: list[tuple[np.ndarray, ...]] = []
     total = 0
@@ -159,7 +159,7 @@ def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor:
         monitor.progress(number / len(plant.parts))
         nearest = max(1.0, float(stations.query(part.middle)[0]) - np.sqrt(part.area) / 2)
         falling = min(1.0, (_FULL_DENSITY / nearest) ** 2)
-        # At least 20, so that small parts are not missed by chance.
+        # At least 20, so that no small part is missed by chance.
         count = max(20, round(_CANDIDATES * density * falling * part.area * (_FLOOR if part.kind == "floor" else 1.0)))
         for start in range(0, count, _DRAWN):
             positions, normals = part.sample(rng, min(_DRAWN, count - start))
@@ -178,20 +178,20 @@ def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor:
 
 
 def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarray:
-    """Return the points that a scanner sees from a station, one for each cell of directions ``step`` (radians) wide."""
+    """Return the indices of visible candidates: one per cell of directions ``step`` (radians) wide."""
     near, offset = _looked_at(candidates, station)
     distance = np.sqrt(np.einsum("ij,ij->i", offset, offset))
-    # The farthest come first, so that of several in one cell the nearest is stored last.
+    # Sorted from far to near, so that the nearest one in a cell is stored last.
     order = np.argsort(-distance, kind="stable")
     near, offset, distance = near[order], offset[order], distance[order]
     facing = -np.einsum("ij,ij->i", offset, candidates.normal[near]) / np.maximum(distance, 1e-9)
-    # Surfaces that face away hide what lies behind them, too: plates and pipes are closed.
+    # Surfaces that face away also occlude: plates and pipes are closed.
     azimuth = np.arctan2(offset[:, 1], offset[:, 0]) + np.pi
     elevation = np.arcsin(np.clip(offset[:, 2] / distance, -1, 1)) + np.pi / 2
-    # Near the zenith and the nadir, cells are no narrower than about 1° from them.
+    # Cells closer than about 1° to the zenith or nadir do not become narrower.
     around = azimuth * np.maximum(np.sin(elevation), 0.02)
     is_first = np.ones(len(near), bool)
-    # Cells wider than the gaps between candidates hide what lies behind a surface.
+    # Wide cells leave no gaps between candidates, through which hidden surfaces could be seen.
     for width in (2 * step, step):
         columns = int(2 * np.pi / width) + 2
         cell = (elevation / width).astype(np.int64) * columns + (around / width).astype(np.int64)
@@ -204,7 +204,7 @@ def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarr
 
 
 def _looked_at(candidates: _Candidates, station: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the positions (k,) that a station looks at, and their offsets (k, 3), float32, from it (m)."""
+    """Return the indices (k,) of the candidates of a station, and their offsets (k, 3), float32, from it (m)."""
     rows, offsets = [], []
     for start in range(0, len(candidates.xyz), _DRAWN):
         offset = (candidates.xyz[start : start + _DRAWN] - station).astype(np.float32)
@@ -217,7 +217,7 @@ def _looked_at(candidates: _Candidates, station: np.ndarray) -> tuple[np.ndarray
 
 
 def _thinned(xyz: np.ndarray, part: np.ndarray, plant: Plant, density: float) -> np.ndarray:
-    """Return the indices of the points to keep so that no surface is denser than asked."""
+    """Return the indices of points thinned to at most ``density`` on every surface."""
     part = part.astype(np.int64)
     is_floor = np.array([one.kind == "floor" for one in plant.parts])[part]
     side = np.where(is_floor, 1 / np.sqrt(density * _FLOOR), 1 / np.sqrt(density))

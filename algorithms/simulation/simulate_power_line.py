@@ -1,4 +1,4 @@
-"""Power lines of which every point is known."""
+"""Airborne scans of power lines with known truth."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from .scene import Scene
 # Height of a tower (m).
 _TOWER = 30.0
 
-# Heights of its three pairs of arms (m).
+# Heights of the three pairs of arms of a tower (m).
 _ARMS = (29.0, 25.0, 21.0)
 
-# Length of an arm on each side (m).
+# Length of an arm (m).
 _ARM = 5.0
 
 # Half of the distance between the legs of a tower (m).
 _LEG = 1.6
 
-# Sag of conductors, as a share of their span: usual at 20 °C.
+# Sag of conductors, as a share of the span: usual at 20 °C.
 _SAG = 0.03
 
 # Height of poles (m).
@@ -34,11 +34,11 @@ _POLE = 9.0
 # Distance between neighboring poles (m).
 _POLES = 40.0
 
-# Sag of the wires of poles (m).
+# Sag of the wires between poles (m).
 _POLE_SAG = 0.8
 
-# Wires of poles: distance from the line of the poles, and from their top (m). Three phases on a cross-arm, a rack of
-# four wires one above the other below it, and a cable of a telephone company.
+# Wires of poles: distance across the line, and below the top of the poles (m). Three phases on a cross-arm, a vertical
+# rack of four wires, and a telephone cable.
 _WIRES = ((-0.8, 0.2), (0.0, 0.2), (0.8, 0.2), (0.2, 1.4), (0.2, 1.7), (0.2, 2.0), (0.2, 2.3), (-0.2, 3.2))
 
 # Half of the distance between the two conductors of a bundle (m).
@@ -47,10 +47,10 @@ _BUNDLE = 0.2
 # Distance of houses from the line of the poles (m).
 _HOUSE = 16.0
 
-# Sag of the wire from a pole to a house (m).
+# Sag of a wire from a pole to a house (m).
 _DROP_SAG = 0.3
 
-# Straight pieces that a wire is made of.
+# Straight pieces per span of a wire.
 _PIECES = 24
 
 
@@ -67,24 +67,24 @@ def simulate_power_line(
     angle: float = tunable(15.0, "Direction of both lines from east.", within="[0, 90]°"),
     trees: float = tunable(20.0, "Trees outside the forest.", within="[0, 200] per ha"),
     forest: float = tunable(
-        0.15, "Share of the site that is forest, also under the lines.", label="Share of forest", within="[0, 1]"
+        0.15, "Share of the site covered by forest, also below the lines.", label="Share of forest", within="[0, 1]"
     ),
     range_noise: float = RANGE_NOISE,
     seed: int = SEED,
     monitor=None,
 ):
-    """Scan made-up power lines from the air, with the true class of every point.
+    """Simulate an airborne scan of power lines, with the true class of every point.
 
-    A transmission line on towers of 30 m carries six bundles of two conductors and a guard wire. A line on poles of 9 m
-    carries three wires on a cross-arm, four in a rack below it, a telephone cable, and a wire to a house at every
-    second pole. Trees and a forest grow under both.
+    A transmission line on towers of 30 m has six bundles of two conductors and a guard wire. A line on poles of 9 m has
+    three wires on a cross-arm, four in a rack below it, a telephone cable, and a wire to a house at every second pole.
+    Trees and a forest grow below both.
 
     Returns
     -------
     xyz, return_number, number_of_returns, intensity, scan_angle, point_source_id, gps_time : ndarray of shape (n, ...)
-        As of :func:`.simulate_town.simulate_town`.
+        As for :func:`.simulate_town.simulate_town`.
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground; 3, 4, 5 vegetation; 6 houses; 14 wires; 15 towers and poles.
+        True class: 2 ground; 3, 4, 5 vegetation; 6 houses; 14 wires; 15 towers and poles.
     segment_id : ndarray of shape (n,), int32
         Number of the wire, mast, house or tree; 0 for ground.
 
@@ -95,8 +95,8 @@ def simulate_power_line(
 
     Notes
     -----
-    Wires are parabolas with a sag of 3 % of the span, at low voltage of 0.8 m. A pulse whose axis passes a wire
-    within 0.1 m gives a return from it in 70 of 100 cases, and most go on. Scanned as in 'Simulate town'.
+    Wires are parabolas with a sag of 3 % of the span, 0.8 m for low voltage. A pulse whose axis passes a wire within
+    0.1 m gives a return from it with a probability of 70 %, and usually continues. The scan is as in 'Simulate town'.
 
     Examples
     --------
@@ -121,9 +121,9 @@ def build_line_site(size: float, span: float, angle: float, trees: float, forest
     angle : float
         Direction of the lines from east, °.
     trees, forest : float
-        Trees per hectare, and share that is forest.
+        Trees per hectare, and share of the site that is forest.
     seed : int
-        The same seed makes the same site.
+        The same seed gives the same site.
     """
     rng = np.random.default_rng([seed, 7])
     scene = Scene(Relief(size, gradient=0.04, angle=np.deg2rad(90.0)))
@@ -135,19 +135,19 @@ def build_line_site(size: float, span: float, angle: float, trees: float, forest
 
 
 def _line(scene: Scene, direction: float, aside: float, distance: float) -> np.ndarray:
-    """Return the feet (n, 3) of the masts of a line that passes the middle of the site at ``aside`` (m)."""
+    """Return the feet (n, 3) of the masts of a line at a distance ``aside`` (m) from the middle of the site."""
     along = np.arange(-scene.size, scene.size, distance)
     x, y = Rect(scene.size / 2, scene.size / 2, 0.0, 0.0, direction).at(along, aside)
     return np.column_stack([x, y, scene.relief.ground(x, y)])
 
 
 def _inside(scene: Scene, xy: np.ndarray) -> np.ndarray:
-    """Return the mask of positions (n, 2 or 3) that lie in the site, a meter from its edge."""
+    """Return the mask of positions (n, 2 or 3) on the site, at least 1 m from its edge."""
     return ((xy[:, :2] > 1.0) & (xy[:, :2] < scene.size - 1.0)).all(axis=1)
 
 
 def _high_voltage(scene: Scene, direction: float, span: float) -> None:
-    """Put towers with six bundles of two and a guard wire; those beyond the site carry the wires that reach into it."""
+    """Add towers and wires; spans to towers beyond the site are cut at its edge."""
     feet = _line(scene, direction, 0.22 * scene.size, span)
     across = np.array([-np.sin(direction), np.cos(direction), 0.0])
     for foot in feet[_inside(scene, feet)]:
@@ -160,7 +160,7 @@ def _high_voltage(scene: Scene, direction: float, span: float) -> None:
 
 
 def _tower(scene: Scene, foot: np.ndarray, direction: float) -> None:
-    """Put four legs, a body and three arms."""
+    """Add a tower: four legs, a body and three pairs of arms."""
     number, (x, y, ground) = scene.new_id(), (float(value) for value in foot)
     frame = Rect(x, y, 1.0, 1.0, direction)
     for along in (-_LEG, _LEG):
@@ -176,7 +176,7 @@ def _add_tower(scene: Scene, rect: Rect, bottom: float, top: float, number: int)
 
 
 def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> None:
-    """Put poles with their wires, and to every second pole a house with a wire of its own."""
+    """Add poles and their wires, and at every second pole a house with a wire from the pole."""
     feet = _line(scene, direction, -0.22 * scene.size, _POLES)
     across = np.array([-np.sin(direction), np.cos(direction), 0.0])
     for i, foot in enumerate(feet):
@@ -195,7 +195,7 @@ def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> No
 
 
 def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Generator) -> float:
-    """Put a gable house; return the elevation (m) of its eaves."""
+    """Add a gable house; return the elevation (m) of its eaves."""
     rect = Rect(float(middle[0]), float(middle[1]), float(rng.uniform(9, 13)), 8.0, direction)
     ground = scene.relief.ground(*rect.corners().T)
     eave = float(ground.max()) + float(rng.uniform(3.5, 5.5))
@@ -205,7 +205,7 @@ def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Ge
 
 
 def _string(scene: Scene, points: np.ndarray, sag: float) -> None:
-    """Hang a wire from point to point (n, 3), m, with a sag (m) in the middle between them."""
+    """Add a wire between successive points (n, 3), m, with a sag (m) in the middle of each span."""
     number, share = scene.new_id(), np.linspace(0.0, 1.0, _PIECES + 1)[:, None]
     for start, end in zip(points, points[1:]):
         line = start + share * (end - start) - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]

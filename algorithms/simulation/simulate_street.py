@@ -1,4 +1,4 @@
-"""A street scanned from a vehicle, of which every facade, opening and corner is known."""
+"""Scans of a street with known facades, openings and corners, from a vehicle or an airplane."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from .street_fronts import KINDS, Front, Line, Truth, between
 from .town_layout import park_car
 from .vehicle import Drive, pulses_of
 
-# The scanners are this high over the street (m).
+# Height of the scanners over the street (m).
 _HEIGHT = 2.2
 
-# Points of a wall farther than this (m) from its front, noise apart, are on its ends and reveals.
+# Distance (m) from the front, apart from noise, beyond which points of a wall are on its ends and reveals.
 _ON_FRONT = 0.01
 
-# Largest error by noise (standard deviations) of a point on the front: one of 16,000 is larger.
+# Largest noise of a point on the front (standard deviations): 1 in 16,000 is larger.
 _DEVIATIONS = 4.0
 
-# From where the street may be scanned.
+# Platforms of the scanner.
 VIEWS = ("vehicle", "airplane")
 
 _CREATED = (*RECORDED, "cluster_id")
 
 _FACADE_FIELDS = (
     Field("id", int, "number of the facade, as SegmentID of its points"),
-    Field("kind", str, "kind of the front that it is part of: plain, recess, bay, curved or balconies"),
+    Field("kind", str, "kind of its front: plain, recess, bay, curved or balconies"),
 )
 _OPENING_FIELDS = (
     Field("id", int, "number of the opening, as ClusterID of its points"),
@@ -54,16 +54,16 @@ _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
 # Least and greatest width of houses (m), before all widths are scaled to fill the street.
 _WIDTHS = (8.0, 12.0)
 
-# Least and greatest height of the eaves that is drawn for a side (m); each of its houses adds to it.
+# Least and greatest height of the lowest eaves of a side (m).
 _EAVES = (7.0, 11.0)
 
-# Most that a house adds to the height of the eaves of its side (m): less than a storey.
+# Largest height of the eaves of a house above the lowest of its side (m): less than a storey.
 _DIFFERENCE = 0.8
 
 # Least and greatest pitch of gable roofs (°).
 _PITCHES = (30.0, 45.0)
 
-# Distance of people from the fronts (m): they walk on the sidewalk.
+# Distance of people on the sidewalk from the fronts (m).
 _PEOPLE = 1.2
 
 # Distance of trees from the fronts (m).
@@ -72,7 +72,7 @@ _TREES = 2.2
 # Distance of poles from the fronts (m), in the row of trees.
 _POLES = 2.4
 
-# Distance of the middles of parked cars from the fronts (m), beyond the curb.
+# Distance of the axes of parked cars from the fronts (m), beyond the curb.
 _CARS = 3.6
 
 # Width and height of a person (m).
@@ -98,73 +98,69 @@ def simulate_street(
     length: float = tunable(60.0, "Length of the street.", within="[10, 2000] m"),
     width: float = tunable(16.0, "Distance between the fronts of both sides.", within="[12, 60] m"),
     slope: float = tunable(1.0, "Slope along the street.", within="[0, 10]°"),
-    clutter: bool = tunable(
-        True, "Put parked cars, trees, poles and people before the fronts, which hide parts of them."
-    ),
+    clutter: bool = tunable(True, "Add parked cars, trees, poles and people that occlude parts of the fronts."),
     stoops: float = tunable(
         0.0,
-        "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
+        "Height of the doors above the street, with stairs up to them. From 1.4 m on there are cellar windows.",
         label="Height of stoops",
         within="[0, 4] m",
     ),
     unevenness: float = tunable(
         0.0,
-        "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
-        "plane.",
+        "Largest offset of the ends of a front, forward or backward, from the common line of the fronts. Small values "
+        "give fronts nearly in one plane.",
         within="[0, 1] m",
     ),
-    houses: bool = tunable(False, "Put houses with gable roofs behind the fronts; no front is curved then."),
+    houses: bool = tunable(False, "Add houses with gable roofs behind the fronts; then no front is curved."),
     view: str = tunable(
         "vehicle",
-        "Scan the street from a vehicle or from an airplane. Both see the same street for the same seed.",
+        "Platform of the scanner. With the same seed, both scan the same street.",
         choices=VIEWS,
     ),
     density: float = tunable(
         12.0,
-        "Laser pulses of the scan from the air.",
+        "Mean density of laser pulses from the airplane.",
         label="Pulse density",
         within="[0.5, 100] pulses/m²",
         advanced=True,
     ),
-    glass: float = tunable(
-        70.0, "Share of the pulses on window panes that pass them and are lost.", within="[0, 100] %"
-    ),
+    glass: float = tunable(70.0, "Share of pulses that pass through window panes and are lost.", within="[0, 100] %"),
     speed: float = tunable(5.0, "Speed of the vehicle.", within="[0.5, 30] m/s", advanced=True),
     line_rate: float = LINE_RATE.with_default(100.0),
     angular_step: float = ANGULAR_STEP,
-    max_range: float = tunable(40.0, "How far the scanners see.", within="[5, 200] m", advanced=True),
+    max_range: float = tunable(40.0, "Maximum range of the scanners.", within="[5, 200] m", advanced=True),
     range_noise: float = RANGE_NOISE.with_default(0.01),
     seed: int = SEED,
     monitor=None,
 ):
-    """Scan a made-up street from a vehicle or an airplane, with the true facades, windows, doors and corners.
+    """Simulate a street scanned from a vehicle or an airplane, with the true facades, windows, doors and corners.
 
-    Houses are side by side along both sides: plain fronts, fronts with a recess, a bay, balconies, and curved ones,
-    all with windows and doors. Parked cars, trees, poles and people hide parts of them. The vehicle drives through
-    the street once, with two scanners whose planes look ahead and back.
+    Houses adjoin along both sides. Their fronts are plain, curved, or have a recess, a bay or balconies; all have
+    windows and doors. Parked cars, trees, poles and people occlude parts of them. The vehicle drives along the street
+    once, with two scanners whose scan planes are turned forward and backward.
 
     Returns
     -------
     xyz, intensity, gps_time : ndarray of shape (n, ...)
-        As of :func:`.simulate_town.simulate_town`.
+        As for :func:`.simulate_town.simulate_town`.
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground; 3, 4, 5 vegetation by height; 6 buildings with their balconies; 1 cars, poles and people.
+        True class: 2 ground; 3, 4, 5 vegetation by height; 6 buildings with their balconies; 1 cars, poles and people.
     return_number, number_of_returns : ndarray of shape (n,), uint8
-        1: the vehicle's scanners record the first echo only. From the airplane as of "Simulate town".
+        1 from the vehicle, which records the first echo only; from the airplane as for "Simulate town".
     scan_angle : ndarray of shape (n,), float32
         Angle of the beam to the nadir (°), negative to the left.
     point_source_id : ndarray of shape (n,), uint16
-        1 for the vehicle's scanner that looks ahead on the left, 2 for the other one; strips of the airplane.
+        From the vehicle 1 for the scanner turned forward on its left side, 2 for the other one; else flight lines.
     segment_id : ndarray of shape (n,), int32
-        Number of the facade; 0 for everything else, reveals, panes and frames too.
+        Number of the facade; 0 for other points, including reveals, panes and frames.
     cluster_id : ndarray of shape (n,), int32
-        Number of the opening that a pane or frame belongs to; 0 for everything else.
+        Number of the opening of a pane or frame; 0 for other points.
     facades, openings : LayerFeatures
-        Polygons with Z, counterclockwise seen from the street; openings in the plane of the facade's front.
+        Polygons with Z, counterclockwise seen from the street; openings are in the plane of the front.
     corners : LayerFeatures
         Corners of the facades, points with Z.
     outlines : LayerFeatures
-        Outlines of the houses on the ground, polygons with Z; none without ``houses``.
+        Outlines of the houses on the ground, polygons with Z; empty without ``houses``.
 
     Raises
     ------
@@ -173,11 +169,11 @@ def simulate_street(
 
     Notes
     -----
-    Stairs lead straight up to a landing of 1.2 m before raised doors. A curved front is made of six flat strips;
-    walls of neighboring houses in one plane are one facade. The roofs of houses are flush with their walls. From the
-    air the street is scanned as "Simulate town" does. The position of the vehicle is known exactly; the noise lies
-    along the beam. Frames are 10 cm and panes 16 cm behind the front. Not simulated: rooms behind panes, mirror
-    images in glass, and echoes of the vehicle's scanners that mix two surfaces at an edge.
+    Stairs lead straight up to a landing of 1.2 m in front of raised doors. A curved front consists of six plane strips;
+    walls of neighboring houses in one plane are one facade. The roofs of houses are flush with their walls. The
+    airborne scan is as in "Simulate town". The position of the vehicle is known exactly; noise is along the beam.
+    Frames are 10 cm and panes 16 cm behind the front. Not simulated: rooms behind panes, mirror images in glass, and
+    echoes of the vehicle's scanners that mix two surfaces at an edge.
 
     Examples
     --------
@@ -204,7 +200,7 @@ def simulate_street(
 
 
 def _drive(scene: Scene, street: Rect, speed: float) -> Drive:
-    """Return a drive in the right lane, from which the fronts of both sides are seen at different distances."""
+    """Return a drive in the right lane, at different distances from the fronts of both sides."""
     ends = [np.array(street.at(sign * street.length / 2, -street.width / 8)) for sign in (-1, 1)]
     ends = [np.array([*end, float(scene.relief.plane(*end)) + _HEIGHT]) for end in ends]
     way = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
@@ -212,7 +208,7 @@ def _drive(scene: Scene, street: Rect, speed: float) -> Drive:
 
 
 def _through_glass(made: dict[str, np.ndarray], truth: Truth, share: float, seed: int) -> dict[str, np.ndarray]:
-    """Return the points that are left after panes let a share (%) of the pulses pass."""
+    """Remove a share (%) of the points on panes: pulses that pass through glass are lost."""
     is_glass = np.isin(made["segment_id"], sorted(truth.glass))
     chance = np.random.default_rng([seed, 6]).random(len(is_glass))
     kept = ~is_glass | (chance >= share / 100)
@@ -220,7 +216,7 @@ def _through_glass(made: dict[str, np.ndarray], truth: Truth, share: float, seed
 
 
 def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> dict[str, np.ndarray]:
-    """Return points with the numbers of facade and opening instead of the objects'."""
+    """Replace object ids by the numbers of facades and openings."""
     number = made["segment_id"]
     facade, opening = np.zeros((2, int(number.max(initial=0)) + 1), np.int32)
     for of, table in ((truth.facade_of, facade), (truth.opening_of, opening)):
@@ -228,7 +224,7 @@ def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> di
             if own < len(table):
                 table[own] = true
     on_facade = facade[number]
-    # The sides of openings and the ends of walls are of the same solids, and not of the front.
+    # Reveals and the ends of walls are faces of the same solids, but no part of the front.
     start = np.array([ring[0] for ring in truth.facades])
     step = np.array([ring[1] - ring[0] for ring in truth.facades])
     across = np.column_stack([-step[:, 1], step[:, 0]]) / np.hypot(step[:, 0], step[:, 1])[:, None]
@@ -255,25 +251,25 @@ def _layers(truth: Truth) -> tuple[LayerFeatures, ...]:
 
 @dataclass(frozen=True)
 class StreetPlan:
-    """What a street holds: tunables of :func:`.simulate_street.simulate_street`."""
+    """Contents of a street: tunables of :func:`.simulate_street.simulate_street`."""
 
     length: float  #: Length of the street, m
-    width: float  #: Distance from front to front, m
+    width: float  #: Distance between opposite fronts, m
     slope: float  #: Slope along the street, °
-    clutter: bool  #: Whether cars, trees, poles and people are before the fronts
-    stoops: float  #: Height of the doors over the street, m
-    unevenness: float  #: Greatest distance of the ends of fronts before or behind the line of the street, m
-    houses: bool  #: Whether there are houses behind the fronts, none of which is curved then
-    seed: int  #: The same seed makes the same street
+    clutter: bool  #: Whether cars, trees, poles and people occlude the fronts
+    stoops: float  #: Height of the doors above the street, m
+    unevenness: float  #: Largest offset of the ends of fronts from their common line, m
+    houses: bool  #: Whether there are houses behind the fronts; then no front is curved
+    seed: int  #: The same seed gives the same street
 
     def off_line(self, line: Line, rng: np.random.Generator) -> Line:
-        """Return a line with its ends moved at random before or behind the line of the street."""
+        """Return a line with its ends moved at random forward or backward."""
         first, last = rng.uniform(-1.0, 1.0, 2) * self.unevenness
         return between(line.at(0.0, first), line.at(line.length, last)) if self.unevenness else line
 
 
 def build_street(plan: StreetPlan) -> tuple[Scene, Truth, Rect]:
-    """Return a made-up street, the truth of its fronts, and the area between these; the same for the same plan."""
+    """Return a street, the truth of its fronts, and the area between the fronts; deterministic for a plan."""
     rng, of_fronts = np.random.default_rng([plan.seed, 4]), np.random.default_rng([plan.seed, 7])
     angle = float(rng.uniform(0.0, 2 * np.pi))
     size = plan.length + 2 * plan.width
@@ -290,9 +286,9 @@ def build_street(plan: StreetPlan) -> tuple[Scene, Truth, Rect]:
 def _build_side(
     scene: Scene, truth: Truth, street: Rect, side: int, plan: StreetPlan, chance: tuple[np.random.Generator, ...]
 ) -> None:
-    """Put fronts side by side, each of another kind than the one before, and houses behind them if the plan has any."""
+    """Add adjoining fronts, with the kinds in turn, and houses behind them if planned."""
     rng, of_fronts = chance
-    # Seen along the line, the street is on the right: on the left of the street the line runs forward.
+    # The street is on the right of the line: on the left side of the street the line runs forward.
     start = np.array(street.at(-side * street.length / 2, side * street.width / 2))
     way = side * np.array([np.cos(street.angle), np.sin(street.angle)])
     eave = rng.uniform(*_EAVES)
@@ -310,26 +306,26 @@ def _build_side(
 
 
 def _divided(length: float, rng: np.random.Generator) -> np.ndarray:
-    """Return widths of houses that fill a length (m)."""
+    """Return random widths of houses that add up to a length (m)."""
     count = max(1, round(length / np.mean(_WIDTHS)))
     share = rng.uniform(*_WIDTHS, count)
     return share / share.sum() * length
 
 
 def _put_clutter(scene: Scene, street: Rect, side: int, rng: np.random.Generator) -> None:
-    """Put what hides parts of the fronts of one side."""
+    """Add cars, trees, poles and people that occlude the fronts of one side."""
     half = street.width / 2
-    # A place to park each 6.5 m, of which six in ten are taken by cars of 4.3 m by 1.8 m.
+    # A parking space every 6.5 m; 60 % hold a car of 4.3 m by 1.8 m.
     for along in np.arange(-street.length / 2 + 4.0, street.length / 2 - 3.0, 6.5):
         if rng.random() < 0.6:
             park_car(scene, street.part(float(along), side * (half - _CARS), 4.3, 1.8))
-    # A tree each 15 m, up to 2 m off its place and 5 to 7 m high, and a pole 7 m beyond its place.
+    # A tree of 5 to 7 m about every 15 m, up to 2 m off its position, and a pole 7 m beyond that position.
     for along in np.arange(-street.length / 2 + 6.0, street.length / 2 - 2.0, 15.0):
         x, y = street.at(along + rng.uniform(-2, 2), side * (half - _TREES))
         foot = (float(x), float(y), float(scene.relief.plane(x, y)))
         plant_tree(scene, foot, rng.uniform(5.0, 7.0), rng)
         _put_post(scene, street, along + 7.0, side * (half - _POLES), _POLE)
-    # A person each 8 m on the average.
+    # A person per 8 m on average.
     for along in rng.uniform(-street.length / 2, street.length / 2, max(1, round(street.length / 8))):
         _put_post(scene, street, float(along), side * (half - _PEOPLE), _PERSON)
 

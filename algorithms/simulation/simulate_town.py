@@ -1,4 +1,4 @@
-"""A scanned town of which everything is known, to learn, test and measure with."""
+"""Airborne scans of a town with known truth, for training, tests and measurements."""
 
 from __future__ import annotations
 
@@ -17,38 +17,36 @@ def simulate_town(
     density: float = PULSE_DENSITY,
     buildings: float = tunable(
         20.0,
-        "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
-        "The river's valley and the forest have none.",
+        "Plots with a house or a short row, per hectare of streets and plots; 0 gives open fields. "
+        "The river valley and the forest have no houses.",
         within=f"[0, {MAX_BUILDINGS}] per ha",
     ),
     trees: float = tunable(
-        20.0, "Trees outside the forest, single and in clumps, where there is room for them.", within="[0, 200] per ha"
+        20.0, "Trees outside the forest, single and in clumps, if space permits.", within="[0, 200] per ha"
     ),
-    forest: float = tunable(0.1, "Share of the town that is forest.", label="Share of forest", within="[0, 1]"),
+    forest: float = tunable(0.1, "Share of the town covered by forest.", label="Share of forest", within="[0, 1]"),
     slope: float = tunable(3.0, "Mean slope of the ground.", within="[0, 40]°"),
-    relief: float = tunable(2.0, "Height from hollows to hills, about.", within="[0, 10] m"),
-    terrace_height: float = tunable(1.5, "Height of the banks across the slope, one every 45 m.", within="[0, 5] m"),
-    river: bool = tunable(True, "A river in a channel, with a bridge for every street."),
-    clutter: bool = tunable(
-        True, "Other objects of a town that are no buildings.", label="Cars, hedges, walls and wires"
-    ),
+    relief: float = tunable(2.0, "Approximate height difference between hollows and hills.", within="[0, 10] m"),
+    terrace_height: float = tunable(1.5, "Rise of the terraces, one every 45 m up the slope.", within="[0, 5] m"),
+    river: bool = tunable(True, "Add a river in a channel, with a bridge for every street."),
+    clutter: bool = tunable(True, "Add objects that are not buildings.", label="Cars, hedges, walls and wires"),
     pattern: str = tunable(
         "lines",
-        "Parallel lines of a rotating mirror, the zigzag of an oscillating one, or pulses at random.",
+        "Parallel lines of a rotating mirror, the zigzag of an oscillating mirror, or random positions.",
         label="Scan pattern",
         choices=PATTERNS,
         advanced=True,
     ),
     max_scan_angle: float = tunable(
         20.0,
-        "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
-        "behind them.",
+        "Angle to the vertical at the edge of a strip. Large angles show more of the walls and occlude more of the "
+        "yards behind them.",
         within="[5, 30]°",
         advanced=True,
     ),
     overlap: float = tunable(
         0.3,
-        "Share of a strip that the next one scans too. Without any, roofs and crowns at the seam are cut.",
+        "Share of a strip that the next strip overlaps. Without overlap, roofs and crowns are cut at the seam.",
         label="Strip overlap",
         within="[0, 0.8]",
         advanced=True,
@@ -56,39 +54,38 @@ def simulate_town(
     range_noise: float = RANGE_NOISE,
     noise_points: float = tunable(
         10.0,
-        "Points far above (birds) and below the ground (multipath), half of each.",
+        "Noise points, half of them high above the ground (birds), half below it (multipath).",
         within="[0, 1000] per ha",
         advanced=True,
     ),
     returns: bool = tunable(
         True,
-        "Record what a pulse meets on its way; otherwise the first surface only, with unknown return numbers, "
-        "as image matching does.",
+        "Record all returns of a pulse. Otherwise only the first is recorded, with unknown return number, as in clouds "
+        "of matched images.",
         label="Several returns",
         advanced=True,
     ),
     seed: int = SEED,
     monitor=None,
 ):
-    """Scan a made-up town from the air: houses, trees, a river, and the true class of every point.
+    """Simulate an airborne scan of a town: houses, trees, a river, and the true class of every point.
 
-    Streets with plots run up a slope. There are houses with gable, hip, flat and L-shaped roofs, with dormers and
-    chimneys, rows of different heights that share walls, sheds and a hall. There are trees, hedges and a forest that
-    let part of the light through; cars, walls, wires on poles. There is a river with bridges, and there are birds and
-    multipath points.
+    Streets with plots run up a slope. Houses have gable, hip, flat and L-shaped roofs with dormers and chimneys; there
+    are rows of different heights with party walls, sheds and a hall. Beams partly penetrate trees, hedges and a forest.
+    There are cars, walls, wires on poles, a river with bridges, birds and multipath points.
 
     Returns
     -------
     xyz : ndarray of shape (n, 3), float64
-        Coordinates (m), by time, then by return.
+        Coordinates (m), sorted by time, then by return.
     classification : ndarray of shape (n,), uint8
-        The truth. Ground is 2; vegetation under 0.5 m, under 2 m and higher 3, 4 and 5 (stems are 5); buildings with
+        True class. Ground is 2; vegetation under 0.5 m, under 2 m and higher 3, 4 and 5 (stems are 5); buildings with
         walls, chimneys and dormers are 6. Low and high noise is 7 and 18, water 9. Wires are 14, their poles 15, bridge
         decks 17; cars, walls and the rails of bridges 1.
     return_number, number_of_returns : ndarray of shape (n,), uint8
-        Returns of a pulse, up to five; all 0 without ``returns``.
+        Up to five returns per pulse; all 0 without ``returns``.
     intensity : ndarray of shape (n,), uint16
-        Brightness by material, shared by the returns of a pulse.
+        Intensity by material; the returns of a pulse share its energy.
     scan_angle : ndarray of shape (n,), float32
         Angle of the beam to the vertical (°), negative to the left of the flight.
     point_source_id : ndarray of shape (n,), uint16
@@ -105,14 +102,14 @@ def simulate_town(
 
     Notes
     -----
-    A scanner flies strips to and fro, 600 m over the ground. Every beam is followed to what it meets first: walls that
-    face the scanner have points, yards behind houses have none. Points lie exactly on roofs, walls and ground but for
-    the range noise, which is along the beam. Leaves are met at random, the more the longer the way through the crown;
-    each lets 70 % of the pulses on. The beam is 0.2 m wide on the ground, so that the edge of a roof gives two returns.
-    Echoes less than 0.7 m apart are one.
+    The scanner flies parallel strips in alternate directions, 600 m above the ground. Rays are traced to the first
+    surface: walls that face the scanner have points, occluded yards have none. Points deviate from roofs, walls and
+    ground only by the range noise along the beam. Hits of leaves are random; their number increases with the path
+    through the crown, and 70 % of the pulses continue after each. The beam is 0.2 m wide on the ground, so that the
+    edge of a roof gives two returns. Echoes less than 0.7 m apart are not separated.
 
-    Not simulated: eaves that jut out, windows, curved roofs, objects that move, errors between strips, drift of the
-    position, grass, and walls that mirror.
+    Not simulated: overhanging eaves, windows, curved roofs, moving objects, errors between strips, drift of the
+    position, grass, and reflecting walls.
 
     Examples
     --------

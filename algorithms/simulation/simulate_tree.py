@@ -1,4 +1,4 @@
-"""A tree scanned from all sides, of which every branch is known."""
+"""A tree scanned from all sides, with known branches."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from ..params import SEED
 from ..shapes.stem_search import BREAST
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 
-# Radius of a branch where it leaves its parent (share of the radius of the parent there).
+# Radius of a branch at its base, as a share of the radius of its parent there.
 _THINNER = 0.55
 
-# Radius of the tip of a branch (share of its base's).
+# Radius of a branch at its tip, as a share of the radius at its base.
 _TIP = 0.35
 
-# Length of a branch: share of the way from its base to the tip of its parent, so that the parent stays the longer one.
+# Least and greatest length of a branch, as a share of the distance from its base to the tip of its parent.
 _LENGTH = (0.35, 0.6)
 
 # Least and greatest angle between a branch and its parent (°).
 _ANGLE = (45.0, 70.0)
 
-# Straight pieces of the line of a branch.
+# Straight pieces per branch.
 _PIECES = 12
 
-# Standard deviation of the turn from one piece to the next (°), about either axis.
+# Standard deviation of the direction from one piece to the next, in each coordinate (°).
 _TURN = 3.0
 
-# Branches leave the stem above this share of its length, over this share of it.
+# Branches leave the stem from the first share of its length on, over the second share.
 _OF_STEM = (0.3, 0.6)
 
 # Shares of the length of a branch at which its branches leave it.
 _OF_BRANCH = (0.3, 0.5, 0.7)
 
-# Length of the shortest branch that has branches (m).
+# Least length of a branch with branches (m).
 _LONG = 2.0
 
-# Standard deviation (m) of the leaves around the line of their branch, along each axis.
+# Standard deviation (m) of leaves from the axis of their branch, in each coordinate.
 _LEAF_SPREAD = 0.15
 
 # Half the side of the square of ground (m).
@@ -50,7 +50,7 @@ _GROUND_DENSITY = 200.0
 
 _FIELDS = (
     Field("id", int, "number of the branch, as SegmentID of its points"),
-    Field("branch_order", int, "0 for the stem, 1 for branches of the stem, 2 for theirs"),
+    Field("branch_order", int, "0 for the stem, 1 for branches of the stem, 2 for branches of branches"),
     Field("length", float, "length", "m"),
     Field("radius", float, "radius at the base", "m"),
 )
@@ -58,7 +58,7 @@ _FIELDS = (
 
 @dataclass(frozen=True)
 class _Limb:
-    """A stem or branch: its line (k, 3), the radii (k,) along it, and its order."""
+    """A stem or branch: axis (k, 3), radii (k,) along it, and branch order."""
 
     line: np.ndarray
     radius: np.ndarray
@@ -86,31 +86,33 @@ def simulate_tree(
         0.3, "Diameter of the stem at breast height, 1.3 m.", label="Stem diameter", within="[0.05, 2] m"
     ),
     n_branches: int = tunable(14, "Branches of the stem.", label="Branches", within="[0, 100]"),
-    leaves: float = tunable(0.2, "Points of leaves around the ends of branches, per point of wood.", within="[0, 5]"),
-    density: float = tunable(5000.0, "Points on wood.", label="Point density", within="[100, 100_000] points/m²"),
-    noise: float = tunable(0.003, "Standard deviation of a point across the bark.", within="[0, 0.05] m"),
+    leaves: float = tunable(0.2, "Number of points on leaves, per point on wood.", within="[0, 5]"),
+    density: float = tunable(
+        5000.0, "Point density on wood.", label="Point density", within="[100, 100_000] points/m²"
+    ),
+    noise: float = tunable(0.003, "Standard deviation of points across the bark.", within="[0, 0.05] m"),
     seed: int = SEED,
     monitor=None,
 ):
-    """Scan a made-up tree: points with their true branch, and the lines of stem and branches.
+    """Simulate a scan of a tree: points with their true branch, and the axes of stem and branches.
 
-    A slightly crooked stem that becomes thinner toward its top, branches around it, and branches of these; leaves
-    around the outer halves of branches, and level ground.
+    The tree has a slightly crooked, tapering stem, branches with branches of their own, and leaves around the outer
+    halves of branches. The ground is level.
 
     Returns
     -------
     xyz : ndarray of shape (n, 3), float64
         Coordinates (m).
     classification : ndarray of shape (n,), uint8
-        2 ground, 5 everything else.
+        True class: 2 ground, 5 tree.
     segment_id : ndarray of shape (n,), int32
-        1 for the stem, branches from 2; 0 for leaves and ground.
+        1 for the stem, from 2 for branches; 0 for leaves and ground.
     branches : LayerFeatures
-        Lines of stem and branches, from the base to the tip.
+        Axes of stem and branches, from the base to the tip.
 
     Notes
     -----
-    Wood is seen from all sides. Nothing is hidden, and nothing moves in the wind.
+    All sides of the wood have points, without occlusion. Wind is not simulated.
 
     Examples
     --------
@@ -139,15 +141,15 @@ def simulate_tree(
 
 
 def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -> list[_Limb]:
-    """Return the stem, its branches, and theirs."""
-    # The radius that is asked for is that at breast height.
+    """Return the stem, its branches, and the branches of these."""
+    # From the radius at breast height to the radius at the base.
     taper = 1 - (1 - _TIP) * BREAST / height
     stem = _limb(np.zeros(3), np.array([0.0, 0.0, 1.0]), height, dbh / 2 / taper, 0, rng)
     limbs = [stem]
     turn = rng.uniform(0, 2 * np.pi)
     for number in range(branches):
         share = _OF_STEM[0] + _OF_STEM[1] * (number + rng.uniform(0.2, 0.8)) / branches
-        # By the golden angle no two branches are above each other.
+        # Steps of the golden angle avoid branches above each other.
         limbs.append(_branch(stem, share, turn + number * np.pi * (3 - np.sqrt(5)), rng))
         if limbs[-1].length >= _LONG:
             limb = limbs[-1]
@@ -157,7 +159,7 @@ def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -
 
 
 def _branch(parent: _Limb, share: float, turn: float, rng: np.random.Generator) -> _Limb:
-    """Return a branch that leaves its parent at a share of its length."""
+    """Return a branch that starts at a share of the length of its parent."""
     at = share * (len(parent.line) - 1)
     first = int(at)
     base = parent.line[first] + (at - first) * (parent.line[first + 1] - parent.line[first])
@@ -174,7 +176,7 @@ def _branch(parent: _Limb, share: float, turn: float, rng: np.random.Generator) 
 def _limb(
     base: np.ndarray, direction: np.ndarray, length: float, radius: float, order: int, rng: np.random.Generator
 ) -> _Limb:
-    """Return a limb of pieces that are turned a little, each from the one before."""
+    """Return a limb of straight pieces with slightly different directions."""
     line = [base]
     for _ in range(_PIECES):
         direction = direction + np.radians(_TURN) * rng.standard_normal(3)
@@ -184,7 +186,7 @@ def _limb(
 
 
 def _bark(limb: _Limb, density: float, noise: float, rng: np.random.Generator) -> np.ndarray:
-    """Return points (n, 3) on a limb."""
+    """Sample points (n, 3) on the surface of a limb."""
     steps = np.diff(limb.line, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     middle = (limb.radius[1:] + limb.radius[:-1]) / 2
@@ -199,7 +201,7 @@ def _bark(limb: _Limb, density: float, noise: float, rng: np.random.Generator) -
 
 
 def _outside(xyz: np.ndarray, limb: _Limb, limbs: list[_Limb]) -> np.ndarray:
-    """Return the points of a limb that lie in no thicker limb: where it leaves its parent, it is inside of that."""
+    """Return the points of a limb outside limbs of lower order: its base is inside its parent."""
     kept = np.ones(len(xyz), bool)
     for other in limbs:
         if other.order < limb.order:
@@ -211,7 +213,7 @@ def _outside(xyz: np.ndarray, limb: _Limb, limbs: list[_Limb]) -> np.ndarray:
 
 
 def _foliage(limbs: list[_Limb], count: int, rng: np.random.Generator) -> np.ndarray:
-    """Return points (count, 3) of leaves around the outer halves of branches."""
+    """Sample points (count, 3) on leaves around the outer halves of branches."""
     bearing = [limb for limb in limbs if limb.order > 0]
     if not bearing:
         return np.zeros((0, 3))

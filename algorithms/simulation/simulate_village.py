@@ -1,4 +1,4 @@
-"""A village photographed by a drone, of which everything is known: walls, roofs, and an old map that errs."""
+"""Matched drone images of a village with known walls and roofs, and an old map with errors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .scanner import MAX_POINTS, refuse_large
 from .scene import footprint_layer
 from .village_layout import MAX_HOMES, Village, VillagePlan, build_village
 
-# Radius (m) of the holes where matching fails; their centers are drawn from the points in cells of that size.
+# Radius (m) of holes where matching fails, and side of the cells in which their centers are drawn.
 _HOLE = 0.5
 
 _CREATED = ("xyz", "classification", "return_number", "number_of_returns", "red", "green", "blue", "segment_id")
@@ -29,7 +29,7 @@ _FOOTPRINT_FIELDS = (
 
 _MAP_FIELDS = (
     Field("id", int, "number of the building in the map, from 1"),
-    Field("building", int, "object id of the building there, 0 where it was demolished"),
+    Field("building", int, "object id of the building, 0 if demolished"),
     Field("state", str, "kept or demolished"),
 )
 
@@ -48,79 +48,83 @@ def simulate_village(
     size: float = tunable(150.0, "Side of the village, a square from (0, 0).", within="[50, 1000] m"),
     density: float = tunable(
         100.0,
-        "Points on open ground; roofs have about as many, walls a tenth of it where a view reaches them.",
+        "Density on open ground. Roofs have about the same, walls a tenth of it where a view reaches them.",
         label="Point density",
         within="[5, 1000] points/m²",
     ),
     buildings: float = tunable(
         12.0,
-        "Plots with a house on a hectare of streets and plots, two of three with a shed as well.",
+        "Houses per hectare of streets and plots, two of three with a shed.",
         within=f"[0, {MAX_HOMES}] per ha",
     ),
     trees: float = tunable(15.0, "Trees in gardens.", within="[0, 200] per ha"),
     slope: float = tunable(2.0, "Mean slope of the ground.", within="[0, 20]°"),
     overhang: float = tunable(
-        0.5, "How far the eaves jut out over the walls; sheds have half.", label="Overhang of roofs", within="[0, 1] m"
+        0.5,
+        "Overhang of the eaves beyond the walls; half of it at sheds.",
+        label="Overhang of roofs",
+        within="[0, 1] m",
     ),
-    clutter: bool = tunable(True, "Objects at walls that are no buildings.", label="Cars, hedges and bushes"),
-    noise: float = tunable(0.03, "Standard deviation of a point in every direction.", within="[0, 0.2] m"),
+    clutter: bool = tunable(
+        True, "Add objects that are not buildings, also next to walls.", label="Cars, hedges and bushes"
+    ),
+    noise: float = tunable(0.03, "Standard deviation of points, the same in every direction.", within="[0, 0.2] m"),
     holes: float = tunable(
         0.1,
-        "Approximate share of all surfaces where matching finds nothing.",
+        "Approximate share of all surfaces without points, where matching fails.",
         label="Share of holes",
         within="[0, 0.5]",
     ),
     oblique: float = tunable(
         28.0,
-        "Angle of the four oblique views to the vertical: more shows more of the walls.",
+        "Angle of the four oblique views to the vertical. Larger angles show more of the walls.",
         label="Oblique angle",
         within="[0, 30]°",
         advanced=True,
     ),
     noise_points: float = tunable(
-        20.0, "Wrong matches above and below the ground.", within="[0, 1000] per ha", advanced=True
+        20.0, "Wrong matches, half of them above, half below the ground.", within="[0, 1000] per ha", advanced=True
     ),
     map_shift: float = tunable(
-        0.3, "How far the old map lies to the east and to the north.", label="Shift of the old map", within="[0, 2] m"
+        0.3, "Shift of the old map to the east and to the north.", label="Shift of the old map", within="[0, 2] m"
     ),
     map_noise: float = tunable(
         0.15,
-        "Standard deviation of its corners to the east and to the north.",
+        "Standard deviation of the corners of the old map in easting and northing.",
         label="Noise of the old map",
         within="[0, 1] m",
     ),
     map_changes: float = tunable(
         0.1,
-        "Share of the buildings that the map lacks; as many demolished ones are added to it, where plots are free.",
+        "Share of the buildings that are missing from the map. As many demolished ones are added on free plots.",
         label="Changes since the old map",
         within="[0, 0.5]",
     ),
     seed: int = SEED,
     monitor=None,
 ):
-    """Photograph a made-up village with a drone: the matched points, the true footprints of the walls, and an old map.
+    """Simulate a village from matched drone images: points, the true footprints of the walls, and an old map.
 
-    Detached houses (rectangles, L shapes, some with a bend) whose eaves overhang the walls, sheds, cars, bushes against
-    walls, hedges and trees. They are seen straight down and in four oblique views: many points on roofs, few on walls.
+    The village has detached houses (rectangular, L-shaped or bent) with overhanging eaves, sheds, cars, bushes next to
+    walls, hedges and trees. A vertical and four oblique views give many points on roofs and few on walls.
 
     Returns
     -------
     xyz : ndarray of shape (n, 3), float64
         Coordinates (m).
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher; 6 buildings; 7 and 18 low and high
+        True class: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher; 6 buildings; 7 and 18 low and high
         noise; 1 cars.
     return_number, number_of_returns : ndarray of shape (n,), uint8
-        All 0, which means unknown.
+        Always 0, which means unknown.
     red, green, blue : ndarray of shape (n,), uint16
         Colors.
     segment_id : ndarray of shape (n,), int32
         Number of the object, the same for all points of a building; 0 for ground and noise.
     footprints : LayerFeatures
-        The walls of every building, without the eaves.
+        Outlines of the walls of all buildings, without the eaves.
     old_map : LayerFeatures
-        The same as an old map has it: all corners displaced by the same shift and each by some noise, some buildings
-        missing, some that are gone.
+        Footprints of the old map: with a common shift and noise of each corner, some missing and some demolished.
 
     Raises
     ------
@@ -129,12 +133,12 @@ def simulate_village(
 
     Notes
     -----
-    Views are parallel; what a ray meets first is a point. A wall that faces an oblique view of 28° gets a tenth of the
-    density of open ground (a fifth of the views, times the tangent of the angle), and nothing right under the eaves.
-    That is about the share of wall points (5 % of those on roofs) that Hrutka, Siki and Takács (2022) report of real
-    clouds. Noise is the same in all directions.
+    Projections are parallel; the first hit of a ray is a point. A wall that faces an oblique view of 28° has a tenth of
+    the density of open ground (a fifth of the views, times the tangent of the angle), and no points right below the
+    eaves. Hrutka, Siki and Takács (2022) report about the same of real clouds: 5 % as many points on walls as on
+    roofs. Noise is the same in all directions.
 
-    Not simulated: windows, surfaces that mirror, blur of edges, errors that neighboring points share, dormers.
+    Not simulated: windows, reflecting surfaces, blurred edges, correlated errors, dormers.
 
     Examples
     --------
@@ -163,35 +167,35 @@ def simulate_village(
 
 
 def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> np.ndarray:
-    """Return the mask of points (n,) that lie in none of the random positions where matching failed."""
+    """Return the mask of points (n,) outside random holes where matching fails."""
     if not share:
         return np.full(len(xyz), True)
     cells = np.floor(xyz / _HOLE).astype(np.int64)
     candidates = np.unique(cells, axis=0, return_index=True)[1]
-    # Independent disks leave exp(-their area) of a surface, which crosses somewhat more cells than it is large.
+    # Random disks leave exp(-area of disks per area) of a surface; a surface crosses 1.1 cells per area of a cell.
     chance = -np.log(1 - share) / (1.1 / _HOLE**2 * np.pi * _HOLE**2)
     centers = xyz[candidates[rng.random(len(candidates)) < chance]]
     return ~np.isfinite(spatial.cKDTree(centers).query(xyz, distance_upper_bound=_HOLE)[0])
 
 
-# Brightness of the ground (red, green, blue, of 255, as below).
+# Color of the ground (red, green, blue, 0 to 255, as below).
 _GROUND = (134, 124, 92)
 
-# Brightness of leaves.
+# Color of leaves.
 _LEAVES = (70, 96, 48)
 
-# Brightness of cars.
+# Color of cars.
 _CARS = (150, 152, 158)
 
-# Brightness of walls; each house has one of these.
+# Colors of walls; each house has one of these.
 _WALLS = np.array([(226, 218, 200), (212, 190, 140), (190, 186, 180), (205, 160, 130)])
 
-# Brightness of roofs; each house has one of these.
+# Colors of roofs; each house has one of these.
 _ROOFS = np.array([(150, 70, 50), (110, 60, 50), (95, 95, 100), (130, 105, 90)])
 
 
 def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndarray:
-    """Return red, green and blue (n, 3), uint16: by material, each object its own shade, each point its own light."""
+    """Return red, green and blue (n, 3), uint16, by material, with a factor per object and noise per point."""
     color = np.tile(np.array(_GROUND, float), (len(seen), 1))
     classes, number = seen.classification, seen.object_id
     color[is_vegetation(classes)] = _LEAVES
@@ -205,7 +209,7 @@ def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndar
 
 
 def _wrong_matches(relief: Relief, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions (count, 3) of noise, half above and half below the ground, and their classes."""
+    """Return the positions (count, 3) of noise points, half above and half below the ground, and their classes."""
     xy = rng.uniform(0.0, relief.size, (count, 2))
     is_high = np.arange(count) % 2 == 0
     height = np.where(is_high, rng.uniform(20.0, 60.0, count), -rng.uniform(2.0, 10.0, count))
@@ -230,12 +234,12 @@ def _joined(
 
 
 def _old_map(village: Village, shift: float, noise: float, changes: float, rng: np.random.Generator) -> LayerFeatures:
-    """Return the footprints as an old map has them: displaced, without some, and with some that are gone."""
+    """Return the old map: displaced footprints, with some buildings missing and some demolished."""
     buildings = village.scene.buildings
     count = round(changes * len(buildings))
     missing = set(rng.permutation(len(buildings))[:count].tolist())
     known = [(b.outline[:-1], b.object_id) for i, b in enumerate(buildings) if i not in missing]
-    # Of plots that have no house any more.
+    # Demolished buildings are on plots without a house.
     plots = [village.free[i] for i in rng.permutation(len(village.free))[:count]]
     gone = [plot.part(0.0, 0.0, *rng.uniform(6.0, 10.0, 2), rng.uniform(0.0, np.pi)) for plot in plots]
     known += [(house.corners(), 0) for house in gone]

@@ -1,4 +1,4 @@
-"""Fronts of houses along a street: walls with openings, recesses, bays, balconies and curved fronts."""
+"""Fronts of houses along a street: plain or curved walls with openings, recesses, bays and balconies."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ _SILL = 0.9
 # Width and height of windows (m).
 _WINDOW = (1.2, 1.5)
 
-# Height of doors (m), which are as wide as windows.
+# Height of doors (m); they are as wide as windows.
 _DOOR = 2.2
 
 # Distance of panes behind the front (m).
 _PANE = 0.16
 
-# Distance of frames behind the front, before the panes (m).
+# Distance of frames behind the front (m).
 _FRAME = 0.10
 
 # Width of frames (m).
 _FRAME_WIDTH = 0.07
 
-# Distance between the middles of neighboring windows (m).
+# Distance between the axes of neighboring windows (m).
 _AXIS = 2.4
 
 # Least distance of a window from the end of a wall (m).
@@ -62,13 +62,13 @@ _SLAB = 0.15
 # Thickness of panes, doors and parapets (m).
 _THIN = 0.05
 
-# Least height of the wall over a window (m).
+# Least height of the wall above a window (m).
 _LINTEL = 0.3
 
 # Height of the parapets of balconies (m).
 _PARAPET = 1.0
 
-# Depth of the landing before a raised door (m).
+# Depth of the landing in front of a raised door (m).
 _LANDING = 1.2
 
 # Run of a step of stairs (m).
@@ -77,7 +77,7 @@ _RUN = 0.28
 # Greatest rise of a step of stairs (m).
 _RISE = 0.18
 
-# Width of stairs on each side of their door (m).
+# Width of stairs beyond each side of their door (m).
 _BESIDE = 0.25
 
 # Depth of houses behind their fronts (m).
@@ -86,16 +86,16 @@ _DEPTH = 10.0
 # Thickness of the roof of a bay (m).
 _LID = 0.2
 
-# Cellar windows: height of the sill over the ground, and of the window (m).
+# Cellar windows: height of the sill above the ground, and height of the window (m).
 _CELLAR = (0.25, 0.8)
 
-# Height of the ground floor over the street from which there are cellar windows (m).
+# Least height of the ground floor above the street with cellar windows (m).
 _LEAST_RAISED = 1.4
 
-# Plane strips that make up a curved front.
+# Number of plane strips of a curved front.
 _STRIPS = 6
 
-# Angle that a curved front turns by (°).
+# Central angle of a curved front (°).
 _TURN = 60.0
 
 
@@ -105,9 +105,9 @@ _Span = tuple[float, float]
 
 @dataclass
 class Truth:
-    """Truth of the fronts: polygons and kinds, and the object ids that belong to them.
+    """True facades, openings and houses, with the object ids of their solids.
 
-    Walls that go on in one plane are one facade, also of several houses. Facades and openings are numbered from 1.
+    Adjoining walls in one plane are one facade, also of several houses. Facades and openings are numbered from 1.
     """
 
     #: Walls of each facade: feet at both ends, (3,) each, and elevation of the top (m)
@@ -115,19 +115,19 @@ class Truth:
     kinds: list[str] = field(default_factory=list)  #: Kind of each facade, one of :data:`KINDS`
     #: Closed ring (5, 3) of each opening, m, and its attributes
     openings: list[tuple[list[np.ndarray], dict[str, Any]]] = field(default_factory=list)
-    facade_of: dict[int, int] = field(default_factory=dict)  #: Facade by object id of its walls
-    opening_of: dict[int, int] = field(default_factory=dict)  #: Opening by object id of its pane and frame
-    glass: set[int] = field(default_factory=set)  #: Object ids of panes of glass
+    facade_of: dict[int, int] = field(default_factory=dict)  #: Number of the facade by object id of its walls
+    opening_of: dict[int, int] = field(default_factory=dict)  #: Number of the opening by object id of pane and frame
+    glass: set[int] = field(default_factory=set)  #: Object ids of window panes
     #: Closed ring (k, 3) of each house on the ground, m, and its attributes
     houses: list[tuple[list[np.ndarray], dict[str, Any]]] = field(default_factory=list)
 
     @property
     def facades(self) -> list[np.ndarray]:
-        """Closed rings (m, 3), counterclockwise seen from the street (m)."""
+        """Closed rings (m, 3) of the facades, m, counterclockwise seen from the street."""
         return [_ring(walls) for walls in self.walls]
 
     def add_wall(self, start: np.ndarray, end: np.ndarray, top: float, kind: str) -> int:
-        """Add a wall between two feet (3,), m, to the facade that it goes on, or to a new one; return its number."""
+        """Add a wall between two feet (3,), m, to the facade that it continues, or a new one; return its number."""
         if self.walls and np.allclose(self.walls[-1][-1][1], start):
             before, step = self.walls[-1][-1][1] - self.walls[-1][-1][0], end - start
             if abs(before[0] * step[1] - before[1] * step[0]) < 1e-6 and before[:2] @ step[:2] > 0:
@@ -139,12 +139,12 @@ class Truth:
 
 
 def _ring(walls: list[tuple[np.ndarray, np.ndarray, float]]) -> np.ndarray:
-    """Return the ring of walls side by side, with a step where tops differ."""
+    """Return the outline of adjoining walls, with steps between different heights."""
     ring = [walls[0][0], walls[-1][1]]
     for start, end, top in reversed(walls):
         for x, y, _ in (end, start):
             corner = np.array([x, y, top])
-            # Between walls of one height there is no corner.
+            # Walls of equal height have no corner between them.
             if len(ring) > 3 and np.allclose(ring[-1], corner):
                 ring.pop()
             else:
@@ -154,14 +154,14 @@ def _ring(walls: list[tuple[np.ndarray, np.ndarray, float]]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Line:
-    """The foot of a wall: from a point (2,), m, a distance in a direction (2,), the street on its right."""
+    """The foot of a wall: start (2,), m, direction (2,) and length, with the street on its right."""
 
     start: np.ndarray
     way: np.ndarray
     length: float
 
     def at(self, along: float, inward: float = 0.0) -> np.ndarray:
-        """Return the point (2,) at distances along the wall and behind its front (m)."""
+        """Return the point (2,) at a distance along the wall and behind its front (m)."""
         return self.start + along * self.way + inward * np.array([-self.way[1], self.way[0]])
 
     def rect(self, along: _Span, inward: _Span) -> Rect:
@@ -173,15 +173,15 @@ class Line:
 
 @dataclass(frozen=True)
 class Front:
-    """The front of a house behind a line."""
+    """The front of a house."""
 
-    line: Line  #: Its foot
-    height: float  #: Height over the ground at the start of the line, m, without what the ground floor is raised by
+    line: Line  #: Foot of the front
+    height: float  #: Height above the ground floor at the start of the line, m
     kind: str  #: One of :data:`KINDS`
-    raised: float = 0.0  #: Height of the ground floor over the street, m
+    raised: float = 0.0  #: Height of the ground floor above the street, m
 
     def build(self, scene: Scene, truth: Truth) -> None:
-        """Put the front."""
+        """Add the front."""
         line, kind = self.line, self.kind
         top = float(scene.relief.plane(*line.start)) + self.height + self.raised
         for part, is_front in _parts(line, kind):
@@ -190,9 +190,9 @@ class Front:
             _Wall(scene, truth, line).hang_balconies(top, self.height)
 
     def build_house(self, scene: Scene, truth: Truth, pitch: float) -> None:
-        """Put a house behind a straight front: its other walls and a gable roof of a ``pitch`` (°).
+        """Add a house behind a straight front: its other walls and a gable roof with a ``pitch`` (°).
 
-        The roof is flush with the walls; its ridge runs along the street, and it goes on over a recess.
+        The roof is flush with the walls and covers a recess; its ridge is parallel to the street.
         """
         line, kind, walls = self.line, self.kind, _Wall(scene, truth, self.line)
         ground = float(scene.relief.plane(*line.start))
@@ -206,7 +206,7 @@ class Front:
         scene.solids.append(Body(rect, tops, top, PointClass.BUILDING, number))
         third, front = line.length / 3, [(0.0, 0.0)]
         if kind == "bay":
-            # Between its walls: a beam never meets two faces at once.
+            # The roof of the bay is between its walls, so that no faces coincide.
             lid = (third + _WALL, 2 * third - _WALL), (_WALL - _RECESS, 0.0)
             walls.put(*lid, top - _LID, top, number)
         if kind in ("bay", "recess"):
@@ -218,7 +218,7 @@ class Front:
 
 
 def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
-    """Return the walls of a front in order, and whether each runs along the street."""
+    """Return the walls of a front in order, and whether each has openings."""
     third, step = line.length / 3, _RECESS
     if kind in ("recess", "bay"):
         inward = step if kind == "recess" else -step
@@ -229,7 +229,7 @@ def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
         half = np.deg2rad(_TURN / 2)
         radius = line.length / (2 * np.sin(half))
         angle = np.linspace(-half, half, _STRIPS + 1)
-        # The arc bulges toward the street.
+        # The arc is convex toward the street.
         out = radius * (np.cos(angle) - np.cos(half))
         points = [line.at(line.length / 2 + radius * np.sin(a), -o) for a, o in zip(angle, out)]
         return [(between(a, b), False) for a, b in zip(points, points[1:])]
@@ -237,26 +237,26 @@ def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
 
 
 def between(a: np.ndarray, b: np.ndarray) -> Line:
-    """Return the foot of a wall from one point (2,) to another, m."""
+    """Return the foot of a wall between two points (2,), m."""
     length = float(np.hypot(*(b - a)))
     return Line(a, (b - a) / length, length)
 
 
 @dataclass(frozen=True)
 class _Wall:
-    """A flat wall on a line, which is put into a scene with its truth."""
+    """A plane wall to be added to a scene and its truth."""
 
     scene: Scene
     truth: Truth
     line: Line
 
     def put(self, along: _Span, inward: _Span, bottom: float, top: float, number: int) -> None:
-        """Put a box between positions along the wall and behind its front and between two elevations (m)."""
+        """Add a box by its ranges along the wall, behind its front and in elevation (m)."""
         if along[1] - along[0] > 1e-6 and top - bottom > 1e-6:
             self.scene.add_box(self.line.rect(along, inward), bottom, top, PointClass.BUILDING, number)
 
     def build(self, top: float, kind: str, raised: float, has_openings: bool) -> None:
-        """Put the wall with its openings."""
+        """Add the wall with its openings."""
         line = self.line
         ends = [line.at(0.0), line.at(line.length)]
         feet = [float(self.scene.relief.plane(*end)) for end in ends]
@@ -273,7 +273,7 @@ class _Wall:
             self._build_axis(along, levels, (bottom, top), own, facade, k == len(axes) // 2)
 
     def _build_axis(self, along: _Span, levels: _Span, heights: _Span, own: int, facade: int, has_door: bool) -> None:
-        """Put the openings of one axis and the wall between them; ``levels`` are ground and ground floor (m)."""
+        """Add the openings of one axis and the wall between them; ``levels`` are ground and ground floor (m)."""
         (bottom, top), (ground, floor) = heights, levels
         level, below = floor, bottom
         if not has_door and floor - ground >= _LEAST_RAISED:
@@ -294,7 +294,7 @@ class _Wall:
         self.put(along, (0.0, _WALL), below, top, own)
 
     def _put_stairs(self, along: _Span, bottom: float, levels: _Span) -> None:
-        """Put a landing and steps before a door, from the bottom of its wall over the ground to the floor (m)."""
+        """Add a landing and steps from the ground to the floor of a door; their boxes start at ``bottom`` (m)."""
         ground, floor = levels
         steps = int(np.ceil((floor - ground) / _RISE))
         wide = (along[0] - _BESIDE, along[1] + _BESIDE)
@@ -305,7 +305,7 @@ class _Wall:
             self.put(wide, outward, bottom, floor - step / steps * (floor - ground), number)
 
     def _build_opening(self, along: _Span, heights: _Span, kind: str, facade: int) -> None:
-        """Put pane and frame of an opening; a door is opaque."""
+        """Add the pane and frame of an opening; a door is opaque."""
         truth, (start, end), (low, high) = self.truth, along, heights
         number = len(truth.openings) + 1
         pane, frame = self.scene.new_id(), self.scene.new_id()
@@ -325,7 +325,7 @@ class _Wall:
         truth.openings.append(([ring], {"facade": facade, "kind": kind, **facts}))
 
     def hang_balconies(self, top: float, height: float) -> None:
-        """Put a balcony before the middle axis of each upper storey."""
+        """Add a balcony in front of the middle axis of each upper storey."""
         middle, floor = self.line.length / 2, top - height
         # The uppermost storey may be up to half a meter lower than the others.
         for level in np.arange(floor + _STOREY, top - _STOREY + 0.5, _STOREY):
@@ -335,7 +335,7 @@ class _Wall:
 
 
 def _axes(length: float) -> list[_Span]:
-    """Return where the axes of openings of a wall begin and end along it (m)."""
+    """Return the start and end (m) of each axis of openings along a wall."""
     count = max(int((length - 2 * _MARGIN + (_AXIS - _WINDOW[0])) // _AXIS), 0)
     middles = [length / 2 + (k - (count - 1) / 2) * _AXIS for k in range(count)]
     return [(middle - _WINDOW[0] / 2, middle + _WINDOW[0] / 2) for middle in middles]

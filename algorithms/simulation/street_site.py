@@ -1,4 +1,4 @@
-"""A made-up site for a drone: a street with houses on one side and at an end, parked cars, lamps and trees."""
+"""A site for a drone flight: a street with houses on one side and at one end, parked cars, lamps and trees."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .relief import Relief
 from .scene import Scene
 from .town_layout import park_car
 
-# Side of the site (m); a drone in its middle sees 30 m.
+# Side of the site (m): more than twice the range of 30 m of a drone's scanner in its middle.
 SIZE = 80.0
 
-# Houses: center from the middle of the site, length and width, direction of the length (°), eave (m), whether it has a
-# gable; the front is to the right of the length.
+# Houses: center relative to the middle of the site, length and width (m), direction of the length (°), height of the
+# eaves (m), whether the roof is a gable roof. The front is on the right of the direction.
 _HOUSES = (
     (-7.5, 17.0, 14.0, 10.0, 0.0, 6.4, False),
     (6.5, 17.0, 14.0, 10.0, 0.0, 3.4, True),
@@ -25,13 +25,13 @@ _HOUSES = (
 # Pitch of gable roofs, as a tangent: 38°.
 _PITCH = np.tan(np.deg2rad(38.0))
 
-# Height of a storey (m), at which there are balconies.
+# Height of a storey (m); there are balconies at every storey.
 _STOREY = 3.0
 
 # Length and depth of a balcony (m).
 _BALCONY = (2.6, 1.2)
 
-# Cars that are parked in two rows along the street (m from the middle).
+# Cars in two rows along the street (m from the middle).
 _CARS = [(x, y) for y in (8.2, -1.8) for x in (-16.0, -10.5, -5.0, 6.5, 12.0)]
 
 # Lamps between the street and the houses (m from the middle).
@@ -43,7 +43,7 @@ _LAMP = (0.15, 6.0)
 # The first row of trees, south of the street (m from the middle).
 _ROW_OF_TREES = -9.0
 
-# Trees in front of the houses (m from the middle).
+# Trees between the houses and the street (m from the middle).
 _TREES_IN_FRONT = ((-12.0, 5.0), (12.0, 4.0))
 
 # Least and greatest height of trees (m).
@@ -51,16 +51,16 @@ _TREE_HEIGHTS = (6.0, 11.0)
 
 
 def build_site(trees: int, slope: float, seed: int) -> Scene:
-    """Make up a site with a number of ``trees`` on a plane of a ``slope`` (°), the same for the same arguments.
+    """Return a site with a number of ``trees`` on a plane with a ``slope`` (°).
 
-    The seed is for cars, trees, balconies and the direction of the slope.
+    The seed determines cars, trees, balconies and the direction of the slope.
     """
     rng = np.random.default_rng([seed, 2])
     angle = float(rng.uniform(0.0, 2 * np.pi))
     scene = Scene(Relief(SIZE, angle, float(np.tan(np.deg2rad(slope)))))
     for x, y, length, width, turn, eave, has_gable in _HOUSES:
         _build_house(scene, Rect(*_position(x, y), length, width, np.deg2rad(turn)), eave, has_gable, rng)
-    # Cars of 4.3 m by 1.8 m, up to 0.4 m and 3° off their places.
+    # Cars of 4.3 m by 1.8 m, up to 0.4 m and 3° off their positions.
     for x, y in _CARS:
         park_car(scene, Rect(*_position(x + rng.uniform(-0.4, 0.4), y), 4.3, 1.8, np.deg2rad(rng.uniform(-3.0, 3.0))))
     for x, y in _LAMPS:
@@ -79,12 +79,12 @@ def _position(x: float, y: float) -> tuple[float, float]:
 
 
 def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np.random.Generator) -> None:
-    """Put a house with balconies on its front; heights count from the ground at the middle of the house."""
+    """Add a house with balconies on its front; heights are above the ground at the center of the house."""
     number, ground = scene.new_id(), float(scene.relief.ground(rect.x, rect.y))
     tops = gable(rect, ground + eave, _PITCH) if has_gable else flat(rect, ground + eave)
     solids = [Body(rect, tops, ground - 3.0, PointClass.BUILDING, number)]
     long, deep = _BALCONY
-    # A balcony each 5 m, of which seven in ten are there, with a parapet of 1 m, and none less than 2 m under the eave.
+    # A balcony with a parapet of 1 m every 5 m with a probability of 70 %, at least 2 m below the eaves.
     for floor in np.arange(_STOREY, eave - 2.0, _STOREY):
         for along in np.arange(-rect.length / 2 + 3.0, rect.length / 2 - 2.0, 5.0):
             if rng.random() < 0.7:
@@ -95,9 +95,9 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
 
 
 def _tree_positions(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:
-    """Return positions (m from the middle): first in front of the houses, then row by row to the south.
+    """Return positions (m from the middle): first in front of the houses, then in rows 6 m apart to the south.
 
-    Rows are 6 m apart, and trees up to 0.8 m off their places.
+    Trees are up to 0.8 m off their positions.
     """
     in_rows = [(x, _ROW_OF_TREES - 6.0 * line) for line in range(4) for x in (-6.0, 6.0, 0.0, -12.0, 12.0)]
     positions = [*_TREES_IN_FRONT, *in_rows][:count]

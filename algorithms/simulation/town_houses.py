@@ -1,6 +1,6 @@
-"""Buildings on their plots: which roofs there are and how they are put together.
+"""Buildings of a town by the shape of their roofs.
 
-A plot is a rectangle whose length runs along the street and whose right side is on it.
+The length of a plot is parallel to the street, which is on its right side.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from ..cloud.asprs import PointClass
 from .bodies import Body, Rect, flat, gable, hip, inclined, lean_to
 from .scene import Building, Scene
 
-# Heights of eaves over the floor (m), of one storey and of two.
+# Height of the eaves above the floor (m), for one and two storeys.
 _EAVES = (3.0, 5.7)
 
-# Least height of an eave over the ground (m), on the uphill side.
+# Least height of the eaves above the ground (m), on the uphill side.
 _LEAST_EAVE = 1.5
 
 
 class Site:
-    """Elevations (m) of floor, eaves and underground bottom of one building, and the id of its parts."""
+    """Elevations (m) of the floor, eaves and underground bottom of a building, and its object id."""
 
     def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
         self.object_id = scene.new_id()
@@ -32,12 +32,12 @@ class Site:
         self.bottom = float(ground.min()) - 1.0
 
     def solid(self, rect: Rect, tops: np.ndarray) -> Body:
-        """Return a part of the building under the planes ``tops``, whose heights are elevations (m)."""
+        """Return a part of the building with top planes ``tops``."""
         return Body(rect, tops, self.bottom, PointClass.BUILDING, self.object_id)
 
 
 def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
-    """Put a house, or a short row, on a plot; half of the plots get a shed in the garden."""
+    """Add a house or a short row on a plot; half of the plots have a shed, too."""
     build = _KINDS[int(rng.choice(len(_KINDS), p=_SHARES))]
     before = len(scene.buildings)
     build(scene, plot, rng)
@@ -46,9 +46,9 @@ def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
-    """Return the footprint of a house a few meters behind the street, not quite parallel to it.
+    """Return the footprint of a house 2 to 3 m behind the street, turned by up to 4° against it.
 
-    ``length`` and ``width`` are the least and the greatest of each (m).
+    ``length`` and ``width`` are ranges (m).
     """
     long, wide = rng.uniform(*length), rng.uniform(*width)
     front = -plot.width / 2 + rng.uniform(2.0, 3.0)
@@ -56,7 +56,7 @@ def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple)
 
 
 def _pitched(scene: Scene, rect: Rect, pitches: tuple[float, float], rng: np.random.Generator) -> tuple[Site, float]:
-    """Return a site of one or two storeys, and a pitch (a tangent) between two angles (°)."""
+    """Return a site of one or two storeys, and a random pitch (a tangent) from a range (°)."""
     eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(*pitches)))
     return Site(scene, rect, eave), pitch
 
@@ -65,7 +65,7 @@ def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     rect = _detached(plot, rng, (9.0, 12.0), (7.0, 9.0))
     site, pitch = _pitched(scene, rect, (28.0, 48.0), rng)
     solids = [site.solid(rect, gable(rect, site.eave, pitch)), _chimney(site, rect, pitch, rng)]
-    # Under roofs steeper than 35°, attics have dormers.
+    # Roofs steeper than 35° can have dormers.
     if pitch > 0.7:
         positions = rng.choice([-0.25, 0.0, 0.25], int(rng.integers(0, 3)), replace=False) * rect.length
         solids += [_dormer(site, rect, pitch, position, side) for position in positions for side in (-1, 1)]
@@ -88,11 +88,11 @@ def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
-    """Build an L: a wing whose lower ridge runs into the roof of the main house."""
+    """Add an L-shaped house: a wing whose lower ridge ends in the roof of the main house."""
     main = _detached(plot, rng, (11.0, 12.5), (6.5, 7.0))
     site, pitch = _pitched(scene, main, (30.0, 45.0), rng)
     wide, reach = rng.uniform(4.8, 6.0), rng.uniform(3.0, 4.0)
-    # The wing starts under the main ridge, flush with one gable, and ends behind the house.
+    # The wing extends from below the main ridge to behind the house, flush with one gable.
     side = rng.choice((-1.0, 1.0))
     long = main.width / 2 + reach
     wing = main.part(side * (main.length - wide) / 2, long / 2, long, wide, np.pi / 2)
@@ -102,17 +102,20 @@ def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def l_outline(main: Rect, size: tuple[float, float], side: float) -> np.ndarray:
-    """Return the outline (6, 2), m, of a house with a wing of a ``size`` (width, length beyond) at an end (1 or -1)."""
+    """Return the outline (6, 2), m, of an L-shaped house.
+
+    ``size`` is the width of the wing and its length behind the main house; it is at the end ``side`` (1 or -1).
+    """
     wide, reach = size
     a, c, inner = main.length / 2, main.width / 2, main.length / 2 - wide
     ring = [(-a, -c), (a, -c), (a, c + reach), (inner, c + reach), (inner, c), (-a, c)]
-    # Mirrored for a wing on the other end; the order keeps the ring counterclockwise.
+    # Mirrored for a wing at the other end; reversed to keep the ring counterclockwise.
     ring = ring if side > 0 else [(-along, across) for along, across in reversed(ring)]
     return np.array([main.at(along, across) for along, across in ring])
 
 
 def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
-    """Build two houses that share a wall and fill the plot, so that rows on neighboring plots join."""
+    """Add two houses with a party wall that fill the plot, so that rows on neighboring plots adjoin."""
     depth = 10.0
     for side in (-0.25, 0.25):
         rect = plot.part(side * plot.length, -plot.width / 2 + 2.0 + depth / 2, plot.length / 2, depth)
@@ -123,7 +126,7 @@ def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: np.random.Generator) -> None:
-    """Put a shed into a back corner of the garden, if the house leaves room for it."""
+    """Add a shed in a back corner of the garden, if space permits."""
     rect = plot.part(rng.choice((-1, 1)) * (plot.length / 2 - 2.2), plot.width / 2 - 1.7, *rng.uniform(2.2, 3.0, 2))
     height, pitch = rng.uniform(2.0, 2.4), np.tan(np.deg2rad(rng.uniform(0.0, 15.0)))
     if any(house.contains(*rect.corners(0.5).T).any() for house in houses):
@@ -133,7 +136,7 @@ def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: np.random.Gener
 
 
 def build_hall(scene: Scene, rect: Rect) -> None:
-    """Put a large hall with a slight gable and bands of skylights."""
+    """Add a large hall with a low gable roof and three skylights."""
     site, pitch = Site(scene, rect, 8.0), np.tan(np.deg2rad(4.0))
     solids = [site.solid(rect, gable(rect, site.eave, pitch))]
     ridge = site.eave + pitch * rect.width / 2
@@ -150,7 +153,7 @@ def _chimney(site: Site, rect: Rect, pitch: float, rng: np.random.Generator) -> 
 
 
 def _dormer(site: Site, rect: Rect, pitch: float, along: float, side: int) -> Body:
-    """Return a dormer whose nearly flat roof runs from over the front into the roof plane behind it."""
+    """Return a dormer whose nearly flat roof ends in the roof plane behind it."""
     depth, back = 2.4, rect.width / 2 - 3.0
     box = rect.part(along, side * (back + depth / 2), 1.9, depth)
     behind = site.eave + pitch * (rect.width / 2 - back)

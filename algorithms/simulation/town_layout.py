@@ -1,4 +1,4 @@
-"""A made-up town: streets with plots, a river with bridges, a forest, and objects between them."""
+"""Layout of a simulated town: streets with plots, a river with bridges, a forest, and other objects."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .relief import VALLEY, make_relief
 from .scene import Scene
 from .town_houses import build_hall, build_house
 
-# Distance (m) between the axes of neighboring streets, with two rows of plots between these.
+# Distance (m) between the axes of neighboring streets, with two rows of plots between them.
 _STREET_SPACING = 40.0
 
 # Width of a street (m).
@@ -25,16 +25,16 @@ _STREET_WIDTH = 8.0
 # Length along the street and depth of a plot (m).
 _PLOT = (14.0, 16.0)
 
-# Distance that plots and poles keep from the edges of the town (m).
+# Least distance of plots and poles from the edges of the town (m).
 _EDGE = 1.0
 
-# Distance that plots keep from the forest (m).
+# Least distance of plots from the forest (m).
 _FROM_FOREST = 3.0
 
-# Shares of the plots that have a car before them, and a hedge or a wall at one side.
+# Shares of plots with a car in front of them, with a hedge, and with a wall at one side.
 _WITH_CAR, _WITH_HEDGE, _WITH_WALL = 0.5, 0.3, 0.2
 
-# Plots of a block along the street, between two side streets.
+# Plots along the street between two side streets.
 _PLOTS_PER_BLOCK = 6
 
 # Length and width of a car (m).
@@ -43,31 +43,31 @@ CAR = (4.3, 1.8)
 # Length and width of a hall (m).
 _HALL = (40.0, 27.0)
 
-# Largest difference of the ground between the corners of a hall (m).
+# Largest difference of ground elevation between the corners of a hall (m).
 _HALL_STEP = 5.0
 
-# Buildings per hectare for which every plot is built on: about as many plots as a hectare of streets and blocks has.
+# Buildings per hectare with all plots occupied: about the number of plots on a hectare of streets and plots.
 MAX_BUILDINGS = 34
 
 
 @dataclass(frozen=True)
 class TownPlan:
-    """What a town holds: tunables of :func:`.simulate_town.simulate_town`."""
+    """Contents of a town: tunables of :func:`.simulate_town.simulate_town`."""
 
     size: float = 200.0  #: Side of the square, m
-    slope: float = 3.0  #: Slope of the ground, °
-    relief: float = 2.0  #: Height from hollows to hills, m
+    slope: float = 3.0  #: Mean slope of the ground, °
+    relief: float = 2.0  #: Height difference between hollows and hills, m
     terrace_height: float = 1.5  #: Rise of the terraces, m
     buildings: float = 20.0  #: Buildings per hectare
     trees: float = 20.0  #: Trees per hectare
-    forest: float = 0.1  #: Share that is forest
+    forest: float = 0.1  #: Share covered by forest
     river: bool = True  #: Whether there is a river
     clutter: bool = True  #: Whether there are cars, hedges, walls and wires
-    seed: int = 1  #: The same seed makes the same town
+    seed: int = 1  #: The same seed gives the same town
 
 
 def build_town(plan: TownPlan, monitor: Optional[Monitor] = None) -> Scene:
-    """Return a made-up town, the same for the same plan."""
+    """Return a simulated town, deterministic for a plan."""
     monitor = monitor or Monitor()
     rng = np.random.default_rng([plan.seed, 0])
     relief = make_relief(plan.size, plan.slope, plan.relief, plan.terrace_height, plan.river, rng)
@@ -78,7 +78,7 @@ def build_town(plan: TownPlan, monitor: Optional[Monitor] = None) -> Scene:
         if hall is not None:
             build_hall(scene, hall)
             plots = [plot for plot in plots if not hall.contains(*plot.corners(-1.0).T).any()]
-        # Every hectare of plots has the asked number of them built on, whatever river and forest leave.
+        # The density of buildings refers to the plots outside river and forest.
         built = min(len(plots), round(len(plots) * plan.buildings / MAX_BUILDINGS))
         for k, i in enumerate(np.sort(rng.permutation(len(plots))[:built])):
             build_house(scene, plots[i], rng)
@@ -92,17 +92,17 @@ def build_town(plan: TownPlan, monitor: Optional[Monitor] = None) -> Scene:
 
 
 def _street_lines(scene: Scene) -> np.ndarray:
-    """Return where the streets lie along the town (m)."""
+    """Return the positions of the streets in the direction *along* the town (m)."""
     reach = np.ceil(scene.size / _STREET_SPACING)
     return (np.arange(-reach, reach) + 0.5) * _STREET_SPACING
 
 
 def _plots(scene: Scene, forest: float) -> list[Rect]:
-    """Return the plots that lie in the town, out of the forest and off the river."""
+    """Return the plots inside the town, except in the forest and the river valley."""
     relief, found = scene.relief, []
     n_half = int(scene.size // _PLOT[0])
     for street, side, i in itertools.product(_street_lines(scene), (1, -1), range(-n_half, n_half)):
-        # A side street of half a plot's width follows every block.
+        # A side street half as wide as a plot follows every block.
         across = (i + 0.5 * (i // _PLOTS_PER_BLOCK)) * _PLOT[0]
         x, y = relief.frame.at(across, street + side * (_STREET_WIDTH + _PLOT[1]) / 2)
         plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
@@ -115,20 +115,20 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
 
 
 def _hall_position(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
-    """Return room for a hall in the middle of a block of plots back to back, None without any that is level enough."""
+    """Return the footprint of a hall in the middle of a block of plots, None without sufficiently level ground."""
     x, y = np.array([(plot.x, plot.y) for plot in plots]).reshape(-1, 2).T
     for plot in plots:
         position = plot.part(0.0, plot.width / 2, *_HALL)
-        # Three plots on both sides, all of them free: the hall is on plots only.
+        # The hall covers three plots on both sides.
         if position.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*position.corners().T)) < _HALL_STEP:
             return position
     return None
 
 
 def _build_bridges(scene: Scene, river: float) -> None:
-    """Carry every street over the river."""
+    """Add a bridge over the river for every street."""
     relief = scene.relief
-    # Elevations are over the floor of the valley, which is at 0.
+    # The valley floor is at elevation 0.
     for street in _street_lines(scene):
         x, y = relief.frame.at(river, street)
         deck = Rect(float(x), float(y), 2 * VALLEY - 8.0, 6.0, relief.angle)
@@ -142,7 +142,7 @@ def _build_bridges(scene: Scene, river: float) -> None:
 
 
 def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor: Monitor) -> None:
-    """Put cars on the streets, hedges and walls between the plots, and wires along one street."""
+    """Add cars on the streets, hedges and walls between the plots, and wires along one street."""
     lines = [plot.part(-plot.length / 2, 3.0, plot.width - 6.0, 0.9, np.pi / 2) for plot in plots]
     corners = np.array([line.corners() for line in lines]).reshape(-1, 2)
     is_free = ~scene.near_building(corners, 0.2).reshape(-1, 4).any(axis=1)
@@ -160,14 +160,14 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor:
 
 
 def _follow_ground(scene: Scene, rect: Rect, height: float, number: int) -> Body:
-    """Return a solid whose top is parallel to the ground around its middle."""
+    """Return a solid with a top parallel to the ground at its center."""
     a, b, c = scene.relief.tangent(rect.x, rect.y)
     bottom = float(scene.relief.ground(*rect.corners().T).min()) - 1.0
     return Body(rect, np.array([[a, b, c + height]]), bottom, PointClass.UNCLASSIFIED, number)
 
 
 def park_car(scene: Scene, body: Rect) -> None:
-    """Put a car: body and cabin with slanting windows."""
+    """Add a car: body and cabin with inclined windows."""
     number = scene.new_id()
     cabin = body.part(-0.3, 0.0, 2.6, 1.6)
     ground = scene.relief.tangent(body.x, body.y)
@@ -178,14 +178,14 @@ def park_car(scene: Scene, body: Rect) -> None:
 
 
 def _string_wires(scene: Scene) -> None:
-    """Put poles along the street through the town's middle, and three wires on them."""
+    """Add poles with three wires along the street through the middle of the town."""
     relief = scene.relief
     # Height of the poles, distance between them, and sag of the wires (m).
     height, span, sag = 8.5, 34.0, 0.8
     along = float(_street_lines(scene)[len(_street_lines(scene)) // 2]) + _STREET_WIDTH / 2 - 0.4
     across = np.arange(-scene.size, scene.size, span)
     x, y = relief.frame.at(across, along)
-    # No pole is in the bed of the river.
+    # No pole is in the channel of the river.
     inside = (np.minimum(x, y) > _EDGE) & (np.maximum(x, y) < scene.size - _EDGE) & ~scene.near_water(x, y)
     feet = np.column_stack([x, y, relief.ground(x, y)])[inside]
     for foot in feet:

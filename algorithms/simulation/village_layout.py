@@ -1,4 +1,4 @@
-"""A made-up village: streets with large plots, a house on most, a shed behind it, plants and parked cars."""
+"""Layout of a simulated village: streets with large plots, houses with overhanging eaves, sheds, plants and cars."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .scene import Building, Scene
 from .town_houses import Site, l_outline
 from .town_layout import park_car
 
-# Distance (m) between the axes of neighboring streets, with two rows of plots between these.
+# Distance (m) between the axes of neighboring streets, with two rows of plots between them.
 _STREET_SPACING = 60.0
 
 # Width of a street (m).
@@ -25,44 +25,44 @@ _STREET_WIDTH = 8.0
 # Length along the street and depth of a plot (m).
 _PLOT = (22.0, 26.0)
 
-# Plots, and so houses at most, on a hectare of streets and plots.
+# Plots per hectare of streets and plots: the largest density of houses.
 MAX_HOMES = 15
 
-# Height from hollows to hills (m).
+# Height difference between hollows and hills (m).
 _HILLS = 2.0
 
-# Roofs are this thick (m); walls end in the middle of them.
+# Thickness of roofs (m); walls end halfway in it.
 _THICKNESS = 0.2
 
-# Eaves over the floor of one and two storeys (m).
+# Height of the eaves above the floor (m), for one and two storeys.
 _EAVES = (2.9, 5.6)
 
 
 @dataclass(frozen=True)
 class Village:
-    """A scene with its plots."""
+    """A village: scene, owners of roofs, and free plots."""
 
-    scene: Scene  #: All its objects
-    #: (m,): by object id, the id of the building where the object is its roof; the object's own id elsewhere
+    scene: Scene  #: All objects
+    #: (m,): by object id, the id of the building for roofs, and the object's own id otherwise
     owner: np.ndarray
     free: list[Rect]  #: Plots without a house
 
 
 @dataclass(frozen=True)
 class VillagePlan:
-    """What a village holds: tunables of :func:`.simulate_village.simulate_village`."""
+    """Contents of a village: tunables of :func:`.simulate_village.simulate_village`."""
 
     size: float  #: Side of the square, m
-    slope: float  #: Slope of the ground, °
+    slope: float  #: Mean slope of the ground, °
     buildings: float  #: Houses per hectare
     trees: float  #: Trees per hectare
     overhang: float  #: Overhang of the eaves, m
     clutter: bool  #: Whether there are cars, hedges and bushes
-    seed: int  #: The same seed makes the same village
+    seed: int  #: The same seed gives the same village
 
 
 def build_village(plan: VillagePlan) -> Village:
-    """Return a made-up village, the same for the same plan."""
+    """Return a simulated village, deterministic for a plan."""
     rng = np.random.default_rng([plan.seed, 2])
     scene = Scene(make_relief(plan.size, plan.slope, _HILLS, 0.0, False, rng))
     plots = _plots(scene)
@@ -79,7 +79,7 @@ def build_village(plan: VillagePlan) -> Village:
 
 
 def _plots(scene: Scene) -> list[Rect]:
-    """Return the plots that lie in the village with some room around."""
+    """Return the plots at least 1 m inside the village."""
     relief, found = scene.relief, []
     reach, n_half = int(scene.size // _STREET_SPACING) + 1, int(scene.size // _PLOT[0])
     for street, side, i in itertools.product(range(-reach, reach), (1, -1), range(-n_half, n_half)):
@@ -92,7 +92,7 @@ def _plots(scene: Scene) -> list[Rect]:
 
 
 def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator) -> None:
-    """Put cars on drives, hedges between plots, bushes against walls."""
+    """Add cars on drives, hedges between plots, and bushes next to walls."""
     for plot in plots:
         car = plot.part(plot.length / 2 - 2.0, -plot.width / 2 + rng.uniform(2.5, 8.0), 4.3, 1.8, np.pi / 2)
         if rng.random() < 0.4 and not scene.near_building(car.corners(), 0.4).any():
@@ -106,12 +106,12 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator) -> None:
 
 
 def _plant_against_walls(scene: Scene, building: Building, rng: np.random.Generator) -> None:
-    """Plant up to three bushes, each with its middle a little before a wall."""
+    """Plant up to three bushes close to the walls of a building."""
     ring = building.outline
     for _ in range(int(rng.integers(4))):
         k = int(rng.integers(len(ring) - 1))
         step = ring[k + 1] - ring[k]
-        # The ring runs counterclockwise: what lies to the right of a wall is outside.
+        # The ring is counterclockwise: the outside is on the right of each wall.
         outward = np.array([step[1], -step[0]]) / np.hypot(*step)
         radius = rng.uniform(0.4, 0.8)
         x, y = ring[k] + rng.random() * step + rng.uniform(0.3, 0.7) * radius * outward
@@ -120,23 +120,20 @@ def _plant_against_walls(scene: Scene, building: Building, rng: np.random.Genera
 
 
 class Home(Site):
-    """A site whose roof has an object id of its own, so that roof and walls can be distinguished."""
+    """A site whose roof has its own object id, to distinguish it from the walls."""
 
     def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
         super().__init__(scene, rect, eave)
         self.roof_id = scene.new_id()
 
     def slab(self, rect: Rect, tops: np.ndarray, under: np.ndarray) -> Body:
-        """Return a piece of roof, between its ``tops`` (k, 3) and ``under`` (3,), which lies below the first of them.
-
-        Planes are z = a x + b y + c, by a, b and c.
-        """
+        """Return a part of the roof between planes (a, b, c): ``tops`` (k, 3) and ``under`` (3,)."""
         a, b, c = under
         lowest = float((rect.corners() @ [a, b]).min() + c)
         return Body(rect, tops, lowest, PointClass.BUILDING, self.roof_id, under)
 
     def wing(self, rect: Rect, eave: float, pitch: float, overhang: float, cut: np.ndarray) -> list[Body]:
-        """Return the walls on ``rect`` and the two slabs of a gable roof, all of them under the planes ``cut``."""
+        """Return walls on ``rect`` and the two slabs of a gable roof, all limited by the planes ``cut`` above."""
         middle = [0.0, 0.0, _THICKNESS / 2]
         solids = [self.solid(rect, np.concatenate([gable(rect, eave, pitch), cut]) - middle)]
         half = rect.width / 2
@@ -148,12 +145,12 @@ class Home(Site):
 
 
 def build_homes(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> list[int]:
-    """Put a house on the front of a plot, and a shed behind two of three; return the object ids of their roofs.
+    """Add a house on a plot, and a shed for two houses of three; return the object ids of their roofs.
 
     Parameters
     ----------
     scene, plot : Scene, Rect
-        Receives the objects; the plot.
+        Scene that receives the objects, and the plot.
     overhang : float
         Overhang of the eaves, m.
     rng : numpy.random.Generator
@@ -167,7 +164,7 @@ def build_homes(scene: Scene, plot: Rect, overhang: float, rng: np.random.Genera
 
 
 def _shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Build a shed or garage with a single slope in a back corner."""
+    """Add a shed or garage with a single roof plane in a back corner of the plot."""
     long, wide = rng.uniform(3.0, 6.0), rng.uniform(2.6, 4.0)
     along, across = rng.choice((-1, 1)) * (plot.length - long - 3.0) / 2, (plot.width - wide - 3.0) / 2
     rect = plot.part(float(along), across, long, wide, np.deg2rad(rng.uniform(-6.0, 6.0)))
@@ -181,18 +178,18 @@ def _shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -
 
 
 def _placed(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
-    """Return a rectangle some meters behind the street, turned at will against it."""
+    """Return a footprint 3.5 to 4.5 m behind the street, turned by up to 8° against it."""
     long, wide = rng.uniform(*length), rng.uniform(*width)
     front = -plot.width / 2 + rng.uniform(3.5, 4.5)
     return plot.part(rng.uniform(-1.0, 1.0), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-8.0, 8.0)))
 
 
 def _roof(rng: np.random.Generator) -> tuple[float, float]:
-    """Return the height of the eave over the floor (m) and the pitch (a tangent)."""
+    """Return a random height of the eaves above the floor (m), and a random pitch (a tangent)."""
     return float(rng.choice(_EAVES)), float(np.tan(np.deg2rad(rng.uniform(25.0, 42.0))))
 
 
-# Planes that cut a roof: none.
+# No planes that limit a roof.
 _WHOLE = np.zeros((0, 3))
 
 
@@ -208,25 +205,25 @@ def _rectangle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
 
 
 def _hip(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Build a hip roof: a convex block with a level underside, as eaves with soffits have."""
+    """Add a house with a hip roof: a convex solid with a level underside, like eaves with soffits."""
     rect, (eave, pitch) = _placed(plot, rng, (9.5, 13.0), (7.0, 9.0)), _roof(rng)
     home = Home(scene, rect, eave)
     level = home.eave - pitch * overhang
     roof = rect.part(0.0, 0.0, rect.length + 2 * overhang, rect.width + 2 * overhang)
     tops = hip(roof, level, pitch)
-    # A vertical fascia as high as the roof is thick.
+    # A vertical fascia with the thickness of the roof.
     slab = home.slab(roof, tops + [0.0, 0.0, _THICKNESS], np.array([0.0, 0.0, level]))
     scene.add_building("hip", rect.corners(), [home.solid(rect, flat(rect, level)), slab])
     return home.roof_id
 
 
 def _angle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Build an L: a lower wing, flush with one gable, whose ridge runs into the roof of the main house."""
+    """Add an L-shaped house: a lower wing, flush with one gable, whose ridge ends in the roof of the main house."""
     main, (eave, pitch) = _placed(plot, rng, (11.0, 13.0), (6.5, 7.5)), _roof(rng)
     home = Home(scene, main, eave)
     wide, reach, side = rng.uniform(4.5, 5.5), rng.uniform(3.0, 5.0), rng.choice((-1.0, 1.0))
     a, c = main.length / 2, main.width / 2
-    # From next to the middle of the house, so that no end of the wing's roof comes out in front.
+    # The wing starts near the middle of the house, so that its roof does not emerge at the front.
     start = min(2 * overhang, c)
     wing = main.part(side * (a - wide / 2), (start + c + reach) / 2, c + reach - start, wide, np.pi / 2)
     solids = [part for rect in (main, wing) for part in home.wing(rect, home.eave, pitch, overhang, _WHOLE)]
@@ -235,11 +232,11 @@ def _angle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) 
 
 
 def _bend(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Build a house with a bend: two wings of one width that meet at an angle of 140° to 165°."""
+    """Add a bent house: two wings of the same width that meet at an angle of 140° to 165°."""
     first, (eave, pitch) = _placed(plot, rng, (6.0, 8.0), (6.0, 7.0)), _roof(rng)
     turn, long = np.deg2rad(rng.uniform(15.0, 40.0)), rng.uniform(5.0, 6.5)
     half = first.width / 2
-    # The axes meet where the first one's ends, and both wings go on to the outer corner.
+    # The axes meet at the end of the first one; both wings extend to the outer corner.
     past = half * np.tan(turn / 2)
     first = first.part(-0.35 * long, 0.0, first.length, first.width)
     joint = first.part(first.length / 2, 0.0, 0.0, first.width)
