@@ -13,14 +13,11 @@ from .pairs import rank
 from .relief import Relief
 from .scene import Scene
 
-# Largest distance (m) of a wire from the axis of a beam that it reflects: the radius of the beam.
-_WIRE_REACH = 0.1
+# Beams per block of a scan, which bounds memory.
+BLOCK = 50_000
 
-# Probability that a wire in a beam returns an echo: it covers a small part of the beam.
-_WIRE_CHANCE = 0.7
-
-# Most leaves that a beam meets in one ellipsoid: the echoes of more would come too late to be recorded.
-_LEAVES = 8
+# Radius of an airborne beam at the ground (m): 0.35 mrad from 600 m.
+BEAM_RADIUS = 0.1
 
 # Precision of ranges (m).
 _PRECISION = 1e-5
@@ -104,7 +101,7 @@ class World:
             reach = self.crowns[:, [3, 3, 4]]
             return self.crowns[:, :3] - reach, self.crowns[:, :3] + reach
         ends = self.wires[:, :6].reshape(-1, 2, 3)
-        return ends.min(axis=1) - _WIRE_REACH, ends.max(axis=1) + _WIRE_REACH
+        return ends.min(axis=1) - BEAM_RADIUS, ends.max(axis=1) + BEAM_RADIUS
 
     def surfaces(self, beams: Beams, beam: np.ndarray, solid: np.ndarray) -> Echoes:
         """Return the last echo of each beam, in order: ground, water or a solid (candidates: pairs beam, solid)."""
@@ -166,7 +163,8 @@ class World:
         half = np.sqrt(inside[met]) / a[met]
         enter, leave = -b[met] / a[met] - half, -b[met] / a[met] + half
         beam, crown = beam[met], crown[met]
-        steps = rng.standard_exponential((len(beam), _LEAVES)) * self.crowns[crown, 5, None]
+        # Eight leaves per ellipsoid are enough: the echoes of more would come too late to be recorded.
+        steps = rng.standard_exponential((len(beam), 8)) * self.crowns[crown, 5, None]
         depth = enter[:, None] + np.cumsum(steps, axis=1)
         which, leaf = np.nonzero(depth < leave[:, None])
         beam, ranges, crown = beam[which], depth[which, leaf], crown[which]
@@ -185,7 +183,8 @@ class World:
         share = np.clip((lean * on_beam - on_wire) / (length2 - lean * lean), 0.0, 1.0)
         ranges = on_beam + share * lean
         gap = np.linalg.norm(apart + share[:, None] * along - ranges[:, None] * direction, axis=1)
-        met = (gap < _WIRE_REACH) & (rng.random(len(beam)) < _WIRE_CHANCE)
+        # Of the wires in a beam 70 % return an echo: a wire covers a small part of the beam.
+        met = (gap < BEAM_RADIUS) & (rng.random(len(beam)) < 0.7)
         classes = np.full(met.sum(), PointClass.WIRE_CONDUCTOR)
         return beams.echoes(beam[met], ranges[met], classes, self.wires[wire[met], 6])
 

@@ -9,22 +9,13 @@ from typing import Optional
 import numpy as np
 
 from ..stage import Monitor
-from .beams import Beams, Echoes, World, join
+from .beams import BLOCK, Beams, Echoes, World, join
 from .pairs import in_boxes
 from .relief import Relief
 from .scene import Scene
 
-# Rays per block, which bounds memory.
-_BLOCK = 50_000
-
-# Height (m) over the ground at which rays start: above all trees.
-_HEIGHT = 80.0
-
 # Width (m) of the margin into which rays are aimed, too: oblique rays meet walls before the ground.
 _MARGIN = 10.0
-
-# Kinds of objects that images show: wires are thinner than a pixel.
-_SEEN = ("solids", "crowns")
 
 
 def photograph(
@@ -60,8 +51,9 @@ def photograph(
     positions, parts = [], []
     for i, ((tilt, heading), (low, high, count)) in enumerate(blocks):
         rays = _rays(scene.relief, rng.uniform(low, high, (count, 2)), tilt, heading)
-        solids, crowns = (_met(world, kind, rays) for kind in _SEEN)
-        seen = join([world.surfaces(rays, *solids), world.leaves(rays, *crowns, rng)]).first()
+        # Wires are thinner than a pixel.
+        ends = world.surfaces(rays, *_met(world, "solids", rays))
+        seen = join([ends, world.leaves(rays, *_met(world, "crowns", rays), rng)]).first()
         xyz = rays.at(seen.pulse, seen.range)
         inside = ((xyz[:, :2] >= 0) & (xyz[:, :2] <= scene.size)).all(axis=1)
         positions.append(xyz[inside])
@@ -72,7 +64,7 @@ def photograph(
 
 def _blocks(size: float, density: float) -> Iterator[tuple[np.ndarray, np.ndarray, int]]:
     """Yield the lower and upper corner (m) of squares, and the number of rays aimed into each."""
-    n = max(1, int(np.ceil((size + 2 * _MARGIN) * np.sqrt(density / _BLOCK))))
+    n = max(1, int(np.ceil((size + 2 * _MARGIN) * np.sqrt(density / BLOCK))))
     side = (size + 2 * _MARGIN) / n
     for row, column in itertools.product(range(n), range(n)):
         low = np.array([column, row]) * side - _MARGIN
@@ -83,7 +75,8 @@ def _rays(relief: Relief, aim: np.ndarray, tilt: float, heading: float) -> Beams
     """Return parallel rays tilted by ``tilt`` toward ``heading`` (rad) that meet the plane of the ground at ``aim``."""
     direction = np.array([np.sin(tilt) * np.cos(heading), np.sin(tilt) * np.sin(heading), -np.cos(tilt)])
     end = np.column_stack([aim, relief.plane(*aim.T)])
-    return Beams(np.arange(len(aim)), end - _HEIGHT / np.cos(tilt) * direction, np.tile(direction, (len(aim), 1)), aim)
+    # Rays start 80 m above the ground, higher than all trees.
+    return Beams(np.arange(len(aim)), end - 80.0 / np.cos(tilt) * direction, np.tile(direction, (len(aim), 1)), aim)
 
 
 def _met(world: World, kind: str, rays: Beams) -> tuple[np.ndarray, np.ndarray]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from ..stage import Monitor, tunable
-from .beams import Beams, Echoes, World, join
+from .beams import BLOCK, Beams, Echoes, World, join
 from .bodies import dot
 from .pairs import in_boxes
-from .scanner import brightness
+from .scanner import recorded
 from .scene import Scene
 from .street_site import SIZE
 
@@ -25,44 +26,28 @@ SCANNERS = {"horizontal": 1, "vertical": 2}
 # Field of view of a scanner (°): all but the quarter behind it.
 FIELD = 270.0
 
-# Minimum range (m) of a scanner, as in its data sheet.
-_NEAREST = 0.1
-
-# Take-off position relative to the middle of the site (m).
-_START = (0.8, 3.0)
-
 # Height of the scanners over the ground before take-off (m).
 _STANDING = 0.4
 
-# Share of the flight spent on the climb.
+# Share of the flight spent on the climb, and on the landing; in between the drone makes one turn.
 _CLIMB = 0.2
 
-# Share of the flight spent on the landing; between climb and landing the drone makes one turn.
-_LANDING = 0.2
-
-# Largest deviation from the path due to wind and control (m).
-_DRIFT = 0.3
-
-# Largest deviation from level (°).
-_TILT = 2.0
-
-# Largest deviation from the heading (°).
-_YAW = 0.5
-
-# Periods of the deviations (s).
+# Periods of the deviations from the path due to wind and control (s).
 _PERIODS = (3.1, 5.3, 11.7)
 
-# Time in which the deviations grow after take-off and fade before landing (s).
-_SETTLING = 2.0
 
-# Mean path to the next leaf, as a share of a thin beam's: the wide beams of small scanners meet leaves sooner.
-_WIDE = 0.3
+# Dimensions of points by name.
+Dimensions = dict[str, np.ndarray]
 
-# Most pulses per block, which bounds memory.
-_BLOCK = 50_000
+# Pulses that are scanned together: point source id of the scanner, times (n,) (s), source of random numbers.
+Block = tuple[int, np.ndarray, np.random.Generator]
 
-# Longest time of a block (s): the drone must not move far within it.
-_BLOCK_TIME = 1.0
+
+class Platform(Protocol):
+    """A moving platform with scanners."""
+
+    def pulses(self, scanner: int, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+        """Return the beams of a scanner at times (n,) (s), and the left axes (n, 3) of the platform."""
 
 
 @dataclass(frozen=True)
@@ -80,10 +65,27 @@ class LineScan:
 
         Each turn of the mirror is a scan line; ``pulses`` (k,) are the times of its pulses as shares of a turn.
         """
-        step = max(1, min(_BLOCK // len(pulses), int(most * self.line_rate)))
+        step = max(1, min(BLOCK // len(pulses), int(most * self.line_rate)))
         for line in range(0, n_lines, step):
             lines = np.arange(line, min(line + step, n_lines))
             yield (lines[:, None] + pulses).ravel() / self.line_rate
+
+    def scanned(self, scene: Scene, platform: Platform, blocks: Sequence[Block], monitor: Monitor) -> Dimensions:
+        """Return the dimensions of the points by name, sorted by time, of a scene scanned from a platform."""
+        world, parts = DroneWorld(scene, self.max_range), []
+        for i, (scanner, time, rng) in enumerate(blocks):
+            beams, left = platform.pulses(scanner, time, self.line_rate)
+            echoes = first_met(world, beams, rng)
+            nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))
+            angle = np.where(dot(echoes.direction, left[echoes.pulse]) > 0, -nadir, nadir)
+            part = recorded(echoes, time, angle, scanner, rng)
+            # Range noise is along the beam.
+            part["xyz"] = beams.at(echoes.pulse, echoes.range + self.range_noise * rng.standard_normal(len(echoes)))
+            parts.append(part)
+            monitor.progress((i + 1) / len(blocks))
+        made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        order = np.argsort(made["gps_time"], kind="stable")
+        return {name: values[order] for name, values in made.items()}
 
 
 @dataclass(frozen=True)
@@ -98,15 +100,16 @@ class Flight:
     def positions(self, time: np.ndarray) -> np.ndarray:
         """Return the positions (n, 3) (m) of the scanners at times (n,) (s)."""
         share = time / self.duration
-        height = self.climb * np.clip(np.minimum(share / _CLIMB, (1 - share) / _LANDING), 0.0, 1.0)
-        made = self.foot + _DRIFT * self._sway(time, slice(0, 3))
-        made[:, 2] += height
+        # The largest deviation is 0.3 m.
+        made = self.foot + 0.3 * self._sway(time, slice(0, 3))
+        made[:, 2] += self.climb * np.clip(np.minimum(share, 1 - share) / _CLIMB, 0.0, 1.0)
         return made
 
     def axes(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the forward, left and up axes of the drone, (n, 3) each, at times (n,) (s)."""
-        turn = np.clip((time / self.duration - _CLIMB) / (1 - _CLIMB - _LANDING), 0.0, 1.0)
-        roll, pitch, yaw = np.deg2rad([_TILT, _TILT, _YAW])[:, None] * self._sway(time, slice(3, 6)).T
+        turn = np.clip((time / self.duration - _CLIMB) / (1 - _CLIMB - _CLIMB), 0.0, 1.0)
+        # The largest deviation is 2° from level, and 0.5° from the heading.
+        roll, pitch, yaw = np.deg2rad([2.0, 2.0, 0.5])[:, None] * self._sway(time, slice(3, 6)).T
         yaw = yaw + 2 * np.pi * turn
         (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
         forward = np.column_stack([cy * cp, sy * cp, -sp])
@@ -116,35 +119,23 @@ class Flight:
     def _sway(self, time: np.ndarray, which: slice) -> np.ndarray:
         """Return the deviations (n, 3) at times (n,), as shares of the largest, -1 to 1."""
         waves = np.sin(2 * np.pi * time[:, None, None] / np.array(_PERIODS) + self.phases[which]).mean(axis=-1)
-        return waves * np.clip(np.minimum(time, self.duration - time) / _SETTLING, 0.0, 1.0)[:, None]
+        # Deviations grow within 2 s after take-off, and fade before landing.
+        return waves * np.clip(np.minimum(time, self.duration - time) / 2.0, 0.0, 1.0)[:, None]
 
-    def scanned(
-        self, scene: Scene, scanners: tuple[str, ...], scan: LineScan, monitor: Monitor
-    ) -> dict[str, np.ndarray]:
+    def scanned(self, scene: Scene, scanners: tuple[str, ...], scan: LineScan, monitor: Monitor) -> Dimensions:
         """Return the dimensions of the points by name, sorted by time, of a scene scanned by ``scanners``."""
-        world, parts = DroneWorld(scene, scan.max_range), []
         pulses = np.arange(pulses_per_line(scan.angular_step)) * (scan.angular_step / 360.0)
-        times = list(scan.times(int(self.duration * scan.line_rate), pulses, _BLOCK_TIME))
-        blocks = [(name, time) for name in scanners for time in times]
-        generators = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
-        for i, (name, time) in enumerate(blocks):
-            rng = generators[name]
-            beams, left = self._pulses(name, time, scan.line_rate)
-            echoes = first_met(world, beams, rng)
-            # Range noise is along the beam.
-            ranges = echoes.range + scan.range_noise * rng.standard_normal(len(echoes))
-            part = recorded(echoes, left, SCANNERS[name], rng)
-            part["gps_time"] = time[echoes.pulse]
-            part["xyz"] = beams.at(echoes.pulse, ranges)
-            parts.append(part)
-            monitor.progress((i + 1) / len(blocks))
-        return in_time_order(parts)
+        # In a second the drone does not move far.
+        times = list(scan.times(int(self.duration * scan.line_rate), pulses, 1.0))
+        rngs = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
+        blocks = [(SCANNERS[name], time, rngs[name]) for name in scanners for time in times]
+        return scan.scanned(scene, self, blocks, monitor)
 
-    def _pulses(self, scanner: str, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-        """Return the beams of pulses, and the left axes (n, 3) of the drone."""
+    def pulses(self, scanner: int, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+        """Return the beams of a scanner at times (n,) (s), and the left axes (n, 3) of the drone."""
         forward, left, up = self.axes(time)
         angle = np.deg2rad(np.mod(time * line_rate, 1.0) * 360.0 - FIELD / 2)[:, None]
-        ahead = forward if scanner == "horizontal" else -up
+        ahead = forward if scanner == SCANNERS["horizontal"] else -up
         direction = np.cos(angle) * ahead + np.sin(angle) * left
         return Beams(np.arange(len(time)), self.positions(time), direction, np.column_stack(bearing(direction))), left
 
@@ -163,7 +154,8 @@ def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flig
     seed : int
         The same seed gives the same flight.
     """
-    x, y = (SIZE / 2 + part for part in _START)
+    # The drone takes off in the street, a little off the middle of the site.
+    x, y = SIZE / 2 + 0.8, SIZE / 2 + 3.0
     foot = np.array([x, y, float(scene.relief.ground(x, y)) + _STANDING])
     phases = np.random.default_rng([seed, 3]).uniform(0.0, 2 * np.pi, (6, len(_PERIODS)))
     return Flight(foot, height - _STANDING, duration, phases)
@@ -175,7 +167,8 @@ class DroneWorld(World):
     def __init__(self, scene: Scene, reach: float) -> None:
         super().__init__(scene)
         self.reach = reach
-        self.crowns[:, 5] *= _WIDE
+        # The wide beams of small scanners meet the next leaf after 30 % of the mean path of a thin beam.
+        self.crowns[:, 5] *= 0.3
 
     def ground(self, beams: Beams) -> np.ndarray:
         """Return the ranges (n,) (m) at which beams meet the ground, twice the reach for those that do not."""
@@ -222,13 +215,6 @@ def _half_widths(elevation: np.ndarray, radius: np.ndarray, distance: np.ndarray
     return np.column_stack([wide, high])
 
 
-def in_time_order(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Join the dimensions of the parts of a scan, sorted by time."""
-    made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    order = np.argsort(made["gps_time"], kind="stable")
-    return {name: values[order] for name, values in made.items()}
-
-
 def pulses_per_line(angular_step: float) -> int:
     """Return the number of pulses in the field of view, one per ``angular_step`` (°)."""
     return int(FIELD / angular_step + 1e-9) + 1
@@ -237,34 +223,6 @@ def pulses_per_line(angular_step: float) -> int:
 def first_met(world: DroneWorld, beams: Beams, rng: np.random.Generator) -> Echoes:
     """Return the first echo of each beam within reach, in the order of the beams."""
     ends = world.surfaces(beams, *world.met("solids", beams))
-    leaves = world.leaves(beams, *world.met("crowns", beams), rng)
-    echoes = join([ends, leaves])
-    return echoes.take((echoes.range > _NEAREST) & (echoes.range < world.reach)).first()
-
-
-def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Return the dimensions of echoes except position and time.
-
-    Parameters
-    ----------
-    echoes : Echoes
-        The echoes.
-    left : ndarray of shape (n, 3)
-        Left axis of the drone for each pulse.
-    number : int
-        Point source id of the scanner.
-    rng : numpy.random.Generator
-        Source of random numbers.
-    """
-    side = dot(echoes.direction, left[echoes.pulse])
-    nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))
-    one = np.ones(len(echoes), np.uint8)
-    return {
-        "classification": echoes.classification,
-        "return_number": one,
-        "number_of_returns": one,
-        "intensity": brightness(echoes, 1, rng),
-        "scan_angle": np.where(side > 0, -nadir, nadir).astype(np.float32),
-        "point_source_id": np.full(len(echoes), number, np.uint16),
-        "segment_id": echoes.object_id,
-    }
+    echoes = join([ends, world.leaves(beams, *world.met("crowns", beams), rng)])
+    # The minimum range is 0.1 m, as in data sheets.
+    return echoes.take((echoes.range > 0.1) & (echoes.range < world.reach)).first()

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..stage import Monitor, tunable
-from .beams import Beams, Echoes, World, is_vegetation, join
+from .beams import BEAM_RADIUS, BLOCK, Beams, Echoes, World, is_vegetation, join
 from .pairs import in_boxes, rank
 from .relief import Relief
 from .scene import Scene
@@ -40,11 +40,9 @@ PULSE_DENSITY = tunable(
 
 RANGE_NOISE = tunable(0.02, "Standard deviation of measured ranges.", within="[0, 0.2] m", advanced=True)
 
-# Most pulses: at about 100 bytes each they fit into the memory of an office computer.
-MAX_PULSES = 5e7
-
-# Most points of matched images: at about 200 bytes each they fit into the memory of an office computer.
-MAX_POINTS = 3e7
+# Most pulses of a scan and points of matched images that fit into the memory of an office computer: a pulse takes about
+# 100 bytes, a point about 200.
+_MOST = {"pulses": 5e7, "points": 3e7}
 
 # Height of a survey flight over the ground (m).
 _HEIGHT = 600.0
@@ -52,41 +50,11 @@ _HEIGHT = 600.0
 # Speed of a survey flight (m/s).
 _SPEED = 60.0
 
-# Duration of the turn between two strips (s).
-_TURN = 300.0
-
-# Radius of the beam at the ground (m): 0.35 mrad from 600 m.
-_BEAM_RADIUS = 0.1
-
-# Pulses per block, which bounds memory.
-_BLOCK = 50_000
-
 # Range resolution (m): the scanner separates echoes at least half the length of a pulse apart.
 _DEAD_ZONE = 0.7
 
 # Most returns per pulse.
 _MAX_RETURNS = 5
-
-# Probability that a pulse continues behind a leaf.
-_THROUGH = 0.7
-
-# Probability that water returns a vertical pulse.
-_WATER_CHANCE = 0.25
-
-# Incidence angle (rad) at which this probability drops to 1/e: water reflects like a mirror.
-_WATER_SLANT = np.deg2rad(12.0)
-
-# Least and greatest height of birds above the ground (m).
-_BIRDS = (30.0, 120.0)
-
-# Least and greatest depth of multipath points below the ground (m).
-_MULTIPATH = (2.0, 15.0)
-
-# Intensity of a single return of a perfect reflector: the brightest roofs stay below 65,535.
-_WHITE = 60_000
-
-# Relative standard deviation of intensities.
-_SPECKLE = 0.08
 
 # Reflectance by class.
 _REFLECTANCE = np.full(256, 0.3)
@@ -133,7 +101,7 @@ class AirSurvey:
     seed: int = 1  #: The same seed gives the same points
 
 
-def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses", most: float = MAX_PULSES) -> None:
+def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses") -> None:
     """Refuse to simulate more pulses or points than fit into memory.
 
     Parameters
@@ -146,16 +114,13 @@ def refuse_many(count: float, what: str, remedy: str, unit: str = "pulses", most
         Advice at the end of the message.
     unit : str
         "pulses" or "points".
-    most : float
-        Largest number accepted.
     """
+    most = _MOST[unit]
     if count > most:
         raise ValueError(f"{what} has {count / 1e6:.0f} million {unit}, more than {most / 1e6:.0f} million; {remedy}.")
 
 
-def refuse_large(
-    what: str, size: float, density: float, remedy: str, unit: str = "pulses", most: float = MAX_PULSES
-) -> None:
+def refuse_large(what: str, size: float, density: float, remedy: str, unit: str = "pulses") -> None:
     """Refuse a square site with more pulses or points than fit into memory.
 
     Parameters
@@ -170,10 +135,8 @@ def refuse_large(
         Advice at the end of the message.
     unit : str
         "pulses" or "points".
-    most : float
-        Largest number accepted.
     """
-    refuse_many(density * size**2, f"{what} of {size:g} m with {density:g} {unit} per m²", remedy, unit, most)
+    refuse_many(density * size**2, f"{what} of {size:g} m with {density:g} {unit} per m²", remedy, unit)
 
 
 def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> dict[str, np.ndarray]:
@@ -196,9 +159,12 @@ def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> 
         echoes = _replaced(_recorded_echoes(world, pulses, block.strip, survey.returns, rng), noise)
         # Range noise is along the beam.
         ranges = echoes.range + survey.range_noise * rng.standard_normal(len(echoes))
-        part = _recorded(echoes, time, block.strip, survey.returns, rng)
+        # Scan angles are negative to the left of the flight; odd strips are flown to the east.
+        angle = np.rad2deg(np.arctan2(echoes.direction[:, 1], -echoes.direction[:, 2]))
+        angle *= -1 if block.strip.number % 2 else 1
+        part = recorded(echoes, time, angle, block.strip.number, rng, survey.returns)
         part["xyz"] = pulses.origin[echoes.pulse] + ranges[:, None] * echoes.direction
-        part["pulse"] += firsts[i]
+        part["pulse"] = echoes.pulse + firsts[i]
         parts.append(part)
         monitor.progress((i + 1) / len(blocks))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -228,7 +194,7 @@ def _blocks(strips: list[_Strip], size: float, density: float) -> Iterator[_Bloc
         width = strip.high - strip.low
         per_line = max(1, round(width / np.sqrt(cell)))
         n_lines = round(size * width / cell / per_line)
-        step = max(1, _BLOCK // per_line)
+        step = max(1, BLOCK // per_line)
         for line in range(0, n_lines, step):
             yield _Block(strip, line, min(step, n_lines - line), n_lines, per_line)
 
@@ -252,7 +218,8 @@ def _pulses(relief: Relief, block: _Block, pattern: str, rng: np.random.Generato
     x = forth * size / block.lines_of_strip
     x = x if strip.number % 2 else size - x
     aim = np.column_stack([x, strip.low + across * (strip.high - strip.low)])
-    time = (strip.number - 1) * (size / _SPEED + _TURN) + way / _SPEED
+    # The turn between two strips takes five minutes.
+    time = (strip.number - 1) * (size / _SPEED + 300.0) + way / _SPEED
     origin = np.column_stack([x, np.full(len(x), strip.y), relief.plane(x, strip.y) + _HEIGHT])
     return _aimed(relief, np.arange(len(x)), origin, aim), time
 
@@ -265,7 +232,7 @@ def _aimed(relief: Relief, pulse: np.ndarray, origin: np.ndarray, aim: np.ndarra
 
 def _beside(relief: Relief, beams: Beams, rng: np.random.Generator) -> Beams:
     """Return for each beam a ray to a random position in its footprint on the ground."""
-    turn, out = rng.uniform(0.0, 2 * np.pi, len(beams)), _BEAM_RADIUS * np.sqrt(rng.random(len(beams)))
+    turn, out = rng.uniform(0.0, 2 * np.pi, len(beams)), BEAM_RADIUS * np.sqrt(rng.random(len(beams)))
     shift = np.column_stack([out * np.cos(turn), out * np.sin(turn)])
     return _aimed(relief, beams.pulse, beams.origin, beams.aim + shift)
 
@@ -280,21 +247,16 @@ def _met(world: World, kind: str, beams: Beams, strip: _Strip) -> tuple[np.ndarr
     lift = np.stack([low[:, 2] - planes.max(axis=0), high[:, 2] - planes.min(axis=0)])
     shadow = strip.y + (corners[:, None, :, 1] - strip.y) * _HEIGHT / (_HEIGHT - lift[None])
     shadow = shadow.reshape(4, -1)
-    near = np.column_stack([low[:, 0], shadow.min(axis=0)]) - _BEAM_RADIUS
-    far = np.column_stack([high[:, 0], shadow.max(axis=0)]) + _BEAM_RADIUS
-    return in_boxes(beams.aim, near, far)
+    near, far = np.column_stack([low[:, 0], shadow.min(axis=0)]), np.column_stack([high[:, 0], shadow.max(axis=0)])
+    return in_boxes(beams.aim, near - BEAM_RADIUS, far + BEAM_RADIUS)
 
 
 def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, rng: np.random.Generator) -> Echoes:
     """Return the echoes of ``pulses`` that the scanner records, by pulse, then by range."""
     beam, solid = _met(world, "solids", pulses, strip)
     ends = world.surfaces(pulses, beam, solid)
-    porous = join(
-        [
-            world.leaves(pulses, *_met(world, "crowns", pulses, strip), rng),
-            world.strands(pulses, *_met(world, "wires", pulses, strip), rng),
-        ]
-    )
+    leaves = world.leaves(pulses, *_met(world, "crowns", pulses, strip), rng)
+    porous = join([leaves, world.strands(pulses, *_met(world, "wires", pulses, strip), rng)])
     porous = porous.take(porous.range < ends.range[porous.pulse])
     # Near solids, such as at the edge of a roof, a second ray within the beam adds an echo if it ends elsewhere.
     beside = _beside(world.relief, pulses.take(np.unique(beam)), rng)
@@ -302,9 +264,9 @@ def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, 
     others = others.take(np.abs(others.range - ends.range[others.pulse]) > _DEAD_ZONE)
     echoes = join([porous, ends, others]).in_order()
     kept = _separate(echoes, len(pulses), rng) if returns else rank(echoes.pulse) == 0
-    # Water reflects like a mirror: pulses at large incidence angles are lost.
+    # Water reflects like a mirror: it returns a quarter of vertical pulses, and 1/e of that at 12° to the vertical.
     slant = np.arccos(-echoes.direction[:, 2])
-    lost = rng.random(len(echoes)) > _WATER_CHANCE * np.exp(-((slant / _WATER_SLANT) ** 2))
+    lost = rng.random(len(echoes)) > 0.25 * np.exp(-((slant / np.deg2rad(12.0)) ** 2))
     return echoes.take(kept & ~((echoes.classification == PointClass.WATER) & lost))
 
 
@@ -312,7 +274,8 @@ def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.nda
     """Return the mask of sorted echoes that a scanner separates until the energy of the pulse is used up."""
     pulse = echoes.pulse
     number = rank(pulse)
-    goes_on = ~is_vegetation(echoes.classification) | (rng.random(len(echoes)) < _THROUGH)
+    # Behind a leaf 70 % of the pulses continue.
+    goes_on = ~is_vegetation(echoes.classification) | (rng.random(len(echoes)) < 0.7)
     kept = np.zeros(len(echoes), bool)
     last, recorded = np.full(n_pulses, -np.inf), np.zeros(n_pulses, np.int64)
     for k in range(int(number.max()) + 1):
@@ -329,7 +292,7 @@ def _noise(n_pulses: int, n_noise: int, rng: np.random.Generator) -> tuple[np.nd
     """Return the sorted indices of noise pulses and their heights (m) above ground: birds and multipath."""
     which = np.sort(rng.choice(n_pulses, n_noise, replace=False, shuffle=False))
     is_bird = rng.permutation(n_noise) % 2 == 0
-    return which, np.where(is_bird, rng.uniform(*_BIRDS, n_noise), -rng.uniform(*_MULTIPATH, n_noise))
+    return which, np.where(is_bird, rng.uniform(30.0, 120.0, n_noise), -rng.uniform(2.0, 15.0, n_noise))
 
 
 def _noise_echoes(world: World, pulses: Beams, height: np.ndarray) -> Echoes:
@@ -345,31 +308,43 @@ def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
     return merged.take(np.argsort(merged.pulse, kind="stable"))
 
 
-def _recorded(
-    echoes: Echoes, time: np.ndarray, strip: _Strip, returns: bool, rng: np.random.Generator
+def recorded(
+    echoes: Echoes, time: np.ndarray, angle: np.ndarray, source: int, rng: np.random.Generator, returns: bool = True
 ) -> dict[str, np.ndarray]:
-    """Return the dimensions of the echoes of a block except position; ``pulse`` starts from 0."""
-    pulse, n = echoes.pulse, len(echoes)
-    count = np.bincount(pulse, minlength=len(time))[pulse]
-    _, dy, dz = echoes.direction.T
-    # Scan angles are negative to the left of the flight; odd strips are flown to the east.
-    angle = np.rad2deg(np.arctan2(dy, -dz)) * (-1 if strip.number % 2 else 1)
+    """Return the dimensions of echoes, sorted by pulse, except their positions.
+
+    Parameters
+    ----------
+    echoes : Echoes
+        The echoes.
+    time : ndarray
+        Time of each pulse, s.
+    angle : ndarray of shape (n,)
+        Scan angle of each echo, °.
+    source : int
+        Point source id.
+    rng : numpy.random.Generator
+        Source of random numbers.
+    returns : bool
+        Whether the numbers of returns are known.
+    """
+    count = np.bincount(echoes.pulse, minlength=len(time))[echoes.pulse]
     return {
         "classification": echoes.classification,
-        "return_number": (rank(pulse) + 1).astype(np.uint8) * np.uint8(returns),
+        "return_number": (rank(echoes.pulse) + 1).astype(np.uint8) * np.uint8(returns),
         "number_of_returns": count.astype(np.uint8) * np.uint8(returns),
-        "intensity": brightness(echoes, count, rng),
+        "intensity": _brightness(echoes, count, rng),
         "scan_angle": angle.astype(np.float32),
-        "point_source_id": np.full(n, strip.number, np.uint16),
-        "gps_time": time[pulse],
+        "point_source_id": np.full(len(echoes), source, np.uint16),
+        "gps_time": time[echoes.pulse],
         "segment_id": echoes.object_id,
-        "pulse": pulse,
     }
 
 
-def brightness(echoes: Echoes, count: Union[int, np.ndarray], rng: np.random.Generator) -> np.ndarray:
+def _brightness(echoes: Echoes, count: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return the intensity (n,), uint16, by material; the ``count`` returns of a pulse share its energy."""
     # Each object is up to 30 % brighter or darker: steps of the golden ratio distribute object ids evenly.
     bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
-    intensity = _WHITE * bright / count * (1 + _SPECKLE * rng.standard_normal(len(echoes)))
+    # A perfect reflector has 60,000, so that the brightest roofs stay below 65,535; the speckle is 8 %.
+    intensity = 60_000 * bright / count * (1 + 0.08 * rng.standard_normal(len(echoes)))
     return np.clip(intensity, 1, 65_535).astype(np.uint16)

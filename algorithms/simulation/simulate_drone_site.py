@@ -10,7 +10,7 @@ from ..stage import Field, Layer, stage, tunable
 from .bodies import Body, Rect, flat
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
-from .scanner import MAX_POINTS, refuse_large
+from .scanner import refuse_large
 from .scene import Scene, footprint_layer
 from .town_houses import Site
 from .town_layout import CAR, MAX_BUILDINGS, TownPlan, build_town, park_car
@@ -161,7 +161,7 @@ def simulate_drone_site(
     >>> bool((classification == 6).any()), len(footprints) > 0
     (True, True)
     """
-    refuse_large("A site", size, density, "lower size or density", "points", MAX_POINTS)
+    refuse_large("A site", size, density, "lower size or density", "points")
     plan = TownPlan(size, slope, _RELIEF, terrace_height, buildings, trees, forest=0.0, river=False, seed=seed)
     scene = build_site(plan, halls)
     rng = np.random.default_rng([seed, _STREAM])

@@ -11,7 +11,7 @@ from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .beams import Echoes, is_vegetation
 from .camera import photograph
 from .relief import Relief
-from .scanner import MAX_POINTS, refuse_large
+from .scanner import refuse_large
 from .scene import footprint_layer
 from .village_layout import MAX_HOMES, Village, VillagePlan, build_village
 
@@ -147,7 +147,7 @@ def simulate_village(
     >>> bool((classification == 6).any()), len(footprints) > 0
     (True, True)
     """
-    refuse_large("A village", size, density, "lower size or density", "points", MAX_POINTS)
+    refuse_large("A village", size, density, "lower size or density", "points")
     village = build_village(VillagePlan(size, slope, buildings, trees, overhang, clutter, seed))
     if buildings and not village.scene.buildings:
         monitor.warn(

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..stage import Monitor
 from .beams import Beams
-from .drone import DroneWorld, LineScan, bearing, first_met, in_time_order, recorded
+from .drone import Dimensions, LineScan, bearing
 from .scene import Scene
 
 # Angle (°) between the vertical scan plane of each scanner and the perpendicular of the drive, positive forward, by
 # point source id. As on most mapping vehicles, each scanner sees one side of a recess.
 PLANES = {1: 45.0, 2: -45.0}
-
-# Longest distance (m) driven in a block of pulses.
-_BLOCK_WAY = 1.0
-
-# Number of the random stream of the drive among the streams of one seed.
-_STREAM = 5
 
 
 @dataclass(frozen=True)
@@ -36,27 +31,19 @@ class Drive:
         """Return the positions (n, 3) (m) of the scanners at times (n,) (s)."""
         return self.start + self.speed * time[:, None] * self.way
 
-    def scanned(self, scene: Scene, scan: LineScan, monitor: Monitor) -> dict[str, np.ndarray]:
+    def scanned(self, scene: Scene, scan: LineScan, monitor: Monitor) -> Dimensions:
         """Return the dimensions of the points of a scanned scene by name, sorted by time."""
-        world, parts = DroneWorld(scene, scan.max_range), []
         per_turn, n_lines = pulses_per_turn(scan.angular_step), max(1, int(self.length / self.speed * scan.line_rate))
-        times = list(scan.times(n_lines, np.arange(per_turn) / per_turn, _BLOCK_WAY / self.speed))
-        blocks = [(number, time) for number in PLANES for time in times]
-        for i, (number, time) in enumerate(blocks):
-            rng = np.random.default_rng([scan.seed, _STREAM, i])
-            beams, left = self._pulses(PLANES[number], time, scan.line_rate)
-            echoes = first_met(world, beams, rng)
-            part = recorded(echoes, left, number, rng)
-            part["gps_time"] = time[echoes.pulse]
-            # Range noise is along the beam.
-            part["xyz"] = beams.at(echoes.pulse, echoes.range + scan.range_noise * rng.standard_normal(len(echoes)))
-            parts.append(part)
-            monitor.progress((i + 1) / len(blocks))
-        return in_time_order(parts)
+        # The vehicle drives at most a meter during a block.
+        times = list(scan.times(n_lines, np.arange(per_turn) / per_turn, 1.0 / self.speed))
+        drawn = itertools.product(PLANES, times)
+        blocks = [(number, time, np.random.default_rng([scan.seed, 5, i])) for i, (number, time) in enumerate(drawn)]
+        return scan.scanned(scene, self, blocks, monitor)
 
-    def _pulses(self, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-        """Return the beams of pulses at times (n,), s, in a plane turned by ``turn`` (°), and the left axes (n, 3)."""
-        cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
+    def pulses(self, scanner: int, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+        """Return the beams of a scanner at times (n,) (s), and the left axes (n, 3) of the vehicle."""
+        turn = np.deg2rad(PLANES[scanner])
+        cos, sin = np.cos(turn), np.sin(turn)
         left = np.array([-self.way[1], self.way[0], 0.0]) / np.hypot(*self.way[:2])
         ahead = np.array([left[1], -left[0], 0.0])
         across = cos * left + sin * ahead
