@@ -13,7 +13,7 @@ from .camera import photograph
 from .relief import Relief
 from .scanner import refuse_large
 from .scene import footprint_layer
-from .village_layout import MAX_HOMES, Village, VillagePlan, build_village
+from .village_layout import MAX_HOMES, Village, build_village
 
 # Radius (m) of holes where matching fails, and side of the cells in which their centers are drawn.
 _HOLE = 0.5
@@ -148,7 +148,7 @@ def simulate_village(
     (True, True)
     """
     refuse_large("A village", size, density, "lower size or density", "points")
-    village = build_village(VillagePlan(size, slope, buildings, trees, overhang, clutter, seed))
+    village = build_village(size, slope, buildings, trees, overhang, clutter, seed)
     if buildings and not village.scene.buildings:
         monitor.warn(
             f"No house was built: too few plots lie wholly within {size:g} m; raise the size, or try another seed."

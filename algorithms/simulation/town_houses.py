@@ -13,12 +13,6 @@ from ..cloud.asprs import PointClass
 from .bodies import Body, Rect, flat, gable, hip, inclined, lean_to
 from .scene import Building, Scene
 
-# Height of the eaves above the floor (m), for one and two storeys.
-_EAVES = (3.0, 5.7)
-
-# Least height of the eaves above the ground (m), on the uphill side.
-_LEAST_EAVE = 1.5
-
 
 class Site:
     """Elevations (m) of the floor, eaves and underground bottom of a building, and its object id."""
@@ -27,7 +21,8 @@ class Site:
         self.object_id = scene.new_id()
         x, y = np.concatenate([rect.corners(1.0), [(rect.x, rect.y)]]).T
         ground = scene.relief.ground(x, y)
-        self.floor = float(max(ground.mean(), ground.max() + _LEAST_EAVE - eave))
+        # On the uphill side the eaves are at least 1.5 m above the ground.
+        self.floor = float(max(ground.mean(), ground.max() + 1.5 - eave))
         self.eave = self.floor + eave
         self.bottom = float(ground.min()) - 1.0
 
@@ -38,31 +33,45 @@ class Site:
 
 def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     """Add a house or a short row on a plot; half of the plots have a shed, too."""
-    build = _KINDS[int(rng.choice(len(_KINDS), p=_SHARES))]
-    before = len(scene.buildings)
-    build(scene, plot, rng)
+    before, kinds = len(scene.buildings), list(_KINDS)
+    kinds[int(rng.choice(len(kinds), p=list(_KINDS.values())))](scene, plot, rng)
     if rng.random() < 0.5:
         _shed(scene, plot, scene.buildings[before:], rng)
 
 
-def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
-    """Return the footprint of a house 2 to 3 m behind the street, turned by up to 4° against it.
+def placed(
+    plot: Rect, rng: np.random.Generator, length: tuple, width: tuple, front: float = 2.0, play: int = 1
+) -> Rect:
+    """Return the footprint of a house on a plot.
 
-    ``length`` and ``width`` are ranges (m).
+    Parameters
+    ----------
+    plot : Rect
+        The plot.
+    rng : numpy.random.Generator
+        Source of random numbers.
+    length, width : tuple of float
+        Least and greatest length and width, m.
+    front : float
+        Least distance behind the street, m; the greatest is 1 m more.
+    play : int
+        Largest offset along the street (0.5 m) and turn against it (4°), times this.
     """
     long, wide = rng.uniform(*length), rng.uniform(*width)
-    front = -plot.width / 2 + rng.uniform(2.0, 3.0)
-    return plot.part(rng.uniform(-0.5, 0.5), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-4.0, 4.0)))
+    across = -plot.width / 2 + rng.uniform(front, front + 1.0) + wide / 2
+    return plot.part(rng.uniform(-0.5, 0.5) * play, across, long, wide, np.deg2rad(rng.uniform(-4.0, 4.0) * play))
 
 
-def _pitched(scene: Scene, rect: Rect, pitches: tuple[float, float], rng: np.random.Generator) -> tuple[Site, float]:
-    """Return a site of one or two storeys, and a random pitch (a tangent) from a range (°)."""
-    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(*pitches)))
+def _pitched(
+    scene: Scene, rect: Rect, pitches: tuple, rng: np.random.Generator, eaves: tuple = (3.0, 5.7)
+) -> tuple[Site, float]:
+    """Return a site with eaves at one of some heights (m), and a random pitch (a tangent) from a range (°)."""
+    eave, pitch = rng.choice(eaves), np.tan(np.deg2rad(rng.uniform(*pitches)))
     return Site(scene, rect, eave), pitch
 
 
 def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
-    rect = _detached(plot, rng, (9.0, 12.0), (7.0, 9.0))
+    rect = placed(plot, rng, (9.0, 12.0), (7.0, 9.0))
     site, pitch = _pitched(scene, rect, (28.0, 48.0), rng)
     solids = [site.solid(rect, gable(rect, site.eave, pitch)), _chimney(site, rect, pitch, rng)]
     # Roofs steeper than 35° can have dormers.
@@ -73,14 +82,14 @@ def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def _hip_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
-    rect = _detached(plot, rng, (9.5, 12.0), (7.5, 9.5))
+    rect = placed(plot, rng, (9.5, 12.0), (7.5, 9.5))
     site, pitch = _pitched(scene, rect, (22.0, 38.0), rng)
     solids = [site.solid(rect, hip(rect, site.eave, pitch)), _chimney(site, rect, pitch, rng)]
     scene.add_building("hip", rect.corners(), solids)
 
 
 def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
-    rect = _detached(plot, rng, (9.0, 12.5), (8.0, 10.5))
+    rect = placed(plot, rng, (9.0, 12.5), (8.0, 10.5))
     site = Site(scene, rect, rng.choice((3.2, 6.2, 9.2)))
     lift = rect.part(0.2 * rect.length, 0.1 * rect.width, 3.0, 2.5)
     solids = [site.solid(rect, flat(rect, site.eave)), site.solid(lift, flat(lift, site.eave + 2.2))]
@@ -89,7 +98,7 @@ def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     """Add an L-shaped house: a wing whose lower ridge ends in the roof of the main house."""
-    main = _detached(plot, rng, (11.0, 12.5), (6.5, 7.0))
+    main = placed(plot, rng, (11.0, 12.5), (6.5, 7.0))
     site, pitch = _pitched(scene, main, (30.0, 45.0), rng)
     wide, reach = rng.uniform(4.8, 6.0), rng.uniform(3.0, 4.0)
     # The wing extends from below the main ridge to behind the house, flush with one gable.
@@ -119,8 +128,7 @@ def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     depth = 10.0
     for side in (-0.25, 0.25):
         rect = plot.part(side * plot.length, -plot.width / 2 + 2.0 + depth / 2, plot.length / 2, depth)
-        eave, pitch = rng.choice((5.4, 6.0, 8.4)), np.tan(np.deg2rad(rng.uniform(25.0, 45.0)))
-        site = Site(scene, rect, eave)
+        site, pitch = _pitched(scene, rect, (25.0, 45.0), rng, (5.4, 6.0, 8.4))
         tops = flat(rect, site.eave + 1.0) if rng.random() < 0.15 else gable(rect, site.eave, pitch)
         scene.add_building("row", rect.corners(), [site.solid(rect, tops)])
 
@@ -160,10 +168,11 @@ def _dormer(site: Site, rect: Rect, pitch: float, along: float, side: int) -> Bo
     return site.solid(box, inclined(box, 0.0, side * -depth / 2, behind, 0.0, side * -0.08)[None])
 
 
-_Build = Callable[[Scene, Rect, np.random.Generator], None]
-
-# Kinds of houses on plots.
-_KINDS: tuple[_Build, ...] = (_gable_house, _hip_house, _flat_house, _angled_house, _row)
-
-# Share of the plots with each kind.
-_SHARES = (0.28, 0.16, 0.14, 0.16, 0.26)
+# Builders of houses, with the share of the plots that each is for.
+_KINDS: dict[Callable[[Scene, Rect, np.random.Generator], None], float] = {
+    _gable_house: 0.28,
+    _hip_house: 0.16,
+    _flat_house: 0.14,
+    _angled_house: 0.16,
+    _row: 0.26,
+}

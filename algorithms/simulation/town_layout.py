@@ -12,7 +12,7 @@ from ..cloud.asprs import PointClass
 from ..stage import Monitor
 from .bodies import Body, Rect, inclined
 from .plants import in_forest, plant_hedge, plant_trees
-from .relief import VALLEY, make_relief
+from .relief import VALLEY, Relief, make_relief
 from .scene import Scene
 from .town_houses import build_hall, build_house
 
@@ -22,29 +22,11 @@ _STREET_SPACING = 40.0
 # Width of a street (m).
 _STREET_WIDTH = 8.0
 
-# Length along the street and depth of a plot (m).
-_PLOT = (14.0, 16.0)
-
 # Least distance of plots and poles from the edges of the town (m).
 _EDGE = 1.0
 
-# Least distance of plots from the forest (m).
-_FROM_FOREST = 3.0
-
-# Shares of plots with a car in front of them, with a hedge, and with a wall at one side.
-_WITH_CAR, _WITH_HEDGE, _WITH_WALL = 0.5, 0.3, 0.2
-
-# Plots along the street between two side streets.
-_PLOTS_PER_BLOCK = 6
-
 # Length and width of a car (m).
 CAR = (4.3, 1.8)
-
-# Length and width of a hall (m).
-_HALL = (40.0, 27.0)
-
-# Largest difference of ground elevation between the corners of a hall (m).
-_HALL_STEP = 5.0
 
 # Buildings per hectare with all plots occupied: about the number of plots on a hectare of streets and plots.
 MAX_BUILDINGS = 34
@@ -91,47 +73,62 @@ def build_town(plan: TownPlan, monitor: Optional[Monitor] = None) -> Scene:
     return scene
 
 
-def _street_lines(scene: Scene) -> np.ndarray:
-    """Return the positions of the streets in the direction *along* the town (m)."""
-    reach = np.ceil(scene.size / _STREET_SPACING)
-    return (np.arange(-reach, reach) + 0.5) * _STREET_SPACING
+def _street_lines(size: float, spacing: float = _STREET_SPACING) -> np.ndarray:
+    """Return the positions of the streets in the direction *along* a town (m)."""
+    reach = np.ceil(size / spacing)
+    return (np.arange(-reach, reach) + 0.5) * spacing
+
+
+def plots_along_streets(relief: Relief, spacing: float, length: float, depth: float, per_block: int = 0) -> list[Rect]:
+    """Return the plots at both sides of streets inside a town.
+
+    Parameters
+    ----------
+    relief : Relief
+        The terrain.
+    spacing : float
+        Distance between the axes of neighboring streets, m.
+    length, depth : float
+        Length along the street and depth of a plot, m.
+    per_block : int
+        Plots between side streets, which are half as wide as a plot; 0 for no side streets.
+    """
+    found, n_half = [], int(relief.size // length)
+    for street, side, i in itertools.product(_street_lines(relief.size, spacing), (1, -1), range(-n_half, n_half)):
+        across = (i + 0.5 * (i // per_block if per_block else 1)) * length
+        along = street + side * (_STREET_WIDTH + depth) / 2
+        plot = relief.frame.part(across, along, length, depth, 0.0 if side > 0 else np.pi)
+        if plot.corners().min() > _EDGE and plot.corners().max() < relief.size - _EDGE:
+            found.append(plot)
+    return found
 
 
 def _plots(scene: Scene, forest: float) -> list[Rect]:
-    """Return the plots inside the town, except in the forest and the river valley."""
-    relief, found = scene.relief, []
-    n_half = int(scene.size // _PLOT[0])
-    for street, side, i in itertools.product(_street_lines(scene), (1, -1), range(-n_half, n_half)):
-        # A side street half as wide as a plot follows every block.
-        across = (i + 0.5 * (i // _PLOTS_PER_BLOCK)) * _PLOT[0]
-        x, y = relief.frame.at(across, street + side * (_STREET_WIDTH + _PLOT[1]) / 2)
-        plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
-        on_river = relief.river is not None and abs(across - relief.river) < VALLEY + _PLOT[0] / 2
-        corners = plot.corners()
-        inside = corners.min() > _EDGE and corners.max() < scene.size - _EDGE
-        if inside and not on_river and not in_forest(scene, plot.corners(_FROM_FOREST), forest).any():
-            found.append(plot)
-    return found
+    """Return the plots of 14 m by 16 m, except in the forest, 3 m around it, and in the river valley."""
+    relief = scene.relief
+    plots = plots_along_streets(relief, _STREET_SPACING, 14.0, 16.0, per_block=6)
+    if relief.river is not None:
+        beyond = VALLEY + 7.0
+        plots = [plot for plot in plots if abs(relief.frame.local(plot.x, plot.y)[0] - relief.river) >= beyond]
+    return [plot for plot in plots if not in_forest(scene, plot.corners(3.0), forest).any()]
 
 
 def _hall_position(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
     """Return the footprint of a hall in the middle of a block of plots, None without sufficiently level ground."""
     x, y = np.array([(plot.x, plot.y) for plot in plots]).reshape(-1, 2).T
     for plot in plots:
-        position = plot.part(0.0, plot.width / 2, *_HALL)
-        # The hall covers three plots on both sides.
-        if position.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*position.corners().T)) < _HALL_STEP:
+        position = plot.part(0.0, plot.width / 2, 40.0, 27.0)
+        # The hall covers three plots on both sides, with at most 5 m difference of the ground between its corners.
+        if position.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*position.corners().T)) < 5.0:
             return position
     return None
 
 
 def _build_bridges(scene: Scene, river: float) -> None:
     """Add a bridge over the river for every street."""
-    relief = scene.relief
     # The valley floor is at elevation 0.
-    for street in _street_lines(scene):
-        x, y = relief.frame.at(river, street)
-        deck = Rect(float(x), float(y), 2 * VALLEY - 8.0, 6.0, relief.angle)
+    for street in _street_lines(scene.size):
+        deck = scene.relief.frame.part(river, street, 2 * VALLEY - 8.0, 6.0)
         if np.abs(deck.corners() - scene.size / 2).max() > scene.size / 2:
             continue
         number, top = scene.new_id(), 0.15
@@ -148,11 +145,12 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor:
     is_free = ~scene.near_building(corners, 0.2).reshape(-1, 4).any(axis=1)
     for i, (plot, line, free) in enumerate(zip(plots, lines, is_free)):
         car, border, position = rng.random(3)
-        if car < _WITH_CAR:
+        # Half of the plots have a car in front of them, 30 % a hedge and 20 % a wall at one side.
+        if car < 0.5:
             park_car(scene, plot.part(8.0 * position - 4.0, -plot.width / 2 - 1.4, *CAR))
-        if free and border < _WITH_HEDGE:
+        if free and border < 0.3:
             plant_hedge(scene, line, 1.7)
-        elif free and border < _WITH_HEDGE + _WITH_WALL:
+        elif free and border < 0.5:
             wall = Rect(line.x, line.y, line.length, 0.3, line.angle)
             scene.solids.append(_follow_ground(scene, wall, 2.0, scene.new_id()))
         monitor.progress(i / len(plots))
@@ -182,7 +180,7 @@ def _string_wires(scene: Scene) -> None:
     relief = scene.relief
     # Height of the poles, distance between them, and sag of the wires (m).
     height, span, sag = 8.5, 34.0, 0.8
-    along = float(_street_lines(scene)[len(_street_lines(scene)) // 2]) + _STREET_WIDTH / 2 - 0.4
+    along = float(_street_lines(scene.size)[int(np.ceil(scene.size / _STREET_SPACING))]) + _STREET_WIDTH / 2 - 0.4
     across = np.arange(-scene.size, scene.size, span)
     x, y = relief.frame.at(across, along)
     # No pole is in the channel of the river.

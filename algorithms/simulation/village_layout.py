@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,29 +12,14 @@ from .bodies import Body, Rect, flat, gable, hip, inclined, lean_to
 from .plants import plant_hedge, plant_trees
 from .relief import make_relief
 from .scene import Building, Scene
-from .town_houses import Site, l_outline
-from .town_layout import park_car
-
-# Distance (m) between the axes of neighboring streets, with two rows of plots between them.
-_STREET_SPACING = 60.0
-
-# Width of a street (m).
-_STREET_WIDTH = 8.0
-
-# Length along the street and depth of a plot (m).
-_PLOT = (22.0, 26.0)
+from .town_houses import Site, l_outline, placed
+from .town_layout import CAR, park_car, plots_along_streets
 
 # Plots per hectare of streets and plots: the largest density of houses.
 MAX_HOMES = 15
 
-# Height difference between hollows and hills (m).
-_HILLS = 2.0
-
 # Thickness of roofs (m); walls end halfway in it.
 _THICKNESS = 0.2
-
-# Height of the eaves above the floor (m), for one and two storeys.
-_EAVES = (2.9, 5.6)
 
 
 @dataclass(frozen=True)
@@ -48,53 +32,46 @@ class Village:
     free: list[Rect]  #: Plots without a house
 
 
-@dataclass(frozen=True)
-class VillagePlan:
-    """Contents of a village: tunables of :func:`.simulate_village.simulate_village`."""
+def build_village(
+    size: float, slope: float, buildings: float, trees: float, overhang: float, clutter: bool, seed: int
+) -> Village:
+    """Return a simulated village.
 
-    size: float  #: Side of the square, m
-    slope: float  #: Mean slope of the ground, °
-    buildings: float  #: Houses per hectare
-    trees: float  #: Trees per hectare
-    overhang: float  #: Overhang of the eaves, m
-    clutter: bool  #: Whether there are cars, hedges and bushes
-    seed: int  #: The same seed gives the same village
-
-
-def build_village(plan: VillagePlan) -> Village:
-    """Return a simulated village, deterministic for a plan."""
-    rng = np.random.default_rng([plan.seed, 2])
-    scene = Scene(make_relief(plan.size, plan.slope, _HILLS, 0.0, False, rng))
-    plots = _plots(scene)
-    count = min(len(plots), round(len(plots) * plan.buildings / MAX_HOMES))
+    Parameters
+    ----------
+    size : float
+        Side of the square, m.
+    slope : float
+        Mean slope of the ground, °.
+    buildings, trees : float
+        Houses and trees per hectare.
+    overhang : float
+        Overhang of the eaves, m.
+    clutter : bool
+        Whether to add cars, hedges and bushes.
+    seed : int
+        The same seed gives the same village.
+    """
+    rng = np.random.default_rng([seed, 2])
+    # The height difference between hollows and hills is 2 m.
+    scene = Scene(make_relief(size, slope, 2.0, 0.0, False, rng))
+    plots = plots_along_streets(scene.relief, 60.0, 22.0, 26.0)
+    count = min(len(plots), round(len(plots) * buildings / MAX_HOMES))
     order = rng.permutation(len(plots))
     built, free = [plots[i] for i in np.sort(order[:count])], [plots[i] for i in order[count:]]
-    roofs = [roof for plot in built for roof in build_homes(scene, plot, plan.overhang, rng)]
-    if plan.clutter:
+    roofs = [roof for plot in built for roof in _build_homes(scene, plot, overhang, rng)]
+    if clutter:
         _clutter(scene, built, rng)
-    plant_trees(scene, plan.trees, 0.0, rng, Monitor())
+    plant_trees(scene, trees, 0.0, rng, Monitor())
     owner = np.arange(scene.objects + 1)
     owner[roofs] = [building.object_id for building in scene.buildings]
     return Village(scene, owner, free)
 
 
-def _plots(scene: Scene) -> list[Rect]:
-    """Return the plots at least 1 m inside the village."""
-    relief, found = scene.relief, []
-    reach, n_half = int(scene.size // _STREET_SPACING) + 1, int(scene.size // _PLOT[0])
-    for street, side, i in itertools.product(range(-reach, reach), (1, -1), range(-n_half, n_half)):
-        along = (street + 0.5) * _STREET_SPACING + side * (_STREET_WIDTH + _PLOT[1]) / 2
-        x, y = relief.frame.at((i + 0.5) * _PLOT[0], along)
-        plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
-        if plot.corners().min() > 1.0 and plot.corners().max() < scene.size - 1.0:
-            found.append(plot)
-    return found
-
-
 def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator) -> None:
     """Add cars on drives, hedges between plots, and bushes next to walls."""
     for plot in plots:
-        car = plot.part(plot.length / 2 - 2.0, -plot.width / 2 + rng.uniform(2.5, 8.0), 4.3, 1.8, np.pi / 2)
+        car = plot.part(plot.length / 2 - 2.0, -plot.width / 2 + rng.uniform(2.5, 8.0), *CAR, np.pi / 2)
         if rng.random() < 0.4 and not scene.near_building(car.corners(), 0.4).any():
             park_car(scene, car)
         hedge = plot.part(-plot.length / 2, 0.0, plot.width - 4.0, 0.8, np.pi / 2)
@@ -132,30 +109,18 @@ class Home(Site):
         lowest = float((rect.corners() @ [a, b]).min() + c)
         return Body(rect, tops, lowest, PointClass.BUILDING, self.roof_id, under)
 
-    def wing(self, rect: Rect, eave: float, pitch: float, overhang: float, cut: np.ndarray) -> list[Body]:
+    def wing(self, rect: Rect, pitch: float, overhang: float, *cut: np.ndarray) -> list[Body]:
         """Return walls on ``rect`` and the two slabs of a gable roof, all limited by the planes ``cut`` above."""
-        middle = [0.0, 0.0, _THICKNESS / 2]
-        solids = [self.solid(rect, np.concatenate([gable(rect, eave, pitch), cut]) - middle)]
-        half = rect.width / 2
-        for side in (-1, 1):
+        tops, half = gable(rect, self.eave, pitch), rect.width / 2
+        solids = [self.solid(rect, np.vstack([tops, *cut]) - [0.0, 0.0, _THICKNESS / 2])]
+        for side, top in zip((-1, 1), tops):
             slab = rect.part(0.0, side * (half + overhang) / 2, rect.length + 2 * overhang, half + overhang)
-            top = inclined(rect, 0.0, side * half, eave, 0.0, -side * pitch)
-            solids.append(self.slab(slab, np.concatenate([top[None], cut]), top - [0.0, 0.0, _THICKNESS]))
+            solids.append(self.slab(slab, np.vstack([top, *cut]), top - [0.0, 0.0, _THICKNESS]))
         return solids
 
 
-def build_homes(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> list[int]:
-    """Add a house on a plot, and a shed for two houses of three; return the object ids of their roofs.
-
-    Parameters
-    ----------
-    scene, plot : Scene, Rect
-        Scene that receives the objects, and the plot.
-    overhang : float
-        Overhang of the eaves, m.
-    rng : numpy.random.Generator
-        Source of random numbers.
-    """
+def _build_homes(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> list[int]:
+    """Add a house on a plot, and a shed for two houses of three; return the object ids of their roofs."""
     build = (_rectangle, _rectangle, _hip, _angle, _bend)[int(rng.integers(5))]
     roofs = [build(scene, plot, overhang, rng)]
     if rng.random() < 2 / 3:
@@ -177,36 +142,25 @@ def _shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -
     return home.roof_id
 
 
-def _placed(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
-    """Return a footprint 3.5 to 4.5 m behind the street, turned by up to 8° against it."""
-    long, wide = rng.uniform(*length), rng.uniform(*width)
-    front = -plot.width / 2 + rng.uniform(3.5, 4.5)
-    return plot.part(rng.uniform(-1.0, 1.0), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-8.0, 8.0)))
-
-
-def _roof(rng: np.random.Generator) -> tuple[float, float]:
-    """Return a random height of the eaves above the floor (m), and a random pitch (a tangent)."""
-    return float(rng.choice(_EAVES)), float(np.tan(np.deg2rad(rng.uniform(25.0, 42.0))))
-
-
-# No planes that limit a roof.
-_WHOLE = np.zeros((0, 3))
+def _drawn(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> tuple[Rect, float, float]:
+    """Return a footprint, the height of the eaves above the floor (m), for one or two storeys, and a pitch."""
+    rect = placed(plot, rng, length, width, front=3.5, play=2)
+    return rect, float(rng.choice((2.9, 5.6))), float(np.tan(np.deg2rad(rng.uniform(25.0, 42.0))))
 
 
 def _rectangle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    rect, (eave, pitch) = _placed(plot, rng, (9.0, 13.0), (6.5, 8.5)), _roof(rng)
+    rect, eave, pitch = _drawn(plot, rng, (9.0, 13.0), (6.5, 8.5))
     home = Home(scene, rect, eave)
     ridge = home.eave + pitch * rect.width / 2
     stack = rect.part(rng.uniform(-0.25, 0.25) * rect.length, 0.8, 0.6, 0.6)
     chimney = Body(stack, flat(stack, ridge + 0.6), home.bottom, PointClass.BUILDING, home.roof_id)
-    solids = home.wing(rect, home.eave, pitch, overhang, _WHOLE)
-    scene.add_building("rectangle", rect.corners(), [*solids, chimney])
+    scene.add_building("rectangle", rect.corners(), [*home.wing(rect, pitch, overhang), chimney])
     return home.roof_id
 
 
 def _hip(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
     """Add a house with a hip roof: a convex solid with a level underside, like eaves with soffits."""
-    rect, (eave, pitch) = _placed(plot, rng, (9.5, 13.0), (7.0, 9.0)), _roof(rng)
+    rect, eave, pitch = _drawn(plot, rng, (9.5, 13.0), (7.0, 9.0))
     home = Home(scene, rect, eave)
     level = home.eave - pitch * overhang
     roof = rect.part(0.0, 0.0, rect.length + 2 * overhang, rect.width + 2 * overhang)
@@ -219,21 +173,21 @@ def _hip(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) ->
 
 def _angle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
     """Add an L-shaped house: a lower wing, flush with one gable, whose ridge ends in the roof of the main house."""
-    main, (eave, pitch) = _placed(plot, rng, (11.0, 13.0), (6.5, 7.5)), _roof(rng)
+    main, eave, pitch = _drawn(plot, rng, (11.0, 13.0), (6.5, 7.5))
     home = Home(scene, main, eave)
     wide, reach, side = rng.uniform(4.5, 5.5), rng.uniform(3.0, 5.0), rng.choice((-1.0, 1.0))
     a, c = main.length / 2, main.width / 2
     # The wing starts near the middle of the house, so that its roof does not emerge at the front.
     start = min(2 * overhang, c)
     wing = main.part(side * (a - wide / 2), (start + c + reach) / 2, c + reach - start, wide, np.pi / 2)
-    solids = [part for rect in (main, wing) for part in home.wing(rect, home.eave, pitch, overhang, _WHOLE)]
+    solids = [part for rect in (main, wing) for part in home.wing(rect, pitch, overhang)]
     scene.add_building("L", l_outline(main, (wide, reach), side), solids)
     return home.roof_id
 
 
 def _bend(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
     """Add a bent house: two wings of the same width that meet at an angle of 140° to 165°."""
-    first, (eave, pitch) = _placed(plot, rng, (6.0, 8.0), (6.0, 7.0)), _roof(rng)
+    first, eave, pitch = _drawn(plot, rng, (6.0, 8.0), (6.0, 7.0))
     turn, long = np.deg2rad(rng.uniform(15.0, 40.0)), rng.uniform(5.0, 6.5)
     half = first.width / 2
     # The axes meet at the end of the first one; both wings extend to the outer corner.
@@ -242,11 +196,10 @@ def _bend(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -
     joint = first.part(first.length / 2, 0.0, 0.0, first.width)
     bent = Rect(joint.x, joint.y, 0.0, first.width, first.angle + turn)
     home = Home(scene, bent.part(0.0, 0.0, first.length + long, first.width), eave)
-    level = home.eave
-    outer = [inclined(rect, 0.0, -half, level, 0.0, pitch)[None] for rect in (first, bent)]
+    outer = [inclined(rect, 0.0, -half, home.eave, 0.0, pitch) for rect in (first, bent)]
     one = first.part(past / 2, 0.0, first.length + past, first.width)
     other = bent.part((long - past) / 2, 0.0, long + past, first.width)
-    solids = home.wing(one, level, pitch, overhang, outer[1]) + home.wing(other, level, pitch, overhang, outer[0])
+    solids = home.wing(one, pitch, overhang, outer[1]) + home.wing(other, pitch, overhang, outer[0])
     ends = first.length / 2
     outline = [first.at(-ends, -half), first.at(ends + past, -half), bent.at(long, -half)]
     outline += [bent.at(long, half), first.at(ends - past, half), first.at(-ends, half)]

@@ -148,8 +148,8 @@ def hamlet(seed: int = 3) -> Scene:
     land = Scene(Terraced(120.0, 0.3, slope.gradient, levels=tuple(levels)))
     for rect, floor, eave, pitch in houses:
         home = Home(land, rect, eave)
-        home.floor, home.bottom = floor, floor - 6.0
-        land.add_building("gable", rect.corners(), home.wing(rect, floor + eave, pitch, 0.6, np.zeros((0, 3))))
+        home.eave, home.bottom = floor + eave, floor - 6.0
+        land.add_building("gable", rect.corners(), home.wing(rect, pitch, 0.6))
     plant_trees(land, 15.0, 0.0, rng, Monitor())
     return land
 

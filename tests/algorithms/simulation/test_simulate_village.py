@@ -12,7 +12,7 @@ from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.simulation.bodies import Body, Rect, inclined, stack
 from lidar_buildings.algorithms.simulation.camera import photograph
 from lidar_buildings.algorithms.simulation.simulate_village import simulate_village
-from lidar_buildings.algorithms.simulation.village_layout import VillagePlan, build_village
+from lidar_buildings.algorithms.simulation.village_layout import build_village
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import is_inside
 from lidar_buildings.tests.monitors import Listening
@@ -29,7 +29,7 @@ def small(**tunables) -> dict:
 @cache
 def exact():
     """A village without trees or bushes, and what the camera sees of it before any noise."""
-    made = build_village(VillagePlan(150.0, 5.0, buildings=15.0, trees=0.0, overhang=OVERHANG, clutter=False, seed=3))
+    made = build_village(150.0, 5.0, buildings=15.0, trees=0.0, overhang=OVERHANG, clutter=False, seed=3)
     return made, *photograph(made.scene, density=25.0, oblique=28.0, seed=3)
 
 
@@ -134,7 +134,7 @@ def test_outlines_are_closed_counterclockwise_and_meet_the_walls(kind):
 
 
 def test_buildings_are_apart():
-    made = build_village(VillagePlan(250.0, 2.0, buildings=15.0, trees=0.0, overhang=0.6, clutter=False, seed=5))
+    made = build_village(250.0, 2.0, buildings=15.0, trees=0.0, overhang=0.6, clutter=False, seed=5)
     places = np.random.default_rng(0).uniform(0, 250, (100_000, 2))
     assert len(made.scene.buildings) > 60
     assert sum(building.contains(*places.T).astype(int) for building in made.scene.buildings).max() == 1
