@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from ..cloud.asprs import PointClass
 from .bodies import Body, Rect, flat, inclined
 from .relief import Relief
 from .scene import Scene
+from .town_layout import CAR
 
 # Side of a lot (m): the ramps of a fly-over are 46 m long on both sides of its span.
 LOT = 140.0
@@ -25,21 +28,6 @@ _WALL = 1.7
 
 # Thickness of a deck (m), usual for short concrete bridges.
 _THICKNESS = 0.9
-
-# Height of parapets (m), as building codes require.
-_PARAPET = 1.0
-
-# Width of parapets (m).
-_PARAPET_WIDTH = 0.25
-
-# Length (m) of a deck that rests on the land at each end.
-_SEAT = 0.5
-
-# Length, width and height of a mid-size car (m).
-_CAR = (4.3, 1.8, 1.45)
-
-# Distance between cars (m), as in slow traffic.
-_CARS = 15.0
 
 # Slope of the ramps of a fly-over, a tangent: steeper than real roads, to keep lots small.
 _RAMP = 0.12
@@ -87,15 +75,6 @@ KINDS = {
     "ramp": Kind(5.0, -4.0, _WALL, False, ()),
 }
 
-# Depth of the water (m).
-_WATER = 1.0
-
-# Half the length of the tunnel (m).
-_TUNNEL = 30.0
-
-# Slope of the road down to the tunnel, a tangent: steep, so that it begins within the lot.
-_ROAD = 0.16
-
 
 @dataclass(frozen=True)
 class Lot:
@@ -116,13 +95,17 @@ class Lot:
         """Frame of the lot: length across the obstacle, width along it."""
         return Rect(self.x, self.y, 1.0, 1.0, self.turn)
 
+    @property
+    def obstacle(self) -> Kind:
+        """Kind of the crossing."""
+        return KINDS[self.kind]
+
     def height(self, x, y) -> np.ndarray:
         """Return the elevation (m) of the terrain; under water, of the bottom."""
         u, v = self.frame.local(x, y)
-        obstacle = KINDS[self.kind]
+        obstacle, end = self.obstacle, LOT / 2 - _MARGIN - np.abs(v)
         if self.kind == "fly-over":
             return self._embankment(u, v)
-        fade = np.clip((LOT / 2 - _MARGIN - np.abs(v)) / _FADE, 0, 1)
         if self.kind == "ramp":
             # A road climbs along the lot and ends at a wall, like a loading ramp.
             climb = np.clip((v + 35) * _RAMP, 0, -obstacle.depth) * (v < 5)
@@ -130,10 +113,11 @@ class Lot:
             return np.clip(np.minimum(np.minimum(climb, side), np.maximum(5 - v, 0) * _WALL), 0, None)
         depth = np.clip((obstacle.half_width + obstacle.behind - np.abs(u)) * obstacle.bank, 0, obstacle.depth)
         if self.kind == "tunnel":
-            # The road descends to both portals between walls; the land continues over the tunnel between them.
-            down = np.clip((LOT / 2 - _MARGIN - np.abs(v)) * _ROAD, 0, obstacle.depth)
-            return -np.minimum(np.minimum(depth, down), np.clip((np.abs(v) - _TUNNEL) * _WALL, 0, None))
-        return -depth * fade
+            # The road descends to both portals between walls; the land continues over the tunnel of 60 m between them.
+            # The road has a slope of 16 %, so that it begins within the lot.
+            down = np.clip(end * 0.16, 0, obstacle.depth)
+            return -np.minimum(np.minimum(depth, down), np.clip((np.abs(v) - 30.0) * _WALL, 0, None))
+        return -depth * np.clip(end / _FADE, 0, 1)
 
     def _embankment(self, u, v) -> np.ndarray:
         """Return the elevation (m) of the embankments of a fly-over, in line with its deck."""
@@ -141,23 +125,20 @@ class Lot:
         along, across = u * cos + v * sin, v * cos - u * sin
         past = np.abs(along) - self.span / 2
         top = _FLY_OVER - np.clip(past - 2, 0, None) * _RAMP
-        bank = (KINDS[self.kind].decks[0] / 2 + 8 - np.abs(across)) * _BANK
+        bank = (self.obstacle.decks[0] / 2 + 8 - np.abs(across)) * _BANK
         # Abutments are parallel to the road below; the deck begins where they reach its height.
-        wall = np.minimum(past, np.abs(u) - KINDS[self.kind].half_width) * _WALL + _FLY_OVER
-        foot = np.minimum(bank, wall)
-        return np.clip(np.minimum(top, foot), 0, None)
+        wall = np.minimum(past, np.abs(u) - self.obstacle.half_width) * _WALL + _FLY_OVER
+        return np.clip(np.minimum(top, np.minimum(bank, wall)), 0, None)
 
     @property
     def span(self) -> float:
         """Length (m) of the deck from edge to edge of the obstacle."""
-        obstacle = KINDS[self.kind]
-        return 2 * obstacle.half_width / np.cos(self.skew) + obstacle.width * np.tan(abs(self.skew))
+        return 2 * self.obstacle.half_width / np.cos(self.skew) + self.obstacle.width * np.tan(abs(self.skew))
 
     @property
     def water_level(self) -> float:
-        """Elevation (m) of the water, -inf without water."""
-        obstacle = KINDS[self.kind]
-        return _WATER - obstacle.depth if obstacle.is_water else -np.inf
+        """Elevation (m) of the water, which is 1 m deep; -inf without water."""
+        return 1.0 - self.obstacle.depth if self.obstacle.is_water else -np.inf
 
 
 @dataclass(frozen=True)
@@ -173,12 +154,7 @@ class BridgeRelief(Relief):
 
     def ground(self, x, y) -> np.ndarray:
         """Return the elevation (m) of the terrain; under water, of the bottom."""
-        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        z = np.zeros(x.shape)
-        for lot in self.lots:
-            inside = lot.contains(x, y)
-            z[inside] = lot.height(x[inside], y[inside])
-        return z
+        return self._by_lot(x, y, 0.0, lambda lot, x, y: lot.height(x, y))
 
     def surface(self, x, y) -> np.ndarray:
         """Return the elevation (m) of terrain or water, whichever is higher."""
@@ -189,11 +165,15 @@ class BridgeRelief(Relief):
         return self._level(x, y) > self.ground(x, y)
 
     def _level(self, x, y) -> np.ndarray:
+        return self._by_lot(x, y, -np.inf, lambda lot, x, y: lot.water_level)
+
+    def _by_lot(self, x, y, outside: float, value: Callable[[Lot, np.ndarray, np.ndarray], Any]) -> np.ndarray:
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        level = np.full(x.shape, -np.inf)
+        values = np.full(x.shape, outside)
         for lot in self.lots:
-            level[lot.contains(x, y)] = lot.water_level
-        return level
+            inside = lot.contains(x, y)
+            values[inside] = value(lot, x[inside], y[inside])
+        return values
 
 
 @dataclass(frozen=True)
@@ -210,9 +190,8 @@ def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return the elevation (m) of terrain and quays at positions (n,); under water, of the bottom."""
     z = np.array(scene.relief.ground(x, y))
     for lot in scene.relief.lots if isinstance(scene.relief, BridgeRelief) else ():
-        kind = KINDS[lot.kind]
-        if kind.behind:
-            on_quay = lot.contains(x, y) & (np.abs(lot.frame.local(x, y)[0]) >= kind.half_width)
+        if lot.obstacle.behind:
+            on_quay = lot.contains(x, y) & (np.abs(lot.frame.local(x, y)[0]) >= lot.obstacle.half_width)
             z[on_quay] = np.maximum(z[on_quay], 0.0)
     return z
 
@@ -243,7 +222,7 @@ def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, se
     decks = []
     for lot in lots:
         decks += _bridge(scene, lot, cars)
-        if KINDS[lot.kind].is_water and KINDS[lot.kind].bank == _WALL:
+        if lot.obstacle.behind:
             _quays(scene, lot)
         if trees:
             _trees(scene, lot, rng)
@@ -252,19 +231,21 @@ def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, se
 
 def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
     """Add the decks of a lot with parapets, cars, and piers under long decks."""
-    obstacle = KINDS[lot.kind]
+    obstacle = lot.obstacle
     top = _FLY_OVER if lot.kind == "fly-over" else 0.05
     decks, at = [], -obstacle.width / 2
     for width in obstacle.decks:
+        # A deck rests on the land with half a meter at each end.
         frame = lot.frame.part(0.0, 0.0, 1.0, 1.0, lot.skew)
-        rect = frame.part(0.0, at + width / 2, lot.span + 2 * _SEAT, width)
+        rect = frame.part(0.0, at + width / 2, lot.span + 1.0, width)
         at += width + 1.5
         number = scene.new_id()
         deck_top = _deck_top(rect, top, obstacle.arch)
         scene.solids.append(Body(rect, deck_top, top - _THICKNESS, PointClass.BRIDGE_DECK, number))
         for side in (-1, 1):
-            rail = rect.part(0.0, side * (width - _PARAPET_WIDTH) / 2, rect.length, _PARAPET_WIDTH)
-            tops = _deck_top(rail, top + _PARAPET, obstacle.arch)
+            # Parapets are 1 m high, as building codes require.
+            rail = rect.part(0.0, side * (width - 0.25) / 2, rect.length, 0.25)
+            tops = _deck_top(rail, top + 1.0, obstacle.arch)
             scene.solids.append(Body(rail, tops, top - _THICKNESS, PointClass.UNCLASSIFIED, number))
         if rect.length > 40:
             for share in (-0.2, 0.2):
@@ -291,29 +272,25 @@ def _deck_top(rect: Rect, top: float, arch: float) -> np.ndarray:
 
 
 def _cars(scene: Scene, deck: Rect, top: float) -> None:
-    """Add cars on both lanes of a deck."""
-    length, width, height = _CAR
+    """Add cars on both lanes of a deck, one per 15 m, as in slow traffic."""
     for side in (-1, 1):
-        for along in np.arange(-deck.length / 2 + 5 + 3 * side, deck.length / 2 - 4, _CARS):
-            car = deck.part(float(along), side * deck.width / 4, length, width)
-            scene.add_box(car, top, top + height, PointClass.UNCLASSIFIED)
+        for along in np.arange(-deck.length / 2 + 5 + 3 * side, deck.length / 2 - 4, 15.0):
+            car = deck.part(float(along), side * deck.width / 4, *CAR)
+            scene.add_box(car, top, top + 1.45, PointClass.UNCLASSIFIED)
 
 
 def _quays(scene: Scene, lot: Lot) -> None:
     """Add vertical quays along a canal, and a jetty if no deck crosses it; both are terrain."""
-    obstacle = KINDS[lot.kind]
-    long = LOT - 2 * (_MARGIN + _FADE)
-    for side in (-1, 1):
-        quay = lot.frame.part(side * (obstacle.half_width + 1.5), 0.0, 3.0, long)
-        scene.add_box(quay, -obstacle.depth - 1, 0.0, PointClass.GROUND, 0)
-    if not obstacle.decks:
-        jetty = lot.frame.part(-obstacle.half_width / 2, 0.0, obstacle.half_width + 2, 6.0)
-        scene.add_box(jetty, -obstacle.depth - 1, 0.0, PointClass.GROUND, 0)
+    half = lot.obstacle.half_width
+    parts = [lot.frame.part(side * (half + 1.5), 0.0, 3.0, LOT - 2 * (_MARGIN + _FADE)) for side in (-1, 1)]
+    parts += [] if lot.obstacle.decks else [lot.frame.part(-half / 2, 0.0, half + 2, 6.0)]
+    for part in parts:
+        scene.add_box(part, -lot.obstacle.depth - 1, 0.0, PointClass.GROUND, 0)
 
 
 def _trees(scene: Scene, lot: Lot, rng: np.random.Generator) -> None:
     """Add trees on the land away from decks."""
-    obstacle = KINDS[lot.kind]
+    obstacle = lot.obstacle
     for u, v in rng.uniform(-LOT / 2 + 8, LOT / 2 - 8, (24, 2)):
         x, y = lot.frame.at(u, v)
         across = abs(v * np.cos(lot.skew) - u * np.sin(lot.skew))

@@ -15,69 +15,29 @@ from .height_field import CELL, HeightField, smooth_noise
 # Correlated errors of matching: wavelength (m) and relative standard deviation; the total is a tunable.
 _WAVES = ((0.6, 0.4), (1.5, 0.5), (4.0, 0.6), (9.0, 0.7))
 
-# Wavelength of the variation of the rounding of edges, m.
-_ROUNDING_CHANGES = 8.0
-
 # Additional errors on crowns, whose leaves move and differ from view to view: wavelength and standard deviation (m).
 # With these, simulated crowns are as rough over 0.75 to 2 m as in a real suburb.
 _LEAF_NOISE = ((0.6, 0.25), (1.6, 0.3))
 
-# Standard deviation (m) of the uncorrelated error of heights on crowns.
-_LEAF_SCATTER = 0.08
-
-# Least and greatest factor of the errors of a crown: some crowns are matched better than others.
-_LEAF_NOISE_FACTORS = (0.4, 1.6)
-
-# Height (m) from which plants have the full errors of crowns.
-_FULL_LEAF_NOISE = 2.0
-
 # Azimuth of the sun, counterclockwise from east, and its elevation (rad), as on a summer morning.
 _SUN = (np.radians(130.0), np.radians(38.0))
-
-# Length of the longest shadows (m), cast by trees and houses of 20 m.
-_SHADOW_REACH = 25.0
 
 # Diffuse light of the sky (red, green, blue), as a share of sunlight.
 _SHADE = np.array([0.38, 0.42, 0.5])
 
-# Color of asphalt (red, green, blue, 0 to 255, as below).
-_ASPHALT = (128, 126, 122)
-
-# Color of grass.
-_GRASS = (104, 124, 62)
-
-# Color of bare soil.
-_SOIL = (150, 128, 100)
-
-# Colors of plants: two green, one yellow, one red.
-_LEAVES = np.array([(62, 92, 40), (84, 110, 50), (92, 98, 44), (120, 74, 60)])
-
-# Colors of roofs: tiles, slate and metal, bright and dark.
-_ROOFS = np.array([(150, 76, 56), (112, 66, 56), (96, 97, 102), (132, 110, 92), (222, 222, 218), (60, 60, 64)])
-
-# Colors of cars, bright and dark.
-_CARS = np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (170, 172, 176)])
-
-# Brightness (0 to 255) below which matching is difficult: shadows have no texture.
-_DARK = 32.0
-
-# Brightness (0 to 255) above which matching is difficult: the images are saturated.
-_BRIGHT = 205.0
-
-# Share of difficult surfaces where matching fails.
-_FAILS = 0.35
-
-# Share of cars, which reflect like mirrors, where matching fails.
-_FAILS_ON_CARS = 0.35
-
-# Share of other surfaces where matching fails.
-_FAILS_ELSEWHERE = 0.005
-
-# Where matching fails, there is a spike if smooth noise of unit deviation exceeds this (16 %), otherwise a hole.
-_SPIKES_ABOVE = 1.0
-
-# Standard deviation (m) of the heights of spikes.
-_SPIKE = 0.5
+# Colors of materials (red, green, blue, 0 to 255), of which each object has one.
+_COLORS = {
+    # Asphalt, grass and bare soil.
+    PointClass.GROUND: np.array([(128, 126, 122), (104, 124, 62), (150, 128, 100)]),
+    # Two green plants, a yellow and a red one.
+    PointClass.HIGH_VEGETATION: np.array([(62, 92, 40), (84, 110, 50), (92, 98, 44), (120, 74, 60)]),
+    # Tiles, slate and metal, bright and dark.
+    PointClass.BUILDING: np.array(
+        [(150, 76, 56), (112, 66, 56), (96, 97, 102), (132, 110, 92), (222, 222, 218), (60, 60, 64)]
+    ),
+    # Cars, bright and dark.
+    PointClass.UNCLASSIFIED: np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (170, 172, 176)]),
+}
 
 
 @dataclass(frozen=True)
@@ -112,19 +72,19 @@ def match(field: HeightField, rounding: float, waves: float, rng: np.random.Gene
     top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * by_texture
     top += _leaf_noise(field, rng)
     fails = _fails(field, colors, rng)
-    spike = fails & (smooth_noise(shape, 0.6, rng) > _SPIKES_ABOVE)
-    top = np.where(spike, top + _SPIKE * smooth_noise(shape, 0.5, rng), top)
+    # Where matching fails, 16 % are spikes with a standard deviation of 0.5 m, and the rest holes.
+    spike = fails & (smooth_noise(shape, 0.6, rng) > 1.0)
+    top = np.where(spike, top + 0.5 * smooth_noise(shape, 0.5, rng), top)
     return Matched(top, colors, fails & ~spike)
 
 
 def _fails(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return the mask of cells where matching fails: patches of about a meter."""
     brightness = colors.mean(axis=2)
-    is_difficult = (brightness < _DARK) | (brightness > _BRIGHT)
-    is_car = field.classification == PointClass.UNCLASSIFIED
-    patches = smooth_noise(field.top.shape, 1.2, rng)
-    chances = ((~is_difficult, _FAILS_ELSEWHERE), (is_difficult, _FAILS), (is_car, _FAILS_ON_CARS))
-    return np.any([of & (patches < NormalDist().inv_cdf(chance)) for of, chance in chances], axis=0)
+    # Shadows have no texture, bright surfaces saturate the images, and cars reflect like mirrors.
+    is_difficult = (brightness < 32.0) | (brightness > 205.0) | (field.classification == PointClass.UNCLASSIFIED)
+    limits = [NormalDist().inv_cdf(share) for share in (0.005, 0.35)]
+    return smooth_noise(field.top.shape, 1.2, rng) < np.where(is_difficult, limits[1], limits[0])
 
 
 def _rounded(top: np.ndarray, rounding: float, rng: np.random.Generator) -> np.ndarray:
@@ -134,16 +94,16 @@ def _rounded(top: np.ndarray, rounding: float, rng: np.random.Generator) -> np.n
     # A step smoothed by a Gaussian rises by most of its height over 2.5 standard deviations.
     sigma = rounding / 2.5 / CELL
     sharp, soft = (ndimage.gaussian_filter(top, factor * sigma) for factor in (0.5, 1.5))
-    share = np.clip(0.5 + 0.35 * smooth_noise(top.shape, _ROUNDING_CHANGES, rng), 0.0, 1.0)
+    share = np.clip(0.5 + 0.35 * smooth_noise(top.shape, 8.0, rng), 0.0, 1.0)
     return sharp * (1 - share) + soft * share
 
 
 def _leaf_noise(field: HeightField, rng: np.random.Generator) -> np.ndarray:
-    """Return the errors (rows, columns), m, of crowns, 0 elsewhere; each crown has its own factor."""
-    factor = rng.uniform(*_LEAF_NOISE_FACTORS, int(field.object_id.max()) + 1)[field.object_id]
+    """Return the errors (rows, columns), m, of crowns, 0 elsewhere; some crowns are matched better than others."""
+    factor = rng.uniform(0.4, 1.6, int(field.object_id.max()) + 1)[field.object_id]
     errors = sum(deviation * smooth_noise(field.top.shape, length, rng) for length, deviation in _LEAF_NOISE)
-    # The roughness of a low plant is limited by its height.
-    height = np.clip((field.top - field.ground) / _FULL_LEAF_NOISE, 0.0, 1.0)
+    # The roughness of plants below 2 m is limited by their height.
+    height = np.clip((field.top - field.ground) / 2.0, 0.0, 1.0)
     return np.where(is_vegetation(field.classification), factor * height * errors, 0.0)
 
 
@@ -151,14 +111,11 @@ def _materials(field: HeightField, rng: np.random.Generator) -> np.ndarray:
     """Return the colors (rows, columns, 3) of cells in uniform light."""
     shape, number = field.top.shape, field.object_id
     grass, soil = smooth_noise(shape, 25.0, rng), smooth_noise(shape, 12.0, rng)
-    ground = np.where((grass > 0.1)[..., None], _GRASS, np.where((soil > 0.8)[..., None], _SOIL, _ASPHALT))
-    colors = ground.astype(np.float32)
-    for chosen, palette in (
-        (is_vegetation(field.classification), _LEAVES),
-        (field.classification == PointClass.BUILDING, _ROOFS),
-        (field.classification == PointClass.UNCLASSIFIED, _CARS),
-    ):
-        colors[chosen] = palette[(number[chosen] * 7919 % 104729) % len(palette)]
+    colors = _COLORS[PointClass.GROUND][np.where(grass > 0.1, 1, np.where(soil > 0.8, 2, 0))].astype(np.float32)
+    kinds = np.where(is_vegetation(field.classification), PointClass.HIGH_VEGETATION, field.classification)
+    for kind in (PointClass.HIGH_VEGETATION, PointClass.BUILDING, PointClass.UNCLASSIFIED):
+        chosen = kinds == kind
+        colors[chosen] = _COLORS[kind][(number[chosen] * 7919 % 104729) % len(_COLORS[kind])]
     texture = 1 + 0.08 * smooth_noise(shape, 0.4, rng) + 0.06 * smooth_noise(shape, 3.0, rng)
     return colors * texture[..., None]
 
@@ -179,7 +136,8 @@ def _lit(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np
 def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
     """Return the mask of cells in the shadow of others."""
     shadowed = np.zeros(top.shape, bool)
-    for away in np.arange(0.2, _SHADOW_REACH, 0.2):
+    # Trees and houses of 20 m have shadows of 25 m.
+    for away in np.arange(0.2, 25.0, 0.2):
         rows, columns = (round(away / CELL * part) for part in (np.sin(azimuth), np.cos(azimuth)))
         shadowed |= _moved(top, rows, columns) > top + away * np.tan(elevation) + 0.05
     return shadowed
@@ -224,8 +182,9 @@ def sample(
     kept = ~matched.is_hole[row, column]
     # Elevations are interpolated between the centers of cells.
     z = ndimage.map_coordinates(matched.top, (xy / CELL - 0.5).T[::-1], order=1, mode="nearest")
+    # Heights on crowns have uncorrelated errors of 8 cm, too.
     is_leaf = field.classification[row, column] == PointClass.HIGH_VEGETATION
-    z += np.where(is_leaf, _LEAF_SCATTER, 0.0) * rng.standard_normal(count)
+    z += np.where(is_leaf, 0.08, 0.0) * rng.standard_normal(count)
     faces = _faces(matched, density * walls, rng)
     xyz = np.concatenate([np.column_stack([xy, z])[kept], faces])
     xyz += noise * rng.standard_normal(xyz.shape)

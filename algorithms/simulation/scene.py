@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..cloud.asprs import PointClass
 from ..geometry.groups import mask_of
 from ..stage import LayerFeatures
 from .bodies import Body, Rect, flat, rectangles
@@ -70,6 +71,11 @@ class Scene:
         """Add a box between two elevations (m), with object id ``number`` or a new one."""
         number = self.new_id() if number is None else number
         self.solids.append(Body(rect, flat(rect, top), bottom, classification, number))
+
+    def add_post(self, rect: Rect, height: float) -> None:
+        """Add a box of a height (m) above the ground at its center, as a new object without class."""
+        ground = float(self.relief.ground(rect.x, rect.y))
+        self.add_box(rect, ground - 1.0, ground + height, PointClass.UNCLASSIFIED)
 
     def add_building(self, kind: str, outline: np.ndarray, solids: list[Body]) -> None:
         """Add a building of ``solids``, the first of which has its id; ``outline`` (m, 2) is open."""

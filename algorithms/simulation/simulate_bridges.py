@@ -91,12 +91,6 @@ def simulate_bridges(
 
 
 def _layer(decks: list[Deck]) -> LayerFeatures:
-    columns = {
-        "id": [deck.object_id for deck in decks],
-        "kind": [deck.kind for deck in decks],
-        "angle": [deck.angle for deck in decks],
-        "width": [deck.rect.width for deck in decks],
-        "length": [deck.rect.length for deck in decks],
-    }
-    rings = [deck.rect.corners() for deck in decks]
-    return LayerFeatures([[ring[[0, 1, 2, 3, 0]]] for ring in rings], columns)
+    rows = [(deck.object_id, deck.kind, deck.angle, deck.rect.width, deck.rect.length) for deck in decks]
+    columns = {field.name: [row[i] for row in rows] for i, field in enumerate(_DECK_FIELDS)}
+    return LayerFeatures([[deck.rect.corners()[[0, 1, 2, 3, 0]]] for deck in decks], columns)

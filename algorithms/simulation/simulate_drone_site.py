@@ -7,7 +7,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Field, Layer, stage, tunable
-from .bodies import Body, Rect, flat
+from .bodies import Rect, flat
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
 from .scanner import refuse_large
@@ -18,56 +18,11 @@ from .town_layout import CAR, MAX_BUILDINGS, TownPlan, build_town, park_car
 # Height (m) above which points over cells of ground belong to the nearest object, whose edge is smeared.
 _SMEARED = 0.3
 
-# Height (m) below which points of plants and cars are ground.
-_GROUND = 0.1
-
-# Number of the random stream of matching among the streams of one seed.
-_STREAM = 6
-
-# Height difference between hollows and hills, m.
-_RELIEF = 2.0
-
 _FIELDS = (
     Field("id", int, "object id of the building, as SegmentID of its points"),
     Field("kind", str, "gable, hip, flat, L, row, shed or hall"),
     Field("area", float, "area inside the walls", "m²"),
 )
-
-# Least and greatest length of halls (m).
-_HALL_SIZES = (10.0, 100.0)
-
-# Least and greatest height of the roofs of halls (m).
-_HALL_HEIGHTS = (3.0, 9.0)
-
-# Height of the parapets around the roofs of halls (m).
-_PARAPET_HEIGHT = 0.6
-
-# Width of parapets (m).
-_PARAPET_WIDTH = 0.35
-
-# Number of adjoining flat roofs in a block.
-_BLOCK_ROOFS = 4
-
-# Depth of a block (m).
-_BLOCK_DEPTH = 12.0
-
-# Largest deviation of a roof of a block from the mean height (m).
-_BLOCK_STEP = 0.8
-
-# Length and width of vans (m).
-_VAN = (5.4, 2.0)
-
-# Least and greatest height of vans (m).
-_VAN_HEIGHT = (1.9, 2.6)
-
-# Number of vans and cars per hectare.
-_VANS = 8
-
-# Most attempts to find a free position for an object.
-_TRIES = 60
-
-# Least distance of an object from buildings (m).
-_ROOM = 3.0
 
 
 @stage(
@@ -162,9 +117,10 @@ def simulate_drone_site(
     (True, True)
     """
     refuse_large("A site", size, density, "lower size or density", "points")
-    plan = TownPlan(size, slope, _RELIEF, terrace_height, buildings, trees, forest=0.0, river=False, seed=seed)
+    # Hills are 2 m higher than hollows.
+    plan = TownPlan(size, slope, 2.0, terrace_height, buildings, trees, forest=0.0, river=False, seed=seed)
     scene = build_site(plan, halls)
-    rng = np.random.default_rng([seed, _STREAM])
+    rng = np.random.default_rng([seed, 6])
     monitor.progress(0.1)
     field = see_from_above(scene, unevenness, rng)
     monitor.progress(0.4)
@@ -172,7 +128,7 @@ def simulate_drone_site(
     monitor.progress(0.8)
     xyz, row, column = sample(field, matched, density, walls, noise, rng)
     row, column = _cells_of_objects(field, xyz, row, column)
-    # From 8 to 16 bits.
+    # Colors have 16 bits.
     colors = (matched.colors[row, column] * 257).astype(np.uint16)
     classes, objects = _truth(field, xyz, row, column)
     ones = np.ones(len(xyz), np.uint8)
@@ -185,18 +141,14 @@ def _cells_of_objects(
     """Return the cells (n,) of points; points smeared beyond the edge of an object belong to its nearest cell."""
     is_ground = field.classification[row, column] == PointClass.GROUND
     is_smeared = is_ground & (xyz[:, 2] > field.ground[row, column] + _SMEARED)
-    row_beside, column_beside = field.beside()
-    return (
-        np.where(is_smeared, row_beside[row, column], row),
-        np.where(is_smeared, column_beside[row, column], column),
-    )
+    nearest_row, nearest_column = (nearest[row, column] for nearest in field.beside())
+    return np.where(is_smeared, nearest_row, row), np.where(is_smeared, nearest_column, column)
 
 
 def _truth(field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return class and object (n,) of points by their cells; low points of plants and cars are ground."""
+    """Return class and object (n,) of points by their cells; points of plants and cars below 0.1 m are ground."""
     classes, objects = field.classification[row, column], field.object_id[row, column]
-    above = xyz[:, 2] - field.ground[row, column]
-    is_ground = (classes != PointClass.BUILDING) & (above < _GROUND)
+    is_ground = (classes != PointClass.BUILDING) & (xyz[:, 2] - field.ground[row, column] < 0.1)
     return np.where(is_ground, PointClass.GROUND, classes).astype(np.uint8), np.where(is_ground, 0, objects)
 
 
@@ -210,22 +162,21 @@ def build_site(plan: TownPlan, halls: int) -> Scene:
         _add_hall(scene, k, rng)
     if plan.buildings and halls:
         _add_block(scene, rng)
-    for _ in range(round(_VANS * plan.size**2 / 1e4)):
+    # There are eight more vans and cars per hectare.
+    for _ in range(round(8 * plan.size**2 / 1e4)):
         _add_van(scene, rng)
     return scene
 
 
 def _free_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
-    """Return a free rectangle of given sides (m) at a random position, None without space."""
+    """Return a rectangle of given sides (m) at a random position 3 m off buildings, None after 60 attempts."""
     reach = np.hypot(long, wide) / 2 + 1.0
-    if 2 * reach >= scene.size:
-        return None
-    for _ in range(_TRIES):
+    for _ in range(60 if 2 * reach < scene.size else 0):
         x, y = rng.uniform(reach, scene.size - reach, 2)
         rect = Rect(float(x), float(y), long, wide, scene.relief.angle + float(rng.choice([0.0, np.pi / 2])))
-        across, along = (np.linspace(-0.5, 0.5, max(2, int(side / 2))) * side for side in (wide, long))
-        grid = np.stack(np.meshgrid(along, across), axis=-1).reshape(-1, 2)
-        if not scene.buildings or not scene.near_building(np.column_stack(rect.at(*grid.T)), _ROOM).any():
+        along, across = (np.linspace(-0.5, 0.5, max(2, int(side / 2))) * side for side in (long, wide))
+        grid = np.stack(rect.at(*np.meshgrid(along, across)), axis=-1).reshape(-1, 2)
+        if not scene.buildings or not scene.near_building(grid, 3.0).any():
             return rect
     return None
 
@@ -241,47 +192,41 @@ def _clear(scene: Scene, rect: Rect) -> None:
 
 
 def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
-    """Add the k-th hall, with a flat roof and a parapet; lengths are spread evenly over their range."""
-    least, most = _HALL_SIZES
-    # Steps of the golden ratio spread the lengths evenly for any number of halls.
-    long = min(least * (most / least) ** float(np.mod(0.35 + 0.382 * k, 1.0)), 0.6 * scene.size)
+    """Add the k-th hall, with a flat roof and a parapet."""
+    # Steps of the golden ratio spread the lengths evenly from 10 to 100 m for any number of halls.
+    long = min(10.0 * 10.0 ** float(np.mod(0.35 + 0.382 * k, 1.0)), 0.6 * scene.size)
     rect = _free_rectangle(scene, long, long * rng.uniform(0.5, 0.8), rng)
     if rect is None:
         return
     _clear(scene, rect)
-    site = Site(scene, rect, rng.uniform(*_HALL_HEIGHTS))
-    scene.add_building("hall", rect.corners(), [site.solid(rect, flat(rect, site.eave)), *_parapets(site, rect)])
-
-
-def _parapets(site: Site, rect: Rect) -> list[Body]:
-    along, across = (rect.length - _PARAPET_WIDTH) / 2, (rect.width - _PARAPET_WIDTH) / 2
-    parts = [rect.part(side * along, 0.0, _PARAPET_WIDTH, rect.width) for side in (-1, 1)]
-    parts += [rect.part(0.0, side * across, rect.length, _PARAPET_WIDTH) for side in (-1, 1)]
-    return [site.solid(part, flat(part, site.eave + _PARAPET_HEIGHT)) for part in parts]
+    site = Site(scene, rect, rng.uniform(3.0, 9.0))
+    # Parapets are 0.35 m wide and 0.6 m high.
+    along, across, wide = (rect.length - 0.35) / 2, (rect.width - 0.35) / 2, 0.35
+    parts = [rect.part(side * along, 0.0, wide, rect.width) for side in (-1, 1)]
+    parts += [rect.part(0.0, side * across, rect.length, wide) for side in (-1, 1)]
+    parapets = [site.solid(part, flat(part, site.eave + 0.6)) for part in parts]
+    scene.add_building("hall", rect.corners(), [site.solid(rect, flat(rect, site.eave)), *parapets])
 
 
 def _add_block(scene: Scene, rng: np.random.Generator) -> None:
-    """Add a block of adjoining flat roofs."""
+    """Add a block of four adjoining flat roofs."""
     wide = rng.uniform(7.0, 11.0)
-    rect = _free_rectangle(scene, _BLOCK_ROOFS * wide, _BLOCK_DEPTH, rng)
+    rect = _free_rectangle(scene, 4 * wide, 12.0, rng)
     if rect is None:
         return
     _clear(scene, rect)
     height = rng.uniform(5.0, 9.0)
-    for k in range(_BLOCK_ROOFS):
-        part = rect.part((k - (_BLOCK_ROOFS - 1) / 2) * wide, 0.0, wide, _BLOCK_DEPTH)
+    for k in range(4):
+        part = rect.part((k - 1.5) * wide, 0.0, wide, rect.width)
         site = Site(scene, part, height)
-        top = site.eave + _BLOCK_STEP * float(rng.uniform(-1.0, 1.0))
+        top = site.eave + 0.8 * float(rng.uniform(-1.0, 1.0))
         scene.add_building("flat", part.corners(), [site.solid(part, flat(part, top))])
 
 
 def _add_van(scene: Scene, rng: np.random.Generator) -> None:
     """Add a van or a car at a free position."""
-    rect = _free_rectangle(scene, *_VAN, rng)
-    if rect is None:
-        return
-    if rng.random() < 0.5:
+    rect = _free_rectangle(scene, 5.4, 2.0, rng)
+    if rect is not None and rng.random() < 0.5:
         park_car(scene, rect.part(0.0, 0.0, *CAR))
-        return
-    ground = float(scene.relief.ground(rect.x, rect.y))
-    scene.add_box(rect, ground - 1.0, ground + rng.uniform(*_VAN_HEIGHT), PointClass.UNCLASSIFIED)
+    elif rect is not None:
+        scene.add_post(rect, rng.uniform(1.9, 2.6))

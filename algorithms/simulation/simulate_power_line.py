@@ -22,36 +22,12 @@ _ARMS = (29.0, 25.0, 21.0)
 # Length of an arm (m).
 _ARM = 5.0
 
-# Half of the distance between the legs of a tower (m).
-_LEG = 1.6
-
-# Sag of conductors, as a share of the span: usual at 20 °C.
-_SAG = 0.03
-
 # Height of poles (m).
 _POLE = 9.0
-
-# Distance between neighboring poles (m).
-_POLES = 40.0
-
-# Sag of the wires between poles (m).
-_POLE_SAG = 0.8
 
 # Wires of poles: distance across the line, and below the top of the poles (m). Three phases on a cross-arm, a vertical
 # rack of four wires, and a telephone cable.
 _WIRES = ((-0.8, 0.2), (0.0, 0.2), (0.8, 0.2), (0.2, 1.4), (0.2, 1.7), (0.2, 2.0), (0.2, 2.3), (-0.2, 3.2))
-
-# Half of the distance between the two conductors of a bundle (m).
-_BUNDLE = 0.2
-
-# Distance of houses from the line of the poles (m).
-_HOUSE = 16.0
-
-# Sag of a wire from a pole to a house (m).
-_DROP_SAG = 0.3
-
-# Straight pieces per span of a wire.
-_PIECES = 24
 
 
 @stage(
@@ -152,46 +128,42 @@ def _high_voltage(scene: Scene, direction: float, span: float) -> None:
     across = np.array([-np.sin(direction), np.cos(direction), 0.0])
     for foot in feet[_inside(scene, feet)]:
         _tower(scene, foot, direction)
-    sides = [side * _ARM + apart for side in (-1, 1) for apart in (-_BUNDLE, _BUNDLE)]
-    arms = [(side, height - 1.0) for height in _ARMS for side in sides]
-    hangs = [*arms, (0.0, _TOWER)]
-    for aside, height in hangs:
-        _string(scene, feet + (aside * across + [0.0, 0.0, height]), _SAG * span)
+    # Bundles of two conductors 0.4 m apart hang 1 m below the arms; the guard wire is at the top.
+    bundles = [(side * _ARM + apart, arm - 1.0) for arm in _ARMS for side in (-1, 1) for apart in (-0.2, 0.2)]
+    for aside, height in [*bundles, (0.0, _TOWER)]:
+        # The sag of 3 % of the span is usual at 20 °C.
+        _string(scene, feet + (aside * across + [0.0, 0.0, height]), 0.03 * span)
 
 
 def _tower(scene: Scene, foot: np.ndarray, direction: float) -> None:
     """Add a tower: four legs, a body and three pairs of arms."""
     number, (x, y, ground) = scene.new_id(), (float(value) for value in foot)
     frame = Rect(x, y, 1.0, 1.0, direction)
-    for along in (-_LEG, _LEG):
-        for across in (-_LEG, _LEG):
-            _add_tower(scene, frame.part(along, across, 0.3, 0.3), ground - 1.0, ground + 0.5 * _TOWER, number)
-    _add_tower(scene, frame.part(0.0, 0.0, 0.8, 0.8), ground + 0.5 * _TOWER, ground + _TOWER, number)
-    for height in _ARMS:
-        _add_tower(scene, frame.part(0.0, 0.0, 0.5, 2 * _ARM), ground + height - 0.4, ground + height, number)
-
-
-def _add_tower(scene: Scene, rect: Rect, bottom: float, top: float, number: int) -> None:
-    scene.add_box(rect, bottom, top, PointClass.TRANSMISSION_TOWER, number)
+    # The legs are 3.2 m apart.
+    legs = [(frame.part(u, v, 0.3, 0.3), -1.0, 0.5 * _TOWER) for u in (-1.6, 1.6) for v in (-1.6, 1.6)]
+    body = (frame.part(0.0, 0.0, 0.8, 0.8), 0.5 * _TOWER, _TOWER)
+    arms = [(frame.part(0.0, 0.0, 0.5, 2 * _ARM), height - 0.4, height) for height in _ARMS]
+    for rect, bottom, top in [*legs, body, *arms]:
+        scene.add_box(rect, ground + bottom, ground + top, PointClass.TRANSMISSION_TOWER, number)
 
 
 def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> None:
-    """Add poles and their wires, and at every second pole a house with a wire from the pole."""
-    feet = _line(scene, direction, -0.22 * scene.size, _POLES)
+    """Add poles 40 m apart with their wires, and 16 m from every second pole a house with a wire from the pole."""
+    feet = _line(scene, direction, -0.22 * scene.size, 40.0)
     across = np.array([-np.sin(direction), np.cos(direction), 0.0])
     for i, foot in enumerate(feet):
         if not _inside(scene, foot[None])[0]:
             continue
         x, y, ground = (float(value) for value in foot)
-        _add_tower(scene, Rect(x, y, 0.3, 0.3, direction), ground - 1.0, ground + _POLE, scene.new_id())
-        middle = foot - _HOUSE * across
+        scene.add_box(Rect(x, y, 0.3, 0.3, direction), ground - 1.0, ground + _POLE, PointClass.TRANSMISSION_TOWER)
+        middle = foot - 16.0 * across
         if i % 2 == 0 and _inside(scene, np.array([middle - 10.0, middle + 10.0])).all():
             eave = _house(scene, middle, direction, rng)
-            wall = middle + 4.0 * across
-            drop = np.append(wall[:2], eave - 0.2)
-            _string(scene, np.array([foot + [0.0, 0.0, _POLE - 1.7], drop]), _DROP_SAG)
+            # The wire ends at the wall, 4 m from the middle of the house.
+            drop = np.append((middle + 4.0 * across)[:2], eave - 0.2)
+            _string(scene, np.array([foot + [0.0, 0.0, _POLE - 1.7], drop]), sag=0.3)
     for aside, below in _WIRES:
-        _string(scene, feet + (aside * across + [0.0, 0.0, _POLE - below]), _POLE_SAG)
+        _string(scene, feet + (aside * across + [0.0, 0.0, _POLE - below]), sag=0.8)
 
 
 def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Generator) -> float:
@@ -206,7 +178,7 @@ def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Ge
 
 def _string(scene: Scene, points: np.ndarray, sag: float) -> None:
     """Add a wire between successive points (n, 3), m, with a sag (m) in the middle of each span."""
-    number, share = scene.new_id(), np.linspace(0.0, 1.0, _PIECES + 1)[:, None]
+    number, share = scene.new_id(), np.linspace(0.0, 1.0, 25)[:, None]
     for start, end in zip(points, points[1:]):
         line = start + share * (end - start) - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]
         inside = _inside(scene, line)

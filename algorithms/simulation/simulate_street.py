@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 from .bodies import Rect
@@ -16,20 +15,8 @@ from .relief import Relief
 from .scanner import RANGE_NOISE, RECORDED, AirSurvey, refuse_large, refuse_many, scan
 from .scene import Scene
 from .street_fronts import KINDS, Front, Line, Truth, between
-from .town_layout import park_car
+from .town_layout import CAR, park_car
 from .vehicle import Drive, pulses_of
-
-# Height of the scanners over the street (m).
-_HEIGHT = 2.2
-
-# Distance (m) from the front, apart from noise, beyond which points of a wall are on its ends and reveals.
-_ON_FRONT = 0.01
-
-# Largest noise of a point on the front (standard deviations): 1 in 16,000 is larger.
-_DEVIATIONS = 4.0
-
-# Platforms of the scanner.
-VIEWS = ("vehicle", "airplane")
 
 _CREATED = (*RECORDED, "cluster_id")
 
@@ -50,36 +37,6 @@ _HOUSE_FIELDS = (
     Field("ridge", float, "Elevation of the ridge", "m"),
 )
 _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
-
-# Least and greatest width of houses (m), before all widths are scaled to fill the street.
-_WIDTHS = (8.0, 12.0)
-
-# Least and greatest height of the lowest eaves of a side (m).
-_EAVES = (7.0, 11.0)
-
-# Largest height of the eaves of a house above the lowest of its side (m): less than a storey.
-_DIFFERENCE = 0.8
-
-# Least and greatest pitch of gable roofs (°).
-_PITCHES = (30.0, 45.0)
-
-# Distance of people on the sidewalk from the fronts (m).
-_PEOPLE = 1.2
-
-# Distance of trees from the fronts (m).
-_TREES = 2.2
-
-# Distance of poles from the fronts (m), in the row of trees.
-_POLES = 2.4
-
-# Distance of the axes of parked cars from the fronts (m), beyond the curb.
-_CARS = 3.6
-
-# Width and height of a person (m).
-_PERSON = (0.45, 1.75)
-
-# Width and height of a pole (m).
-_POLE = (0.16, 6.0)
 
 
 @stage(
@@ -115,7 +72,7 @@ def simulate_street(
     view: str = tunable(
         "vehicle",
         "Platform of the scanner. With the same seed, both scan the same street.",
-        choices=VIEWS,
+        choices=("vehicle", "airplane"),
     ),
     density: float = tunable(
         12.0,
@@ -202,7 +159,8 @@ def simulate_street(
 def _drive(scene: Scene, street: Rect, speed: float) -> Drive:
     """Return a drive in the right lane, at different distances from the fronts of both sides."""
     ends = [np.array(street.at(sign * street.length / 2, -street.width / 8)) for sign in (-1, 1)]
-    ends = [np.array([*end, float(scene.relief.plane(*end)) + _HEIGHT]) for end in ends]
+    # The scanners are 2.2 m above the street.
+    ends = [np.array([*end, float(scene.relief.plane(*end)) + 2.2]) for end in ends]
     way = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     return Drive(ends[0], way, street.length, speed)
 
@@ -231,7 +189,8 @@ def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> di
     own = on_facade - 1
     x, y = (made["xyz"] - start[own])[:, :2].T
     off = x * across[own, 0] + y * across[own, 1]
-    on_facade[np.abs(off) > _ON_FRONT + _DEVIATIONS * noise] = 0
+    # Only 1 in 16,000 points of a front deviates by more than four standard deviations.
+    on_facade[np.abs(off) > 0.01 + 4.0 * noise] = 0
     return {**made, "segment_id": on_facade, "cluster_id": opening[number]}
 
 
@@ -291,46 +250,40 @@ def _build_side(
     # The street is on the right of the line: on the left side of the street the line runs forward.
     start = np.array(street.at(-side * street.length / 2, side * street.width / 2))
     way = side * np.array([np.cos(street.angle), np.sin(street.angle)])
-    eave = rng.uniform(*_EAVES)
+    eave = rng.uniform(7.0, 11.0)
     widths = _divided(street.length, rng)
     kinds = [kind for kind in KINDS if kind != "curved"] if plan.houses else KINDS
     first = int(rng.integers(len(kinds)))
     for k, width in enumerate(widths):
         kind = kinds[(first + k) % len(kinds)]
-        height = eave + rng.uniform(0, _DIFFERENCE)
+        # Eaves differ by less than a storey.
+        height = eave + rng.uniform(0, 0.8)
         front = Front(plan.off_line(Line(start, way, width), of_fronts), height, kind, plan.stoops)
         front.build(scene, truth)
         if plan.houses:
-            front.build_house(scene, truth, float(of_fronts.uniform(*_PITCHES)))
+            front.build_house(scene, truth, float(of_fronts.uniform(30.0, 45.0)))
         start = start + width * way
 
 
 def _divided(length: float, rng: np.random.Generator) -> np.ndarray:
-    """Return random widths of houses that add up to a length (m)."""
-    count = max(1, round(length / np.mean(_WIDTHS)))
-    share = rng.uniform(*_WIDTHS, count)
+    """Return random widths of houses, about 8 to 12 m, that add up to a length (m)."""
+    share = rng.uniform(8.0, 12.0, max(1, round(length / 10.0)))
     return share / share.sum() * length
 
 
 def _put_clutter(scene: Scene, street: Rect, side: int, rng: np.random.Generator) -> None:
     """Add cars, trees, poles and people that occlude the fronts of one side."""
     half = street.width / 2
-    # A parking space every 6.5 m; 60 % hold a car of 4.3 m by 1.8 m.
+    # A parking space every 6.5 m, 3.6 m from the fronts; 60 % hold a car.
     for along in np.arange(-street.length / 2 + 4.0, street.length / 2 - 3.0, 6.5):
         if rng.random() < 0.6:
-            park_car(scene, street.part(float(along), side * (half - _CARS), 4.3, 1.8))
-    # A tree of 5 to 7 m about every 15 m, up to 2 m off its position, and a pole 7 m beyond that position.
+            park_car(scene, street.part(float(along), side * (half - 3.6), *CAR))
+    # A tree of 5 to 7 m about every 15 m, up to 2 m off its position, and a pole of 6 m 7 m beyond that position.
     for along in np.arange(-street.length / 2 + 6.0, street.length / 2 - 2.0, 15.0):
-        x, y = street.at(along + rng.uniform(-2, 2), side * (half - _TREES))
+        x, y = street.at(along + rng.uniform(-2, 2), side * (half - 2.2))
         foot = (float(x), float(y), float(scene.relief.plane(x, y)))
         plant_tree(scene, foot, rng.uniform(5.0, 7.0), rng)
-        _put_post(scene, street, along + 7.0, side * (half - _POLES), _POLE)
-    # A person per 8 m on average.
+        scene.add_post(street.part(along + 7.0, side * (half - 2.4), 0.16, 0.16), 6.0)
+    # A person per 8 m on average, 1.75 m tall, on the sidewalk.
     for along in rng.uniform(-street.length / 2, street.length / 2, max(1, round(street.length / 8))):
-        _put_post(scene, street, float(along), side * (half - _PEOPLE), _PERSON)
-
-
-def _put_post(scene: Scene, street: Rect, along: float, across: float, size: tuple[float, float]) -> None:
-    rect = street.part(along, across, size[0], size[0])
-    ground = float(scene.relief.plane(rect.x, rect.y))
-    scene.add_box(rect, ground - 0.5, ground + size[1], PointClass.UNCLASSIFIED)
+        scene.add_post(street.part(float(along), side * (half - 1.2), 0.45, 0.45), 1.75)

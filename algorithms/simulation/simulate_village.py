@@ -178,32 +178,26 @@ def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> n
     return ~np.isfinite(spatial.cKDTree(centers).query(xyz, distance_upper_bound=_HOLE)[0])
 
 
-# Color of the ground (red, green, blue, 0 to 255, as below).
-_GROUND = (134, 124, 92)
-
-# Color of leaves.
-_LEAVES = (70, 96, 48)
-
-# Color of cars.
-_CARS = (150, 152, 158)
-
-# Colors of walls; each house has one of these.
-_WALLS = np.array([(226, 218, 200), (212, 190, 140), (190, 186, 180), (205, 160, 130)])
-
-# Colors of roofs; each house has one of these.
-_ROOFS = np.array([(150, 70, 50), (110, 60, 50), (95, 95, 100), (130, 105, 90)])
+# Colors of ground, leaves, cars, walls and roofs (red, green, blue, 0 to 255); each house has one of each.
+_COLORS = {
+    "ground": np.array([(134, 124, 92)]),
+    "leaves": np.array([(70, 96, 48)]),
+    "cars": np.array([(150, 152, 158)]),
+    "walls": np.array([(226, 218, 200), (212, 190, 140), (190, 186, 180), (205, 160, 130)]),
+    "roofs": np.array([(150, 70, 50), (110, 60, 50), (95, 95, 100), (130, 105, 90)]),
+}
 
 
 def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndarray:
     """Return red, green and blue (n, 3), uint16, by material, with a factor per object and noise per point."""
-    color = np.tile(np.array(_GROUND, float), (len(seen), 1))
     classes, number = seen.classification, seen.object_id
-    color[is_vegetation(classes)] = _LEAVES
-    color[classes == PointClass.UNCLASSIFIED] = _CARS
-    building = classes == PointClass.BUILDING
     is_roof = village.owner[number] != number
-    color[building & ~is_roof] = _WALLS[number[building & ~is_roof] % len(_WALLS)]
-    color[building & is_roof] = _ROOFS[number[building & is_roof] % len(_ROOFS)]
+    is_car, is_building = classes == PointClass.UNCLASSIFIED, classes == PointClass.BUILDING
+    kinds = [is_vegetation(classes), is_car, is_building & ~is_roof, is_building & is_roof]
+    palette, *palettes = _COLORS.values()
+    color = np.tile(palette.astype(float), (len(seen), 1))
+    for chosen, palette in zip(kinds, palettes):
+        color[chosen] = palette[number[chosen] % len(palette)]
     light = (0.85 + 0.3 * np.modf(number * 0.618034)[0])[:, None] * (1 + 0.06 * rng.standard_normal((len(seen), 1)))
     return np.clip(color * light * 257, 0, 65_535).astype(np.uint16)
 

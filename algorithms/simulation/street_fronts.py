@@ -29,75 +29,20 @@ _SILL = 0.9
 # Width and height of windows (m).
 _WINDOW = (1.2, 1.5)
 
-# Height of doors (m); they are as wide as windows.
-_DOOR = 2.2
-
 # Distance of panes behind the front (m).
 _PANE = 0.16
-
-# Distance of frames behind the front (m).
-_FRAME = 0.10
-
-# Width of frames (m).
-_FRAME_WIDTH = 0.07
 
 # Distance between the axes of neighboring windows (m).
 _AXIS = 2.4
 
-# Least distance of a window from the end of a wall (m).
-_MARGIN = 0.5
-
 # Depth of recesses and bays (m).
 _RECESS = 1.2
-
-# Depth of balconies (m).
-_BALCONY = 1.1
-
-# Half the width of balconies (m).
-_HALF_BALCONY = 1.4
-
-# Thickness of the floors of balconies (m).
-_SLAB = 0.15
 
 # Thickness of panes, doors and parapets (m).
 _THIN = 0.05
 
-# Least height of the wall above a window (m).
-_LINTEL = 0.3
-
-# Height of the parapets of balconies (m).
-_PARAPET = 1.0
-
-# Depth of the landing in front of a raised door (m).
-_LANDING = 1.2
-
-# Run of a step of stairs (m).
-_RUN = 0.28
-
-# Greatest rise of a step of stairs (m).
-_RISE = 0.18
-
-# Width of stairs beyond each side of their door (m).
-_BESIDE = 0.25
-
 # Depth of houses behind their fronts (m).
 _DEPTH = 10.0
-
-# Thickness of the roof of a bay (m).
-_LID = 0.2
-
-# Cellar windows: height of the sill above the ground, and height of the window (m).
-_CELLAR = (0.25, 0.8)
-
-# Least height of the ground floor above the street with cellar windows (m).
-_LEAST_RAISED = 1.4
-
-# Number of plane strips of a curved front.
-_STRIPS = 6
-
-# Central angle of a curved front (°).
-_TURN = 60.0
-
 
 # First and last of positions or elevations (m).
 _Span = tuple[float, float]
@@ -204,36 +149,36 @@ class Front:
         rect = line.rect(across, (0.0, _DEPTH))
         tops = gable(rect, top, float(np.tan(np.deg2rad(pitch))))
         scene.solids.append(Body(rect, tops, top, PointClass.BUILDING, number))
-        third, front = line.length / 3, [(0.0, 0.0)]
         if kind == "bay":
-            # The roof of the bay is between its walls, so that no faces coincide.
-            lid = (third + _WALL, 2 * third - _WALL), (_WALL - _RECESS, 0.0)
-            walls.put(*lid, top - _LID, top, number)
-        if kind in ("bay", "recess"):
-            off = _RECESS if kind == "recess" else -_RECESS
-            front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]
-        corners = [*front, (line.length, 0.0), (line.length, _DEPTH), (0.0, _DEPTH), (0.0, 0.0)]
+            # The roof of the bay, 0.2 m thick, is between its walls, so that no faces coincide.
+            third = line.length / 3
+            walls.put((third + _WALL, 2 * third - _WALL), (_WALL - _RECESS, 0.0), top - 0.2, top, number)
+        corners = [*_corners(line, kind), (line.length, _DEPTH), (0.0, _DEPTH), (0.0, 0.0)]
         ring = np.array([(*line.at(*corner), ground) for corner in corners])
         truth.houses.append(([ring], {"eave": top, "ridge": float(np.min(tops @ [rect.x, rect.y, 1.0]))}))
 
 
 def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
     """Return the walls of a front in order, and whether each has openings."""
-    third, step = line.length / 3, _RECESS
     if kind in ("recess", "bay"):
-        inward = step if kind == "recess" else -step
-        corners = [(0, 0), (third, 0), (third, inward), (2 * third, inward), (2 * third, 0), (3 * third, 0)]
-        points = [line.at(*corner) for corner in corners]
+        points = [line.at(*corner) for corner in _corners(line, kind)]
         return [(between(a, b), k % 2 == 0) for k, (a, b) in enumerate(zip(points, points[1:]))]
     if kind == "curved":
-        half = np.deg2rad(_TURN / 2)
+        half = np.deg2rad(30.0)
         radius = line.length / (2 * np.sin(half))
-        angle = np.linspace(-half, half, _STRIPS + 1)
-        # The arc is convex toward the street.
+        angle = np.linspace(-half, half, 7)
+        # The arc of 60° is convex toward the street; six plane strips approximate it.
         out = radius * (np.cos(angle) - np.cos(half))
         points = [line.at(line.length / 2 + radius * np.sin(a), -o) for a, o in zip(angle, out)]
         return [(between(a, b), False) for a, b in zip(points, points[1:])]
     return [(line, True)]
+
+
+def _corners(line: Line, kind: str) -> list[tuple[float, float]]:
+    """Return the corners of a front that is not curved, as distances along its line and behind it (m)."""
+    third, inward = line.length / 3, {"recess": _RECESS, "bay": -_RECESS}.get(kind)
+    steps = [(third, 0.0), (third, inward), (2 * third, inward), (2 * third, 0.0)] if inward else []
+    return [(0.0, 0.0), *steps, (line.length, 0.0)]
 
 
 def between(a: np.ndarray, b: np.ndarray) -> Line:
@@ -275,34 +220,36 @@ class _Wall:
     def _build_axis(self, along: _Span, levels: _Span, heights: _Span, own: int, facade: int, has_door: bool) -> None:
         """Add the openings of one axis and the wall between them; ``levels`` are ground and ground floor (m)."""
         (bottom, top), (ground, floor) = heights, levels
-        level, below = floor, bottom
-        if not has_door and floor - ground >= _LEAST_RAISED:
-            low, high = ground + _CELLAR[0], ground + sum(_CELLAR)
+        openings, level = [], floor
+        # Cellar windows of 0.8 m are 0.25 m above the ground.
+        if not has_door and floor - ground >= 1.4:
+            openings.append((ground + 0.25, ground + (0.25 + 0.8), "window"))
+        # The wall above a window is at least 0.3 m high.
+        while level + _SILL + _WINDOW[1] + 0.3 < top:
+            openings.append((level + _SILL, level + _SILL + _WINDOW[1], "window"))
+            level += _STOREY
+        if has_door and openings:
+            # The door is 2.2 m high.
+            openings[0] = (floor if floor > ground else bottom, floor + 2.2, "door")
+            self._put_stairs(along, bottom, levels)
+        below = bottom
+        for low, high, kind in openings:
             self.put(along, (0.0, _WALL), below, low, own)
-            self._build_opening(along, (low, high), "window", facade)
+            self._build_opening(along, (low, high), kind, facade)
             below = high
-        while level + _SILL + _WINDOW[1] + _LINTEL < top:
-            is_door = has_door and level == floor
-            low, high = (level + _SILL, level + _SILL + _WINDOW[1])
-            if is_door:
-                low, high = floor if floor > ground else bottom, level + _DOOR
-                self._put_stairs(along, bottom, levels)
-            if low > below:
-                self.put(along, (0.0, _WALL), below, low, own)
-            self._build_opening(along, (low, high), "door" if is_door else "window", facade)
-            below, level = high, level + _STOREY
         self.put(along, (0.0, _WALL), below, top, own)
 
     def _put_stairs(self, along: _Span, bottom: float, levels: _Span) -> None:
         """Add a landing and steps from the ground to the floor of a door; their boxes start at ``bottom`` (m)."""
         ground, floor = levels
-        steps = int(np.ceil((floor - ground) / _RISE))
-        wide = (along[0] - _BESIDE, along[1] + _BESIDE)
+        # Depth of the landing, run and greatest rise of a step (m).
+        landing, run, rise = 1.2, 0.28, 0.18
+        steps = int(np.ceil((floor - ground) / rise))
+        wide = (along[0] - 0.25, along[1] + 0.25)
         number = self.scene.new_id() if steps else 0
         for step in range(steps):
-            start = 0.0 if step == 0 else _LANDING + (step - 1) * _RUN
-            outward = (-(_LANDING + step * _RUN), -start)
-            self.put(wide, outward, bottom, floor - step / steps * (floor - ground), number)
+            start = 0.0 if step == 0 else landing + (step - 1) * run
+            self.put(wide, (-(landing + step * run), -start), bottom, floor - step / steps * (floor - ground), number)
 
     def _build_opening(self, along: _Span, heights: _Span, kind: str, facade: int) -> None:
         """Add the pane and frame of an opening; a door is opaque."""
@@ -313,11 +260,11 @@ class _Wall:
         if kind == "window":
             truth.glass.add(pane)
         self.put(along, (_PANE, _PANE + _THIN), low, high, pane)
-        inward, width = (_FRAME, _PANE), _FRAME_WIDTH
-        for side in ((start, start + width), (end - width, end)):
-            self.put(side, inward, low, high, frame)
-        for bar in ((low, low + width), (high - width, high)):
-            self.put(along, inward, *bar, frame)
+        # Frames are 0.07 m wide and 0.1 m behind the front.
+        for side in ((start, start + 0.07), (end - 0.07, end)):
+            self.put(side, (0.1, _PANE), low, high, frame)
+        for bar in ((low, low + 0.07), (high - 0.07, high)):
+            self.put(along, (0.1, _PANE), *bar, frame)
         ground = max(low, min(float(self.scene.relief.plane(*self.line.at(position))) for position in along))
         corners = [(start, ground), (end, ground), (end, high), (start, high), (start, ground)]
         ring = np.array([(*self.line.at(a), z) for a, z in corners])
@@ -329,13 +276,14 @@ class _Wall:
         middle, floor = self.line.length / 2, top - height
         # The uppermost storey may be up to half a meter lower than the others.
         for level in np.arange(floor + _STOREY, top - _STOREY + 0.5, _STOREY):
-            number, along = self.scene.new_id(), (middle - _HALF_BALCONY, middle + _HALF_BALCONY)
-            self.put(along, (-_BALCONY, 0.0), level - _SLAB, level, number)
-            self.put(along, (-_BALCONY, -_BALCONY + _THIN), level, level + _PARAPET, number)
+            # A slab of 2.8 m by 1.1 m and 0.15 m, with a parapet of 1 m.
+            number, along = self.scene.new_id(), (middle - 1.4, middle + 1.4)
+            self.put(along, (-1.1, 0.0), level - 0.15, level, number)
+            self.put(along, (-1.1, -1.1 + _THIN), level, level + 1.0, number)
 
 
 def _axes(length: float) -> list[_Span]:
-    """Return the start and end (m) of each axis of openings along a wall."""
-    count = max(int((length - 2 * _MARGIN + (_AXIS - _WINDOW[0])) // _AXIS), 0)
+    """Return the start and end (m) of each axis of openings along a wall, at least 0.5 m from its ends."""
+    count = max(int((length - 1.0 + (_AXIS - _WINDOW[0])) // _AXIS), 0)
     middles = [length / 2 + (k - (count - 1) / 2) * _AXIS for k in range(count)]
     return [(middle - _WINDOW[0] / 2, middle + _WINDOW[0] / 2) for middle in middles]

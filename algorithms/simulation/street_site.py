@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from ..cloud.asprs import PointClass
@@ -9,7 +11,7 @@ from .bodies import Body, Rect, flat, gable
 from .plants import plant_tree
 from .relief import Relief
 from .scene import Scene
-from .town_layout import park_car
+from .town_layout import CAR, park_car
 
 # Side of the site (m): more than twice the range of 30 m of a drone's scanner in its middle.
 SIZE = 80.0
@@ -22,33 +24,6 @@ _HOUSES = (
     (23.0, -6.0, 11.0, 8.0, -90.0, 3.4, True),
 )
 
-# Pitch of gable roofs, as a tangent: 38°.
-_PITCH = np.tan(np.deg2rad(38.0))
-
-# Height of a storey (m); there are balconies at every storey.
-_STOREY = 3.0
-
-# Length and depth of a balcony (m).
-_BALCONY = (2.6, 1.2)
-
-# Cars in two rows along the street (m from the middle).
-_CARS = [(x, y) for y in (8.2, -1.8) for x in (-16.0, -10.5, -5.0, 6.5, 12.0)]
-
-# Lamps between the street and the houses (m from the middle).
-_LAMPS = [(x, 9.8) for x in (-18.0, -1.0, 16.0)]
-
-# Width and height of a lamp (m).
-_LAMP = (0.15, 6.0)
-
-# The first row of trees, south of the street (m from the middle).
-_ROW_OF_TREES = -9.0
-
-# Trees between the houses and the street (m from the middle).
-_TREES_IN_FRONT = ((-12.0, 5.0), (12.0, 4.0))
-
-# Least and greatest height of trees (m).
-_TREE_HEIGHTS = (6.0, 11.0)
-
 
 def build_site(trees: int, slope: float, seed: int) -> Scene:
     """Return a site with a number of ``trees`` on a plane with a ``slope`` (°).
@@ -60,16 +35,15 @@ def build_site(trees: int, slope: float, seed: int) -> Scene:
     scene = Scene(Relief(SIZE, angle, float(np.tan(np.deg2rad(slope)))))
     for x, y, length, width, turn, eave, has_gable in _HOUSES:
         _build_house(scene, Rect(*_position(x, y), length, width, np.deg2rad(turn)), eave, has_gable, rng)
-    # Cars of 4.3 m by 1.8 m, up to 0.4 m and 3° off their positions.
-    for x, y in _CARS:
-        park_car(scene, Rect(*_position(x + rng.uniform(-0.4, 0.4), y), 4.3, 1.8, np.deg2rad(rng.uniform(-3.0, 3.0))))
-    for x, y in _LAMPS:
-        lamp = Rect(*_position(x, y), _LAMP[0], _LAMP[0], 0.0)
-        ground = float(scene.relief.ground(lamp.x, lamp.y))
-        scene.add_box(lamp, ground - 1.0, ground + _LAMP[1], PointClass.UNCLASSIFIED)
+    # Cars in two rows along the street, up to 0.4 m and 3° off their positions.
+    for y, x in itertools.product((8.2, -1.8), (-16.0, -10.5, -5.0, 6.5, 12.0)):
+        park_car(scene, Rect(*_position(x + rng.uniform(-0.4, 0.4), y), *CAR, np.deg2rad(rng.uniform(-3.0, 3.0))))
+    # Lamps of 6 m between the street and the houses.
+    for x in (-18.0, -1.0, 16.0):
+        scene.add_post(Rect(*_position(x, 9.8), 0.15, 0.15, 0.0), 6.0)
     for x, y in _tree_positions(trees, rng):
         foot = (*_position(x, y), float(scene.relief.ground(*_position(x, y))))
-        plant_tree(scene, foot, rng.uniform(*_TREE_HEIGHTS), rng)
+        plant_tree(scene, foot, rng.uniform(6.0, 11.0), rng)
     return scene
 
 
@@ -81,14 +55,14 @@ def _position(x: float, y: float) -> tuple[float, float]:
 def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np.random.Generator) -> None:
     """Add a house with balconies on its front; heights are above the ground at the center of the house."""
     number, ground = scene.new_id(), float(scene.relief.ground(rect.x, rect.y))
-    tops = gable(rect, ground + eave, _PITCH) if has_gable else flat(rect, ground + eave)
+    tops = gable(rect, ground + eave, np.tan(np.deg2rad(38.0))) if has_gable else flat(rect, ground + eave)
     solids = [Body(rect, tops, ground - 3.0, PointClass.BUILDING, number)]
-    long, deep = _BALCONY
-    # A balcony with a parapet of 1 m every 5 m with a probability of 70 %, at least 2 m below the eaves.
-    for floor in np.arange(_STOREY, eave - 2.0, _STOREY):
+    # Storeys are 3 m high. Their balconies of 2.6 m by 1.2 m have parapets of 1 m; there is one every 5 m with a
+    # probability of 70 %, at least 2 m below the eaves.
+    for floor in np.arange(3.0, eave - 2.0, 3.0):
         for along in np.arange(-rect.length / 2 + 3.0, rect.length / 2 - 2.0, 5.0):
             if rng.random() < 0.7:
-                slab = rect.part(float(along), -(rect.width + deep) / 2, long, deep)
+                slab = rect.part(float(along), -(rect.width + 1.2) / 2, 2.6, 1.2)
                 parapet = flat(slab, ground + floor + 1.0)
                 solids.append(Body(slab, parapet, ground + floor, PointClass.BUILDING, number))
     scene.add_building("block", rect.corners(), solids)
@@ -99,6 +73,6 @@ def _tree_positions(count: int, rng: np.random.Generator) -> list[tuple[float, f
 
     Trees are up to 0.8 m off their positions.
     """
-    in_rows = [(x, _ROW_OF_TREES - 6.0 * line) for line in range(4) for x in (-6.0, 6.0, 0.0, -12.0, 12.0)]
-    positions = [*_TREES_IN_FRONT, *in_rows][:count]
+    in_rows = itertools.product((-9.0, -15.0, -21.0, -27.0), (-6.0, 6.0, 0.0, -12.0, 12.0))
+    positions = [(-12.0, 5.0), (12.0, 4.0), *((x, y) for y, x in in_rows)][:count]
     return [(float(x + rng.uniform(-0.8, 0.8)), float(y + rng.uniform(-0.8, 0.8))) for x, y in positions]
