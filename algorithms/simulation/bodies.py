@@ -17,9 +17,6 @@ import numpy as np
 # Most planes of the top of a solid: a hip roof has four.
 _MAX_TOPS = 4
 
-# Faces of a solid: four sides, the underside and the planes of the top.
-_FACES = 4 + 1 + _MAX_TOPS
-
 
 @dataclass(frozen=True)
 class Rect:
@@ -163,8 +160,8 @@ def rectangles(solids: Sequence[Body]) -> Rect:
 def stack(solids: Sequence[Body]) -> SolidArrays:
     """Convert solids to arrays."""
     rects, bottom = rectangles(solids), np.array([solid.bottom for solid in solids], float)
-    # Missing faces are (0, 0, 0, 1): every point is inside of them.
-    faces = np.zeros((len(solids), _FACES, 4))
+    # Four sides, the underside and the planes of the top; missing ones are (0, 0, 0, 1): every point is inside of them.
+    faces = np.zeros((len(solids), 5 + _MAX_TOPS, 4))
     faces[:, :, 3] = 1.0
     # One by one: the last bit of numpy's cosine of an array depends on the memory layout.
     cos, sin = (np.array([call(angle) for angle in np.asarray(rects.angle).tolist()]) for call in (math.cos, math.sin))

@@ -15,13 +15,6 @@ from .scene import Scene
 # Side of a cell, m: finer than the point spacing of drone clouds.
 CELL = 0.1
 
-# Unevenness of the ground (gardens, curbs, ruts): wavelength (m) and share of the standard deviation. The squares of
-# the shares add up to about one.
-_UNEVEN = ((2.5, 0.25), (8.0, 0.97))
-
-# Lumps of crowns: wavelength and standard deviation (m).
-_LUMPS = ((1.2, 0.35), (0.5, 0.15))
-
 
 @dataclass
 class HeightField:
@@ -55,11 +48,13 @@ def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) ->
     middle = (np.arange(n) + 0.5) * CELL
     x, y = np.meshgrid(middle, middle)
     ground = scene.relief.ground(x, y)
-    ground += unevenness * sum(share * smooth_noise(x.shape, length, rng) for length, share in _UNEVEN)
+    # Gardens, curbs and ruts: two wavelengths (m) with shares whose squares add up to about one.
+    ground += unevenness * sum(share * smooth_noise(x.shape, long, rng) for long, share in ((2.5, 0.25), (8.0, 0.97)))
     field = HeightField(
         ground, ground.copy(), np.full(x.shape, PointClass.GROUND, np.uint8), np.zeros(x.shape, np.int32)
     )
-    lumps = sum(height * smooth_noise(x.shape, width, rng) for width, height in _LUMPS)
+    # Lumps of crowns: two wavelengths and heights (m).
+    lumps = sum(height * smooth_noise(x.shape, width, rng) for width, height in ((1.2, 0.35), (0.5, 0.15)))
     for crown in scene.crowns:
         _add_crown(field, crown, lumps)
     for solid in scene.solids:

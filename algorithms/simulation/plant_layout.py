@@ -20,24 +20,6 @@ _LEVELS = (1.2, 2.4, 3.6)
 # Width of a rack (m).
 _WIDTH = 4.6
 
-# Least and greatest gap between neighboring pipes (m).
-_GAPS = (0.15, 0.5)
-
-# Least and greatest diameter of pipes (m).
-PIPES = (0.05, 0.6)
-
-# Least and greatest diameter of tanks (m).
-TANKS = (5.0, 30.0)
-
-# Radius of the axis of an elbow (pipe diameters): the common long-radius elbow.
-_BEND = 1.5
-
-# Probability that a pipe of the lowest or highest level turns down or up at its end.
-_TURNING = 0.6
-
-# Probability that a pipe has a flange.
-_FLANGED = 0.3
-
 # The direction of the zenith.
 _UP = np.array([0.0, 0.0, 1.0])
 
@@ -62,8 +44,7 @@ def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.ran
     rng : numpy.random.Generator
         Source of random numbers.
     """
-    plant, bay = Plant(), 0
-    remaining = pipes
+    plant, bay, remaining = Plant(), 0, pipes
     # With about 35 pipes per rack, there are about four times as many columns of bays as rows.
     columns = max(1, int(np.ceil(np.sqrt(max(1, pipes / 9)))))
     while remaining > 0:
@@ -71,11 +52,12 @@ def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.ran
         remaining -= _rack(plant, corner + PITCH / 2 * np.array([1.0, 1.0, 0.0]), remaining, clutter, rng)
         _stations(plant, corner)
         bay += 1
-    rows = int(np.ceil(bay / columns))
-    width, depth = columns * PITCH, max(rows, 1) * PITCH
-    edge = _tanks(plant, tanks, depth, rng)
+    width, depth = columns * PITCH, int(np.ceil(bay / columns)) * PITCH
+    west = min(-2.0, _tanks(plant, tanks, depth, rng))
     _spheres(plant, spheres, width, rng)
-    plant.parts.append(_floor(min(-2.0, edge), width + 2.0 + 6.0 * (spheres > 0), depth))
+    east = width + 2.0 + 6.0 * (spheres > 0)
+    sides = np.array([east - west, 0.0, 0.0]), np.array([0.0, depth + 4.0, 0.0])
+    plant.parts.append(plate("floor", np.array([west, -2.0, 0.0]), *sides))
     return plant
 
 
@@ -87,8 +69,8 @@ def _rack(plant: Plant, middle: np.ndarray, most: int, clutter: bool, rng: np.ra
     for level, height in enumerate(_LEVELS):
         at = -_WIDTH / 2
         while made < most:
-            diameter = float(np.exp(rng.uniform(*np.log(PIPES))))
-            gap = float(rng.uniform(*_GAPS))
+            # Pipes have diameters of 5 to 60 cm and gaps of 15 to 50 cm.
+            diameter, gap = float(np.exp(rng.uniform(*np.log((0.05, 0.6))))), float(rng.uniform(0.15, 0.5))
             if at + diameter > _WIDTH / 2:
                 break
             center = middle + (at + diameter / 2) * across + height * _UP
@@ -110,12 +92,15 @@ def _pipe_run(
     low, high = -_LENGTH / 2 + rng.uniform(0, 0.5), _LENGTH / 2 - rng.uniform(0, 0.5)
     start, end = center + low * along, center + high * along
     plant.parts.append(cylinder("pipe", start, end, radius))
-    if rng.random() < _FLANGED:
+    # Of the pipes 30 % have a flange.
+    if rng.random() < 0.3:
         at, wide, thick = start + rng.uniform(0.3, 0.7) * (end - start), radius * 1.4 + 0.02, 0.02 + 0.1 * radius
         plant.parts.append(cylinder("flange", at - thick * along, at + thick * along, wide))
         plant.parts += [disk("flange", at + sign * thick * along, sign * along, radius, wide) for sign in (-1, 1)]
-    bend = 2 * _BEND * radius
-    if level == 1 or most < 2 or rng.random() > _TURNING:
+    # The common long-radius elbow has a radius of 1.5 pipe diameters.
+    bend = 2 * 1.5 * radius
+    # Of the pipes of the lowest and highest level 60 % turn down or up at their end.
+    if level == 1 or most < 2 or rng.random() > 0.6:
         return 1
     side = np.cross(along, np.cross(_UP, along))
     toward = side / np.linalg.norm(side) * (1.0 if level else -1.0)
@@ -157,8 +142,9 @@ def _tanks(plant: Plant, count: int, depth: float, rng: np.random.Generator) -> 
     """Add tanks west of the racks with stations around them; return the easting (m) of their western end."""
     edge = -4.0
     for number in range(count):
+        # Diameters are from 5 to 30 m.
         share = number / (count - 1) if count > 1 else 0.3
-        radius = float(np.exp(np.log(TANKS[0]) + share * np.log(TANKS[1] / TANKS[0]))) / 2
+        radius = float(np.exp(np.log(5.0) + share * np.log(30.0 / 5.0))) / 2
         height = float(rng.uniform(0.6, 0.9) * min(2 * radius, 12.0))
         foot = np.array([edge - radius, depth / 2, 0.0])
         top = foot + height * _UP
@@ -177,8 +163,3 @@ def _spheres(plant: Plant, count: int, east: float, rng: np.random.Generator) ->
         center = np.array([east + 4.0, 3.0 + 5.0 * number, radius + 0.8])
         plant.parts.append(sphere(center, radius))
         plant.stations += [center + np.array([x, y, 1.7 - center[2]]) for x, y in ((-4.0, -3.0), (3.0, 3.0))]
-
-
-def _floor(west: float, east: float, depth: float) -> PlantPart:
-    corner, along = np.array([west, -2.0, 0.0]), np.array([east - west, 0.0, 0.0])
-    return plate("floor", corner, along, np.array([0.0, depth + 4.0, 0.0]))

@@ -5,42 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..stage import Monitor
+from ..stage import Monitor, tunable
 from .bodies import Rect
 from .scene import Scene
 
-# Share of the trees outside the forest that grow in clumps.
-_CLUMP_SHARE = 0.4
+FOREST = tunable(0.1, "Share of the area covered by forest.", label="Share of forest", within="[0, 1]")
 
 # Trees per clump.
 _CLUMP_SIZE = 4
 
-# Standard deviation of the positions of trees around the center of their clump, along each axis (m).
-_CLUMP_SPREAD = 2.5
-
 # Distance between trees of the forest (m).
 _FOREST_SPACING = 4.5
-
-# Largest displacement of a tree of the forest along each axis (share of the distance).
-_DISPLACED = 0.35
-
-# Shares of positions in the forest with a tree, and with a bush; some have both.
-_WITH_TREE, _WITH_BUSH = 0.9, 0.3
-
-# Share of the trees that are conifers.
-_CONIFERS = 0.3
-
-# Least distance of plants from buildings (m).
-_FROM_BUILDINGS = 1.5
-
-# Attempts to draw positions for all trees: a town full of houses or forest has no room for them.
-_DRAWS = 20
-
-# Least and greatest height of trees in gardens (m).
-_GARDEN_TREES = (5.0, 16.0)
-
-# Least and greatest height of trees in the forest (m).
-_FOREST_TREES = (10.0, 22.0)
 
 
 def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.Generator, monitor: Monitor) -> None:
@@ -59,14 +34,14 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     """
     size = scene.size
     n_trees = round(per_hectare * size**2 / 1e4 * (1 - forest))
-    n_alone = n_trees - round(_CLUMP_SHARE * n_trees) // _CLUMP_SIZE * _CLUMP_SIZE
-    open_ground = _open_positions(scene, n_alone, forest, rng)
-    clumps = _open_positions(scene, (n_trees - n_alone) // _CLUMP_SIZE, forest, rng)
-    clumps = np.repeat(clumps, _CLUMP_SIZE, axis=0) + rng.normal(0.0, _CLUMP_SPREAD, (len(clumps) * _CLUMP_SIZE, 2))
-    clumps = clumps[_is_free(scene, clumps)]
-    feet = _feet(scene, np.concatenate([open_ground, clumps]))
+    # Of the trees 40 % grow in clumps, with a standard deviation of 2.5 m around the centers.
+    n_clumps = round(0.4 * n_trees) // _CLUMP_SIZE
+    alone = _open_positions(scene, n_trees - n_clumps * _CLUMP_SIZE, forest, rng)
+    clumps = np.repeat(_open_positions(scene, n_clumps, forest, rng), _CLUMP_SIZE, axis=0)
+    clumps = clumps + rng.normal(0.0, 2.5, clumps.shape)
+    feet = _feet(scene, np.concatenate([alone, clumps[_is_free(scene, clumps)]]))
     for i, foot in enumerate(feet):
-        plant_tree(scene, foot, rng.uniform(*_GARDEN_TREES), rng)
+        plant_tree(scene, foot, rng.uniform(5.0, 16.0), rng)
         monitor.progress((1 - forest) * i / len(feet))
     _plant_forest(scene, forest, rng, monitor.part(1 - forest, 1.0))
 
@@ -83,15 +58,16 @@ def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor:
     """Plant trees and bushes on a jittered grid over the forest, except near buildings and water."""
     steps = np.arange(_FOREST_SPACING / 2, scene.size, _FOREST_SPACING)
     positions = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
-    positions = positions + rng.uniform(-_DISPLACED, _DISPLACED, positions.shape) * _FOREST_SPACING
-    positions = positions[in_forest(scene, positions, share) & _is_free(scene, positions)]
-    feet = _feet(scene, positions)
-    for i, foot in enumerate(feet):
+    positions = positions + rng.uniform(-0.35, 0.35, positions.shape) * _FOREST_SPACING
+    feet = _feet(scene, positions[in_forest(scene, positions, share) & _is_free(scene, positions)])
+    for i, (x, y, ground) in enumerate(feet):
+        # Of the positions 90 % have a tree, 30 % a bush, and 20 % both.
         kind = rng.random()
-        if kind < _WITH_TREE:
-            plant_tree(scene, foot, rng.uniform(*_FOREST_TREES), rng)
-        if kind > 1 - _WITH_BUSH:
-            _plant_bush(scene, foot, rng)
+        if kind < 0.9:
+            plant_tree(scene, (x, y, ground), rng.uniform(10.0, 22.0), rng)
+        if kind > 0.7:
+            radius = rng.uniform(0.4, 1.0)
+            scene.crowns.append((x, y, ground + 0.6 * radius, radius, radius, 0.8, scene.new_id()))
         monitor.progress(i / len(feet))
 
 
@@ -103,7 +79,8 @@ def _feet(scene: Scene, positions: np.ndarray) -> list[tuple[float, float, float
 def _open_positions(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
     """Return up to ``count`` random free positions (m) outside the forest."""
     positions = np.zeros((0, 2))
-    for _ in range(_DRAWS):
+    # A town full of houses or forest has no room for all trees.
+    for _ in range(20):
         tries = rng.uniform(0.0, scene.size, (count, 2))
         free = _is_free(scene, tries) & ~in_forest(scene, tries, forest)
         positions = np.concatenate([positions, tries[free]])[:count]
@@ -114,7 +91,7 @@ def _open_positions(scene: Scene, count: int, forest: float, rng: np.random.Gene
 
 def _is_free(scene: Scene, positions: np.ndarray) -> np.ndarray:
     inside = ((positions > 0) & (positions < scene.size)).all(axis=1)
-    return inside & ~scene.near_building(positions, _FROM_BUILDINGS) & ~scene.near_water(*positions.T)
+    return inside & ~scene.near_building(positions, 1.5) & ~scene.near_water(*positions.T)
 
 
 def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:
@@ -133,18 +110,10 @@ def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rn
     """
     x, y, ground = foot
     number = scene.new_id()
-    if rng.random() < _CONIFERS:
-        _conifer(scene, foot, height, number, rng)
-    else:
-        _broadleaf(scene, foot, height, number, rng)
+    # Of the trees 30 % are conifers.
+    (_conifer if rng.random() < 0.3 else _broadleaf)(scene, foot, height, number, rng)
     stem = Rect(x, y, 0.03 * height, 0.03 * height, 0.0)
     scene.add_box(stem, ground - 1.0, ground + 0.6 * height, PointClass.HIGH_VEGETATION, number)
-
-
-def _plant_bush(scene: Scene, foot: tuple[float, float, float], rng: np.random.Generator) -> None:
-    x, y, ground = foot
-    radius = rng.uniform(0.4, 1.0)
-    scene.crowns.append((x, y, ground + 0.6 * radius, radius, radius, 0.8, scene.new_id()))
 
 
 def _conifer(scene: Scene, foot: tuple, height: float, number: int, rng: np.random.Generator) -> None:
@@ -160,11 +129,9 @@ def _broadleaf(scene: Scene, foot: tuple, height: float, number: int, rng: np.ra
     radius, middle = height * rng.uniform(0.22, 0.32), ground + 0.64 * height
     scene.crowns.append((x, y, middle, 0.8 * radius, 0.3 * height, 1.7, number))
     for _ in range(5):
-        turn, up = rng.uniform(0.0, 2 * np.pi), rng.uniform(-0.15, 0.22) * height
-        out = 0.6 * radius
-        scene.crowns.append(
-            (x + out * np.cos(turn), y + out * np.sin(turn), middle + up, 0.45 * radius, 0.14 * height, 1.1, number)
-        )
+        turn, z, out = rng.uniform(0.0, 2 * np.pi), middle + rng.uniform(-0.15, 0.22) * height, 0.6 * radius
+        center = (x + out * np.cos(turn), y + out * np.sin(turn), z)
+        scene.crowns.append((*center, 0.45 * radius, 0.14 * height, 1.1, number))
 
 
 def plant_hedge(scene: Scene, line: Rect, height: float) -> None:

@@ -27,9 +27,6 @@ _WATER_DEPTH = 1.5
 # Distance between terraces (m).
 _TERRACE_LENGTH = 45.0
 
-# Largest gradient of the ground: beams up to 30° off the vertical meet ground below 1 / tan 30° = 1.73 exactly once.
-_STEEPEST = 1.7
-
 
 @dataclass(frozen=True)
 class Relief:
@@ -77,10 +74,8 @@ class Relief:
         return self._ground(*self.frame.local(x, y))
 
     def _ground(self, across, along) -> np.ndarray:
-        distance = across if self.river is None else across - self.river
-        rise = distance
-        if self.river is not None:
-            rise = np.sign(distance) * np.maximum(np.abs(distance) - VALLEY, 0.0)
+        distance = across - (self.river or 0.0)
+        rise = distance if self.river is None else np.sign(distance) * np.maximum(np.abs(distance) - VALLEY, 0.0)
         z = self.gradient * rise + self._terrace(rise) + self._hill(across, along, rise)
         return z if self.river is None else z - np.clip((CHANNEL - np.abs(distance)) * _BANK_SLOPE, 0.0, _CHANNEL_DEPTH)
 
@@ -109,8 +104,9 @@ class Relief:
         """Return the height (m) of terraces: steep risers and slightly falling treads, which keep the mean slope."""
         if not self.terrace_height:
             return 0.0
-        # The gradient of the hills is at most 0.04 of their height.
-        riser = self.terrace_height / (min(1.0, _STEEPEST - self.gradient - 0.04 * self.hills))
+        # Beams up to 30° off the vertical meet ground with a gradient below 1 / tan 30° = 1.73 exactly once. The
+        # gradient of the hills is at most 0.04 of their height.
+        riser = self.terrace_height / (min(1.0, 1.7 - self.gradient - 0.04 * self.hills))
         at = np.mod(rise, _TERRACE_LENGTH)
         return self.terrace_height * np.minimum(at / riser, (_TERRACE_LENGTH - at) / (_TERRACE_LENGTH - riser))
 

@@ -181,24 +181,26 @@ def _free_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Gener
     return None
 
 
-def _clear(scene: Scene, rect: Rect) -> None:
-    """Remove plants and vehicles from the footprint of a new building."""
-    scene.crowns[:] = [row for row in scene.crowns if not rect.contains(row[0], row[1], row[3] + 0.5)]
-    scene.solids[:] = [
-        solid
-        for solid in scene.solids
-        if solid.classification == PointClass.BUILDING or not rect.contains(solid.rect.x, solid.rect.y, 2.5)
-    ]
+def _cleared_rectangle(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
+    """Return a free rectangle, and remove plants and vehicles from it."""
+    rect = _free_rectangle(scene, long, wide, rng)
+    if rect is not None:
+        scene.crowns[:] = [row for row in scene.crowns if not rect.contains(row[0], row[1], row[3] + 0.5)]
+        scene.solids[:] = [
+            solid
+            for solid in scene.solids
+            if solid.classification == PointClass.BUILDING or not rect.contains(solid.rect.x, solid.rect.y, 2.5)
+        ]
+    return rect
 
 
 def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
     """Add the k-th hall, with a flat roof and a parapet."""
     # Steps of the golden ratio spread the lengths evenly from 10 to 100 m for any number of halls.
     long = min(10.0 * 10.0 ** float(np.mod(0.35 + 0.382 * k, 1.0)), 0.6 * scene.size)
-    rect = _free_rectangle(scene, long, long * rng.uniform(0.5, 0.8), rng)
+    rect = _cleared_rectangle(scene, long, long * rng.uniform(0.5, 0.8), rng)
     if rect is None:
         return
-    _clear(scene, rect)
     site = Site(scene, rect, rng.uniform(3.0, 9.0))
     # Parapets are 0.35 m wide and 0.6 m high.
     along, across, wide = (rect.length - 0.35) / 2, (rect.width - 0.35) / 2, 0.35
@@ -211,10 +213,9 @@ def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
 def _add_block(scene: Scene, rng: np.random.Generator) -> None:
     """Add a block of four adjoining flat roofs."""
     wide = rng.uniform(7.0, 11.0)
-    rect = _free_rectangle(scene, 4 * wide, 12.0, rng)
+    rect = _cleared_rectangle(scene, 4 * wide, 12.0, rng)
     if rect is None:
         return
-    _clear(scene, rect)
     height = rng.uniform(5.0, 9.0)
     for k in range(4):
         part = rect.part((k - 1.5) * wide, 0.0, wide, rect.width)

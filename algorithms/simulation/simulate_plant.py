@@ -17,26 +17,17 @@ from .plant_layout import Plant, build_plant
 # Most candidate points: at 44 bytes each they take 1.8 GB, which fits into the memory of an office computer.
 _MAX_POINTS = 4e7
 
-# Candidates per point: with three on average, few parts of a surface are left without points.
-_CANDIDATES = 3.0
-
 # Candidates drawn per block: about 100 bytes each meanwhile.
 _DRAWN = 1_000_000
 
 # Density of the floor, as a share of the density of other surfaces: its area is larger than the area of pipes.
 _FLOOR = 0.05
 
-# Range of the scanner (m).
-_RANGE = 45.0
-
 # Distance (m) from the scanner up to which surfaces have the full density.
 _FULL_DENSITY = 6.0
 
 # Least angle (°) between beam and surface that returns an echo.
 _LEAST_INCIDENCE = 8.0
-
-# Points up to this distance (spacings) behind the first one in a beam are on the same surface.
-_SAME = 2.0
 
 _AXIS_FIELDS = (
     Field("id", int, "number of the part, as SegmentID of its points"),
@@ -159,8 +150,9 @@ def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor:
         monitor.progress(number / len(plant.parts))
         nearest = max(1.0, float(stations.query(part.middle)[0]) - np.sqrt(part.area) / 2)
         falling = min(1.0, (_FULL_DENSITY / nearest) ** 2)
-        # At least 20, so that no small part is missed by chance.
-        count = max(20, round(_CANDIDATES * density * falling * part.area * (_FLOOR if part.kind == "floor" else 1.0)))
+        # With three candidates per point few parts of a surface are left without points; at least 20 candidates, so
+        # that no small part is missed by chance.
+        count = max(20, round(3.0 * density * falling * part.area * (_FLOOR if part.kind == "floor" else 1.0)))
         for start in range(0, count, _DRAWN):
             positions, normals = part.sample(rng, min(_DRAWN, count - start))
             distance = np.maximum(stations.query(positions, workers=n_threads())[0], _FULL_DENSITY)
@@ -197,7 +189,8 @@ def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarr
         cell = (elevation / width).astype(np.int64) * columns + (around / width).astype(np.int64)
         nearest = np.zeros((int(np.pi / width) + 2) * columns, np.float32)
         nearest[cell] = distance
-        is_first &= distance <= nearest[cell] + _SAME * width * distance / np.maximum(facing, 0.1)
+        # Points up to two spacings behind the first one in a beam are on the same surface.
+        is_first &= distance <= nearest[cell] + 2.0 * width * distance / np.maximum(facing, 0.1)
     lit = np.flatnonzero(is_first & (facing > np.sin(np.radians(_LEAST_INCIDENCE))))
     chosen = placed(near[lit], cell[lit], len(nearest), -1)
     return chosen[chosen >= 0]
@@ -210,7 +203,8 @@ def _looked_at(candidates: _Candidates, station: np.ndarray) -> tuple[np.ndarray
         offset = (candidates.xyz[start : start + _DRAWN] - station).astype(np.float32)
         distance = np.sqrt(np.einsum("ij,ij->i", offset, offset))
         reach = candidates.reach[start : start + _DRAWN]
-        near = np.flatnonzero((distance < _RANGE) & (np.maximum(distance, _FULL_DENSITY) <= reach))
+        # The range of the scanner is 45 m.
+        near = np.flatnonzero((distance < 45.0) & (np.maximum(distance, _FULL_DENSITY) <= reach))
         rows.append(near + start)
         offsets.append(offset[near])
     return np.concatenate(rows), np.concatenate(offsets)
@@ -230,27 +224,25 @@ def _thinned(xyz: np.ndarray, part: np.ndarray, plant: Plant, density: float) ->
 def _dimensions(xyz: np.ndarray, part: np.ndarray, plant: Plant) -> tuple:
     """Return the dimensions of the points, and the layers of axes and centers."""
     parts = plant.parts
-    unnumbered = np.array([one.kind in {"clutter", "grating"} for one in parts])
-    is_flange = np.array([one.kind == "flange" for one in parts])
+    kinds = np.array([one.kind for one in parts])
+    unnumbered, is_flange = np.isin(kinds, ("clutter", "grating")), kinds == "flange"
     ids = np.where(unnumbered, 0, np.cumsum(~unnumbered)).astype(np.int32)
     # The three surfaces of a flange are one part.
     for number in np.flatnonzero(is_flange[1:] & is_flange[:-1]) + 1:
         ids[number] = ids[number - 1]
     count = np.bincount(part, minlength=len(parts))
-    classes = np.where(np.array([one.kind == "floor" for one in parts]), PointClass.GROUND, PointClass.UNCLASSIFIED)
+    classes = np.where(kinds == "floor", PointClass.GROUND, PointClass.UNCLASSIFIED).astype(np.uint8)
     shape = np.array([one.shape for one in parts], np.uint8)
 
     def layer(kinds: set[str], position: str, fields: tuple[Field, ...]) -> LayerFeatures:
-        chosen = [n for n, one in enumerate(parts) if one.kind in kinds and count[n]]
-        columns = {
-            "id": [int(ids[n]) for n in chosen],
-            "kind": [parts[n].kind for n in chosen],
-            "radius": [parts[n].radius for n in chosen],
-            "length": [float(np.linalg.norm(np.diff(parts[n].axis, axis=0))) for n in chosen],
-            "points": [int(count[n]) for n in chosen],
-        }
-        positions = [getattr(parts[n], position) for n in chosen]
-        return LayerFeatures(positions, {field.name: columns[field.name] for field in fields})
+        seen = [(one, int(ids[n]), int(count[n])) for n, one in enumerate(parts) if one.kind in kinds and count[n]]
+        lengths = [float(np.linalg.norm(np.diff(one.axis, axis=0))) for one, *_ in seen]
+        rows = [
+            {"id": number, "kind": one.kind, "radius": one.radius, "length": length, "points": points}
+            for (one, number, points), length in zip(seen, lengths)
+        ]
+        columns = {field.name: [row[field.name] for row in rows] for field in fields}
+        return LayerFeatures([getattr(one, position) for one, *_ in seen], columns)
 
     layers = layer({"pipe", "tank"}, "axis", _AXIS_FIELDS), layer({"sphere"}, "middle", _CENTER_FIELDS)
-    return xyz, classes.astype(np.uint8)[part], ids[part], shape[part], *layers
+    return xyz, classes[part], ids[part], shape[part], *layers

@@ -8,7 +8,7 @@ from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Monitor, stage, tunable
 from .bodies import Body, Rect, gable
-from .plants import plant_trees
+from .plants import FOREST, plant_trees
 from .relief import Relief
 from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, AirSurvey, refuse_large, scan
 from .scene import Scene
@@ -42,9 +42,7 @@ def simulate_power_line(
     span: float = tunable(120.0, "Distance between the towers of the transmission line.", within="[50, 500] m"),
     angle: float = tunable(15.0, "Direction of both lines from east.", within="[0, 90]°"),
     trees: float = tunable(20.0, "Trees outside the forest.", within="[0, 200] per ha"),
-    forest: float = tunable(
-        0.15, "Share of the site covered by forest, also below the lines.", label="Share of forest", within="[0, 1]"
-    ),
+    forest: float = FOREST.with_default(0.15),
     range_noise: float = RANGE_NOISE,
     seed: int = SEED,
     monitor=None,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..params import SEED
 from ..stage import stage, tunable
+from .plants import FOREST
 from .scanner import PATTERNS, PULSE_DENSITY, RANGE_NOISE, RECORDED, AirSurvey, refuse_large, scan
 from .town_layout import MAX_BUILDINGS, TownPlan, build_town
 
@@ -24,7 +25,7 @@ def simulate_town(
     trees: float = tunable(
         20.0, "Trees outside the forest, single and in clumps, if space permits.", within="[0, 200] per ha"
     ),
-    forest: float = tunable(0.1, "Share of the town covered by forest.", label="Share of forest", within="[0, 1]"),
+    forest: float = FOREST,
     slope: float = tunable(3.0, "Mean slope of the ground.", within="[0, 40]°"),
     relief: float = tunable(2.0, "Approximate height difference between hollows and hills.", within="[0, 10] m"),
     terrace_height: float = tunable(1.5, "Rise of the terraces, one every 45 m up the slope.", within="[0, 5] m"),

@@ -12,41 +12,11 @@ from ..params import SEED
 from ..shapes.stem_search import BREAST
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 
-# Radius of a branch at its base, as a share of the radius of its parent there.
-_THINNER = 0.55
-
 # Radius of a branch at its tip, as a share of the radius at its base.
 _TIP = 0.35
 
-# Least and greatest length of a branch, as a share of the distance from its base to the tip of its parent.
-_LENGTH = (0.35, 0.6)
-
-# Least and greatest angle between a branch and its parent (°).
-_ANGLE = (45.0, 70.0)
-
 # Straight pieces per branch.
 _PIECES = 12
-
-# Standard deviation of the direction from one piece to the next, in each coordinate (°).
-_TURN = 3.0
-
-# Branches leave the stem from the first share of its length on, over the second share.
-_OF_STEM = (0.3, 0.6)
-
-# Shares of the length of a branch at which its branches leave it.
-_OF_BRANCH = (0.3, 0.5, 0.7)
-
-# Least length of a branch with branches (m).
-_LONG = 2.0
-
-# Standard deviation (m) of leaves from the axis of their branch, in each coordinate.
-_LEAF_SPREAD = 0.15
-
-# Half the side of the square of ground (m).
-_GROUND = 3.0
-
-# Points of the ground per square meter.
-_GROUND_DENSITY = 200.0
 
 _FIELDS = (
     Field("id", int, "number of the branch, as SegmentID of its points"),
@@ -67,10 +37,6 @@ class _Limb:
     @property
     def length(self) -> float:
         return float(np.linalg.norm(np.diff(self.line, axis=0), axis=1).sum())
-
-    @property
-    def facts(self) -> dict[str, float]:
-        return {"branch_order": self.order, "length": self.length, "radius": float(self.radius[0])}
 
 
 @stage(
@@ -127,16 +93,18 @@ def simulate_tree(
     points = [_outside(_bark(limb, density, noise, rng), limb, limbs) for limb in limbs]
     n_wood = sum(len(one) for one in points)
     foliage = _foliage(limbs, round(leaves * n_wood), rng)
-    ground = rng.uniform(-_GROUND, _GROUND, (round((2 * _GROUND) ** 2 * _GROUND_DENSITY), 3)) * [1, 1, 0]
+    # A square of 6 m with 200 points per m².
+    ground = rng.uniform(-3.0, 3.0, (7200, 3)) * [1, 1, 0]
     ground[:, 2] += noise * rng.standard_normal(len(ground))
     ids = np.repeat(np.arange(1, len(limbs) + 1), [len(one) for one in points])
     n_other = len(foliage) + len(ground)
     classes = np.repeat([PointClass.HIGH_VEGETATION, PointClass.GROUND], [n_wood + len(foliage), len(ground)])
+    facts = [{"branch_order": one.order, "length": one.length, "radius": float(one.radius[0])} for one in limbs]
     return (
         np.concatenate([*points, foliage, ground]),
         classes.astype(np.uint8),
         np.concatenate([ids, np.zeros(n_other)]).astype(np.int32),
-        LayerFeatures.numbered([(limb.line, limb.facts) for limb in limbs], _FIELDS),
+        LayerFeatures.numbered([(limb.line, row) for limb, row in zip(limbs, facts)], _FIELDS),
     )
 
 
@@ -148,13 +116,15 @@ def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -
     limbs = [stem]
     turn = rng.uniform(0, 2 * np.pi)
     for number in range(branches):
-        share = _OF_STEM[0] + _OF_STEM[1] * (number + rng.uniform(0.2, 0.8)) / branches
+        # Branches leave the stem from 30 to 90 % of its height.
+        share = 0.3 + 0.6 * (number + rng.uniform(0.2, 0.8)) / branches
         # Steps of the golden angle avoid branches above each other.
-        limbs.append(_branch(stem, share, turn + number * np.pi * (3 - np.sqrt(5)), rng))
-        if limbs[-1].length >= _LONG:
-            limb = limbs[-1]
-            sides = rng.uniform(0, 2 * np.pi) + np.arange(len(_OF_BRANCH)) * np.pi
-            limbs += [_branch(limb, at, side, rng) for at, side in zip(_OF_BRANCH, sides)]
+        limb = _branch(stem, share, turn + number * np.pi * (3 - np.sqrt(5)), rng)
+        limbs.append(limb)
+        # From 2 m on a branch has three branches, alternately at both sides.
+        if limb.length >= 2.0:
+            sides = rng.uniform(0, 2 * np.pi) + np.arange(3) * np.pi
+            limbs += [_branch(limb, at, side, rng) for at, side in zip((0.3, 0.5, 0.7), sides)]
     return limbs
 
 
@@ -162,24 +132,25 @@ def _branch(parent: _Limb, share: float, turn: float, rng: np.random.Generator) 
     """Return a branch that starts at a share of the length of its parent."""
     at = share * (len(parent.line) - 1)
     first = int(at)
-    base = parent.line[first] + (at - first) * (parent.line[first + 1] - parent.line[first])
     along = parent.line[first + 1] - parent.line[first]
+    base = parent.line[first] + (at - first) * along
     along /= np.linalg.norm(along)
     one, other = axes_across(along)
-    angle = np.radians(rng.uniform(*_ANGLE))
+    angle = np.radians(rng.uniform(45.0, 70.0))
     direction = np.cos(angle) * along + np.sin(angle) * (np.cos(turn) * one + np.sin(turn) * other)
-    length = rng.uniform(*_LENGTH) * (1 - share) * parent.length
-    radius = _THINNER * float(np.interp(at, np.arange(len(parent.radius)), parent.radius))
+    # A branch is shorter than the rest of its parent, and has 55 % of its radius.
+    length = rng.uniform(0.35, 0.6) * (1 - share) * parent.length
+    radius = 0.55 * float(np.interp(at, np.arange(len(parent.radius)), parent.radius))
     return _limb(base, direction, length, radius, parent.order + 1, rng)
 
 
 def _limb(
     base: np.ndarray, direction: np.ndarray, length: float, radius: float, order: int, rng: np.random.Generator
 ) -> _Limb:
-    """Return a limb of straight pieces with slightly different directions."""
+    """Return a limb of straight pieces with directions that differ by a standard deviation of 3° per coordinate."""
     line = [base]
     for _ in range(_PIECES):
-        direction = direction + np.radians(_TURN) * rng.standard_normal(3)
+        direction = direction + np.radians(3.0) * rng.standard_normal(3)
         direction /= np.linalg.norm(direction)
         line.append(line[-1] + length / _PIECES * direction)
     return _Limb(np.array(line), np.linspace(radius, _TIP * radius, _PIECES + 1), order)
@@ -213,11 +184,11 @@ def _outside(xyz: np.ndarray, limb: _Limb, limbs: list[_Limb]) -> np.ndarray:
 
 
 def _foliage(limbs: list[_Limb], count: int, rng: np.random.Generator) -> np.ndarray:
-    """Sample points (count, 3) on leaves around the outer halves of branches."""
+    """Sample points (count, 3) on leaves around the outer halves of branches, with a standard deviation of 0.15 m."""
     bearing = [limb for limb in limbs if limb.order > 0]
     if not bearing:
         return np.zeros((0, 3))
     which = rng.integers(0, len(bearing), count)
     at = rng.integers(_PIECES // 2, _PIECES + 1, count)
     lines = np.array([limb.line for limb in bearing])
-    return lines[which, at] + rng.normal(0, _LEAF_SPREAD, (count, 3))
+    return lines[which, at] + rng.normal(0, 0.15, (count, 3))

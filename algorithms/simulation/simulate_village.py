@@ -18,8 +18,6 @@ from .village_layout import MAX_HOMES, Village, build_village
 # Radius (m) of holes where matching fails, and side of the cells in which their centers are drawn.
 _HOLE = 0.5
 
-_CREATED = ("xyz", "classification", "return_number", "number_of_returns", "red", "green", "blue", "segment_id")
-
 _FOOTPRINT_FIELDS = (
     Field("id", int, "object id of the building, as SegmentID of its points"),
     Field("kind", str, "rectangle, hip, L, bend or shed"),
@@ -37,7 +35,7 @@ _MAP_FIELDS = (
 @stage(
     "Simulation",
     tags="synthetic,drone,UAV,photogrammetry,oblique,walls,eaves,cadastre,demo,example,test,truth,teaching",
-    creates=_CREATED,
+    creates=("xyz", "classification", "return_number", "number_of_returns", "red", "green", "blue", "segment_id"),
     layers=(
         Layer("footprints", "True wall footprints", "Polygon", _FOOTPRINT_FIELDS),
         Layer("old_map", "Old map", "Polygon", _MAP_FIELDS),
@@ -53,9 +51,7 @@ def simulate_village(
         within="[5, 1000] points/m²",
     ),
     buildings: float = tunable(
-        12.0,
-        "Houses per hectare of streets and plots, two of three with a shed.",
-        within=f"[0, {MAX_HOMES}] per ha",
+        12.0, "Houses per hectare of streets and plots, two of three with a shed.", within=f"[0, {MAX_HOMES}] per ha"
     ),
     trees: float = tunable(15.0, "Trees in gardens.", within="[0, 200] per ha"),
     slope: float = tunable(2.0, "Mean slope of the ground.", within="[0, 20]°"),
