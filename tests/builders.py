@@ -41,6 +41,30 @@ def crown(
     return direction * radius * rng.random((count, 1)) ** (1 / 3) + [x, y, middle]
 
 
+def gable(
+    rng: np.random.Generator, density: float = 15.0, noise: float = 0.03, pitch: float = 35.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return points (n, 3) of a roof of 12 m by 8 m with an eastward ridge, and whether each is on its north side."""
+    xy = rng.uniform(0, [12, 8], (round(96 * density), 2))
+    z = 6 + np.tan(np.radians(pitch)) * (4 - np.abs(xy[:, 1] - 4))
+    return np.column_stack([xy, z + rng.normal(0, noise, len(xy))]), xy[:, 1] > 4
+
+
+def tilted(
+    rng: np.random.Generator, slope: float, size: float = 8.0, density: float = 20.0, noise: float = 0.02
+) -> np.ndarray:
+    """Return points (n, 3) of a square that rises eastward with ``slope`` degrees, evenly dense on it."""
+    along, across = rng.uniform(0, size, (2, round(size**2 * density)))
+    off, angle = rng.normal(0, noise, len(along)), np.radians(slope)
+    east, up = np.cos(angle) * along - np.sin(angle) * off, np.sin(angle) * along + np.cos(angle) * off
+    return np.column_stack([east, across, up])
+
+
+def rectangle(west: float, south: float, width: float = 10.0, depth: float = 10.0) -> np.ndarray:
+    """Return the closed ring (5, 2) of a rectangle, counterclockwise."""
+    return np.array([[0, 0], [width, 0], [width, depth], [0, depth], [0, 0]]) + [west, south]
+
+
 def turned(points: np.ndarray, degrees: float) -> np.ndarray:
     """Return points (n, 2) or (n, 3) turned counterclockwise about the origin of the plan."""
     turned, (cos, sin) = np.array(points, float), (np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees)))

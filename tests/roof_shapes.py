@@ -5,6 +5,8 @@ from typing import Callable
 
 import numpy as np
 
+from lidar_buildings.tests.builders import is_inside, rectangle
+
 
 @dataclass(frozen=True)
 class RoofShape:
@@ -32,7 +34,7 @@ class RoofShape:
         rng = np.random.default_rng(seed)
         low, high = self.outline.min(axis=0), self.outline.max(axis=0)
         xy = rng.uniform(low, high, (round(np.prod(high - low) * density), 2))
-        xy = xy[inside(xy, self.ring)]
+        xy = xy[is_inside(xy, [self.ring])]
         z = self.top(*xy.T) + rng.normal(0, noise, len(xy))
         return np.column_stack([moved(xy, turn, origin), z]), moved(self.ring, turn, origin)
 
@@ -43,16 +45,8 @@ def moved(xy, turn, origin):
     return np.asarray(xy)[:, :2] @ np.array([[c, s], [-s, c]]) + origin
 
 
-def inside(xy, ring):
-    odd = np.zeros(len(xy), bool)
-    for (a, b), (c, d) in zip(ring, ring[1:]):
-        if b != d:
-            odd ^= ((b > xy[:, 1]) != (d > xy[:, 1])) & (xy[:, 0] < a + (xy[:, 1] - b) * (c - a) / (d - b))
-    return odd
-
-
 def _box(w, d):
-    return np.array([[0, 0], [w, 0], [w, d], [0, d]], float)
+    return rectangle(0.0, 0.0, w, d)[:4]
 
 
 def _over(outline, top, more, kind):

@@ -35,7 +35,6 @@ _CLIMB = 0.2
 # Periods of the deviations from the path due to wind and control (s).
 _PERIODS = (3.1, 5.3, 11.7)
 
-
 # Dimensions of points by name.
 Dimensions = dict[str, np.ndarray]
 

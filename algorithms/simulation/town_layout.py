@@ -108,6 +108,7 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
     relief = scene.relief
     plots = plots_along_streets(relief, _STREET_SPACING, 14.0, 16.0, per_block=6)
     if relief.river is not None:
+        # Half a plot from the valley floor to the center of a plot.
         beyond = VALLEY + 7.0
         plots = [plot for plot in plots if abs(relief.frame.local(plot.x, plot.y)[0] - relief.river) >= beyond]
     return [plot for plot in plots if not in_forest(scene, plot.corners(3.0), forest).any()]

@@ -18,6 +18,7 @@ from lidar_buildings.algorithms.run import run_pipeline, run_stage
 from lidar_buildings.algorithms.sampling import cloud_sampling
 from lidar_buildings.algorithms.stage import Cancelled, LayerFeatures, Monitor
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.tests.builders import crown
 from lidar_buildings.tests.monitors import Listening
 from lidar_buildings.tests.toys import TOY_MAPPING, TOYS
 
@@ -35,11 +36,8 @@ def hamlet(seed=5, density=4):
     z[house], truth[house] = 4.5 + 4 + (6 - np.abs(plan[house, 0] - 16)) * 0.8, HOUSE
     shed = ((plan > [35, 12]) & (plan < [47, 20])).all(axis=1)
     z[shed], truth[shed] = 8.0, SHED
-    crowns = []
-    for x, y, radius in ((20, 45, 4.0), (42, 42, 3.0)):
-        direction = random.normal(size=(int(30 * radius**3 / 3), 3))
-        direction *= radius / np.linalg.norm(direction, axis=1)[:, None]
-        crowns.append(direction * random.random((len(direction), 1)) ** (1 / 3) + [x, y, 0.08 * x + 3 + radius])
+    trees = ((20, 45, 4.0), (42, 42, 3.0))
+    crowns = [crown(random, x, y, r, 0.08 * x + 3 + r, int(30 * r**3 / 3)) for x, y, r in trees]
     leaves = np.concatenate(crowns)
     xyz = np.concatenate([np.column_stack([plan, z + random.normal(0, 0.02, len(plan))]), leaves, [[30.0, 30.0, 90.0]]])
     return xyz, np.concatenate([truth, np.full(len(leaves), CROWN), [BIRD]])

@@ -13,7 +13,8 @@ from lidar_buildings.algorithms.models3d.compute_building_heights import (
 )
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
-from lidar_buildings.tests.roof_shapes import SHAPES, inside
+from lidar_buildings.tests.builders import is_inside
+from lidar_buildings.tests.roof_shapes import SHAPES
 
 GROUND = 20.0
 
@@ -23,7 +24,7 @@ def scene(shape, turn=20.0, origin=(0.0, 0.0), density=12.0):
     roof, ring = shape.scanned(density, turn=turn, origin=origin)
     rng = np.random.default_rng(1)
     around = np.column_stack([rng.uniform(-14, 28, (8000, 2)) + origin, rng.normal(0, 0.03, 8000)])
-    around = around[~inside(around[:, :2], ring)]
+    around = around[~is_inside(around[:, :2], [ring])]
     xyz = np.concatenate([roof, around]) + [0, 0, GROUND]
     return xyz, np.repeat([6, 2], [len(roof), len(around)]).astype(np.uint8), ring
 
@@ -41,7 +42,7 @@ def true_surface(shape):
     """Return the elevations (k,) of a roof every 0.05 m."""
     low, high = shape.outline.min(axis=0), shape.outline.max(axis=0)
     xy = np.mgrid[low[0] : high[0] : 0.05, low[1] : high[1] : 0.05].reshape(2, -1).T + 0.025
-    return shape.top(*xy[inside(xy, shape.ring)].T) + GROUND
+    return shape.top(*xy[is_inside(xy, [shape.ring])].T) + GROUND
 
 
 @pytest.mark.parametrize("name", ["flat", "shed", "gable", "hip", "mansard", "steps"])

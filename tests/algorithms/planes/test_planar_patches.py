@@ -7,7 +7,7 @@ from lidar_buildings.algorithms.neighborhoods.covariance import Nearest
 from lidar_buildings.algorithms.planes import planar_patches as module
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.builders import FAR, crown
 from lidar_buildings.tests.monitors import Listening
 
 
@@ -27,9 +27,7 @@ def gable(rng, density, noise, slope=40.0):
 
 def leaves(rng, density, radius=4.0):
     """Return points spread evenly in a ball, ``density`` of them per square meter seen from above, twice returned."""
-    direction = rng.normal(size=(int(2 * density * np.pi * radius**2), 3))
-    direction /= np.linalg.norm(direction, axis=1)[:, None]
-    return direction * radius * rng.random((len(direction), 1)) ** (1 / 3)
+    return crown(rng, 0, 0, radius, 0, int(2 * density * np.pi * radius**2))
 
 
 def largest(patch, count):

@@ -12,11 +12,11 @@ from lidar_buildings.algorithms.quality.assess_footprints import (
     assess_footprints,
 )
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
-from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.builders import FAR, rectangle
 
 
 def box(west, south, width=10.0, depth=10.0):
-    return [np.array([[0, 0], [width, 0], [width, depth], [0, depth], [0, 0]]) + [west, south]]
+    return [rectangle(west, south, width, depth)]
 
 
 def layer(*outlines, **columns):

@@ -13,10 +13,11 @@ from lidar_buildings.algorithms.quality.compare_surveys import (
     compare_surveys,
 )
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.tests.builders import rectangle
 
 
 def box(west, south, width=10.0, depth=10.0):
-    return [np.array([[0, 0], [width, 0], [width, depth], [0, depth], [0, 0]]) + [west, south]]
+    return [rectangle(west, south, width, depth)]
 
 
 def compared(new, old, heights=None, **tunables):

@@ -6,23 +6,22 @@ import numpy as np
 
 from lidar_buildings.algorithms.report.page import with_coordinates
 from lidar_buildings.algorithms.report.polygon_map import draw_polygons
+from lidar_buildings.tests.builders import rectangle
 
 COLORS = {"kept": "#004488", "<lost>": "#ddaa33"}
 
 
-def box(west, south, size=10.0):
-    return np.array([[0, 0], [size, 0], [size, size], [0, size], [0, 0]]) + [west, south]
-
-
 def test_polygons_have_the_colors_of_their_kinds_the_last_kind_on_top():
-    drawn = draw_polygons([[box(0, 0)], [box(20, 0)], [box(40, 0)]], ["<lost>", "kept", "kept"], COLORS)
+    drawn = draw_polygons(
+        [[rectangle(0, 0)], [rectangle(20, 0)], [rectangle(40, 0)]], ["<lost>", "kept", "kept"], COLORS
+    )
     assert re.findall('<path fill="([^"]+)"', drawn) == ["#004488", "#004488", "#ddaa33"]
     assert "&lt;lost&gt;" in drawn
     assert "50 m wide and 10 m high" in drawn
 
 
 def test_north_is_up_and_scale_is_kept():
-    drawn = draw_polygons([[box(0, 0)], [box(0, 30)]], ["kept", "kept"], COLORS)
+    drawn = draw_polygons([[rectangle(0, 0)], [rectangle(0, 30)]], ["kept", "kept"], COLORS)
     south, north = (
         np.array([point.split(",") for point in path.split()], float) for path in re.findall('d="M([^Z]+)Z"', drawn)
     )
@@ -32,7 +31,7 @@ def test_north_is_up_and_scale_is_kept():
 
 
 def test_courtyards_are_rings_of_the_same_path():
-    drawn = draw_polygons([[box(0, 0), box(4, 4, 2)[::-1]]], ["kept"], COLORS)
+    drawn = draw_polygons([[rectangle(0, 0), rectangle(4, 4, 2, 2)[::-1]]], ["kept"], COLORS)
     assert drawn.count("<path") == 1
     assert drawn.count("Z") == 2
 
@@ -44,11 +43,11 @@ def test_without_polygons_there_is_no_map():
 def test_points_are_shaded_below_the_polygons_and_extend_the_map(rng):
     corners = [[-20.0, -20.0, 0.0], [30.0, 30.0, 0.0]]
     xyz = np.concatenate([corners, np.column_stack([rng.uniform(-20, 30, (500, 2)), rng.normal(size=500)])])
-    drawn = draw_polygons([[box(0, 0)]], ["kept"], COLORS, xyz)
+    drawn = draw_polygons([[rectangle(0, 0)]], ["kept"], COLORS, xyz)
     assert drawn.index("<image") < drawn.index("<path")
     assert "50 m wide and 50 m high" in drawn
 
 
 def test_the_map_says_where_its_corner_is():
-    drawn = with_coordinates(draw_polygons([[box(3, 4)]], ["kept"], COLORS), lambda xy: xy * 10)
+    drawn = with_coordinates(draw_polygons([[rectangle(3, 4)]], ["kept"], COLORS), lambda xy: xy * 10)
     assert "lower left corner is at 30.0 E, 40.0 N." in drawn

@@ -8,23 +8,8 @@ from hypothesis import strategies as st
 from lidar_buildings.algorithms.planes import voxel_planes
 from lidar_buildings.algorithms.segmentation.segment_planes_ransac import segment_planes_ransac
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.tests.builders import EXACT_FAR
+from lidar_buildings.tests.builders import EXACT_FAR, gable, tilted
 from lidar_buildings.tests.monitors import Listening
-
-
-def plane(rng, slope, size=8.0, density=20.0, noise=0.02):
-    """Return points (n, 3) of a square that rises eastward with ``slope`` degrees, evenly dense on it."""
-    along, across = rng.uniform(0, size, (2, round(size**2 * density)))
-    off, angle = rng.normal(0, noise, len(along)), np.radians(slope)
-    east, up = np.cos(angle) * along - np.sin(angle) * off, np.sin(angle) * along + np.cos(angle) * off
-    return np.column_stack([east, across, up])
-
-
-def gable(rng, density=15.0, noise=0.03, pitch=35.0):
-    """Return points of a roof of 12 m by 8 m with an eastward ridge, and whether each is on its north side."""
-    xy = rng.uniform(0, [12, 8], (round(96 * density), 2))
-    z = 6 + np.tan(np.radians(pitch)) * (4 - np.abs(xy[:, 1] - 4))
-    return np.column_stack([xy, z + rng.normal(0, noise, len(xy))]), xy[:, 1] > 4
 
 
 def segment(xyz, **tunables):
@@ -57,7 +42,7 @@ def test_a_gable_roof_has_two_planes_and_a_tree_none(density, noise, rng):
 @given(st.floats(0, 90), st.integers(0, 2**31 - 1))
 @settings(max_examples=15)
 def test_a_plane_is_one_plane_at_any_slope(slope, seed):
-    xyz = plane(np.random.default_rng(seed), slope)
+    xyz = tilted(np.random.default_rng(seed), slope)
     nowhere, found = sizes(segment(xyz, max_slope=90.0, seed=seed))
     assert len(found) == 1
     assert nowhere < 0.03
@@ -65,13 +50,13 @@ def test_a_plane_is_one_plane_at_any_slope(slope, seed):
 
 @pytest.mark.parametrize(("slope", "kept"), [(0, True), (45, True), (58, True), (62, False), (90, False)])
 def test_roofs_have_a_normal_within_60_degrees_of_the_vertical(slope, kept, rng):
-    xyz = plane(rng, slope)
+    xyz = tilted(rng, slope)
     assert segment(xyz).any() == kept
     assert segment(xyz, min_slope=slope - 1 if slope else 0, max_slope=min(slope + 1, 90)).any()
 
 
 def test_walls_are_kept_where_they_are_asked_for(rng):
-    roof, wall = plane(rng, 20), plane(rng, 90) - [0.3, 0, 9]
+    roof, wall = tilted(rng, 20), tilted(rng, 90) - [0.3, 0, 9]
     xyz = np.concatenate([roof, wall])
     assert segment(xyz)[: len(roof)].any()
     assert not segment(xyz)[len(roof) :].any()
@@ -95,7 +80,7 @@ def test_three_planes_of_one_voxel(rng):
 
 @pytest.mark.parametrize("voxel_size", [1.0, 1.5, 3.0])
 def test_pieces_of_a_plane_are_joined_over_all_voxels(voxel_size, rng):
-    nowhere, found = sizes(segment(plane(rng, 25, size=15), voxel_size=voxel_size))
+    nowhere, found = sizes(segment(tilted(rng, 25, size=15), voxel_size=voxel_size))
     assert len(found) == 1
     assert nowhere < 0.03
 
@@ -103,7 +88,7 @@ def test_pieces_of_a_plane_are_joined_over_all_voxels(voxel_size, rng):
 def test_a_plane_grows_along_a_strip_too_thin_for_a_plane_of_its_own(rng):
     """Four meters of a strip 0.4 m wide: about five points in a voxel, of which ten would be a plane by themselves."""
     strip = rng.uniform([8, 3.8, 0], [12, 4.2, 0], (70, 3)) + rng.normal(0, 0.01, (70, 3)) * [0, 0, 1]
-    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), strip]), voxel_size=0.6, tolerance=0.06)
+    ids = segment(np.concatenate([tilted(rng, 0, noise=0.01, density=40), strip]), voxel_size=0.6, tolerance=0.06)
     assert ids.max() == 1
     assert (ids[-70:] == 1).mean() > 0.95
 
@@ -112,7 +97,9 @@ def test_a_plane_grows_past_a_few_points_that_lie_off_it(rng):
     """A third of a voxel's points may do so: a bird, a twig."""
     strip = rng.uniform([8, 3.7, 0], [12, 4.1, 0], (70, 3)) + rng.normal(0, 0.01, (70, 3)) * [0, 0, 1]
     above = np.column_stack([np.arange(8.3, 12, 0.6), np.full(7, 3.9), np.full(7, 0.3)])
-    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), above, strip]), voxel_size=0.6, tolerance=0.06)
+    ids = segment(
+        np.concatenate([tilted(rng, 0, noise=0.01, density=40), above, strip]), voxel_size=0.6, tolerance=0.06
+    )
     assert (ids[-70:] == 1).mean() > 0.9
     assert not ids[-77:-70].any()
 
@@ -121,13 +108,13 @@ def test_a_plane_does_not_grow_along_single_points(rng):
     """One in each voxel, all of them on it: so few lie there by chance."""
     x, y = np.meshgrid(np.arange(8.3, 14, 0.6), np.arange(0.3, 8, 0.6))
     single = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
-    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), single]), voxel_size=0.6, tolerance=0.06)
+    ids = segment(np.concatenate([tilted(rng, 0, noise=0.01, density=40), single]), voxel_size=0.6, tolerance=0.06)
     assert not ids[-len(single) :][single[:, 0] > 9.2].any()
 
 
 def test_a_plane_does_not_grow_into_leaves_beside_it(rng):
     crown = rng.uniform([8, 0, -2], [12, 8, 2], (6000, 3))
-    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), crown]), voxel_size=0.6, tolerance=0.06)
+    ids = segment(np.concatenate([tilted(rng, 0, noise=0.01, density=40), crown]), voxel_size=0.6, tolerance=0.06)
     # By chance a few lie on it in the voxels next to it, and no farther.
     assert (ids[-6000:] > 0).mean() < 0.01
     assert not ids[-6000:][crown[:, 0] > 9.2].any()
@@ -144,7 +131,7 @@ def test_every_point_goes_to_the_nearest_plane(rng):
 
 def test_terraces_half_a_meter_apart_stay_apart(rng):
     """Joined are planes that are the same, not planes that are parallel."""
-    xyz = plane(rng, 0, size=12)
+    xyz = tilted(rng, 0, size=12)
     upper = xyz[:, 0] > 6
     xyz[upper, 2] += 0.5
     ids = segment(xyz)
@@ -201,13 +188,13 @@ def test_fewer_points_than_a_plane(n):
 
 def test_a_cloud_of_walls_alone_gives_a_warning_on_the_slope(rng):
     monitor = Monitor()
-    xyz = plane(rng, 90)
+    xyz = tilted(rng, 90)
     assert not segment_planes_ransac(xyz, np.ones(len(xyz)), monitor=monitor)[0].any()
     assert monitor.warnings == ["No plane has a slope from 0° to 60°, of 1 found; no point has a SegmentID."]
 
 
 def test_ground_is_left_out_and_minimum_height_needs_heights(rng):
-    xyz = plane(rng, 10)
+    xyz = tilted(rng, 10)
     height = np.where(xyz[:, 1] > 4, 3, 1).astype(np.float32)
     assert not segment_planes_ransac(xyz, np.full(len(xyz), 2))[0].any()
     ids = segment_planes_ransac(xyz, np.ones(len(xyz)), height, min_height=2.0)[0]
@@ -219,13 +206,13 @@ def test_ground_is_left_out_and_minimum_height_needs_heights(rng):
 
 def test_slopes_in_the_wrong_order_are_refused(rng):
     with pytest.raises(ValueError, match=r"minimum slope \(70°\) is above the maximum slope \(60°\); lower it"):
-        segment_planes_ransac(plane(rng, 10), np.ones(1280), min_slope=70.0)
+        segment_planes_ransac(tilted(rng, 10), np.ones(1280), min_slope=70.0)
 
 
 def test_automatic_values_follow_density_and_noise(rng):
     coarse, fine = Monitor(), Monitor()
-    segment_planes_ransac(plane(rng, 0, size=30, density=5, noise=0.02), np.ones(4500), monitor=coarse)
-    segment_planes_ransac(plane(rng, 0, size=10, density=100, noise=0.02), np.ones(10_000), monitor=fine)
+    segment_planes_ransac(tilted(rng, 0, size=30, density=5, noise=0.02), np.ones(4500), monitor=coarse)
+    segment_planes_ransac(tilted(rng, 0, size=10, density=100, noise=0.02), np.ones(10_000), monitor=fine)
     assert coarse.values["voxel_size"] == pytest.approx(np.sqrt(20 / 5), rel=0.1)
     assert fine.values["voxel_size"] == pytest.approx(10 * fine.values["tolerance"])
     assert 0.06 <= fine.values["tolerance"] <= 0.08
@@ -233,4 +220,4 @@ def test_automatic_values_follow_density_and_noise(rng):
 
 def test_cancel_gets_through(rng):
     with pytest.raises(Cancelled):
-        segment_planes_ransac(plane(rng, 10), np.ones(1280), monitor=Listening(stop_at=0.0))
+        segment_planes_ransac(tilted(rng, 10), np.ones(1280), monitor=Listening(stop_at=0.0))

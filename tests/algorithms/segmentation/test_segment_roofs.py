@@ -8,7 +8,7 @@ from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.sampling.density import point_density
 from lidar_buildings.algorithms.segmentation.segment_roofs import segment_roofs
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.builders import FAR, crown
 from lidar_buildings.tests.monitors import Listening
 
 FIELD, EAST, WEST, FLAT = range(4)
@@ -31,11 +31,9 @@ def ones(values):
     return np.ones(len(values), np.uint8)
 
 
-def with_tree(rng, xyz, height, at, radius=3.0, crown=7.0, count=600):
+def with_tree(rng, xyz, height, at, radius=3.0, middle=7.0, count=600):
     """Add a ball of leaves over the field."""
-    direction = rng.normal(size=(count, 3))
-    ball = direction / np.linalg.norm(direction, axis=1)[:, None] * radius * rng.random((count, 1)) ** (1 / 3)
-    ball += [*at, crown]
+    ball = crown(rng, *at, radius, middle, count)
     return np.concatenate([xyz, ball]), np.concatenate([height, ball[:, 2]]), np.arange(len(xyz) + count) >= len(xyz)
 
 
@@ -85,7 +83,7 @@ def test_a_wall_is_distinguished_from_the_crown_that_touches_it_unless_it_is_too
     wall = np.column_stack([along + 10, rng.normal(10, 0.02, 700), up])
     field = np.column_stack([rng.uniform(0, SIDE, (9000, 2)), np.zeros(9000)])
     xyz = np.concatenate([field, wall])
-    xyz, height, is_crown = with_tree(rng, xyz, xyz[:, 2], at=(13, 12.8), crown=8.0)
+    xyz, height, is_crown = with_tree(rng, xyz, xyz[:, 2], at=(13, 12.8), middle=8.0)
     is_wall = ~is_crown & (xyz[:, 2] > 0)
     _, cluster, _ = segment_roofs(xyz, ones(xyz), height, max_slope=max_slope)
     of_wall, of_crown = (np.bincount(cluster[one]).argmax() for one in (is_wall, is_crown))

@@ -13,7 +13,7 @@ from lidar_buildings.algorithms.planes.local_planes import Criteria, local_plane
 from lidar_buildings.algorithms.planes.surface_growing import connected_seeds
 from lidar_buildings.algorithms.segmentation.segment_surfaces import segment_surfaces as stage
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.builders import FAR, crown
 from lidar_buildings.tests.monitors import Listening
 
 GROUND, WEST_ROOF, EAST_ROOF, DOME, RAMP, DECK, CROWN = range(7)
@@ -184,20 +184,15 @@ def test_a_dome_is_one_smooth_surface_and_several_planes(criteria, rng):
 def test_crowns_are_noise(rng):
     """Crowns of random points at six densities over ground: at most a tenth of a crown is in one segment."""
     ground = np.column_stack([rng.uniform(0, [60, 20], (9600, 2)), rng.normal(0, 0.02, 9600)])
-    crowns = []
-    for number in range(6):
-        direction = rng.normal(size=(400 + 200 * number, 3))
-        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-        radius = 3 * rng.random((len(direction), 1)) ** (1 / 3)
-        crowns.append(direction * radius + [5 + 10 * number, 10, 6])
+    crowns = [crown(rng, 5 + 10 * number, 10, 3, 6, 400 + 200 * number) for number in range(6)]
     ids = segment_surfaces(np.concatenate([ground, *crowns]))
     assert (ids[: len(ground)] == 1).mean() > 0.99
     start = len(ground)
-    for crown in crowns:
-        own = ids[start : start + len(crown)]
-        assert np.bincount(own)[1:].max(initial=0) < 0.1 * len(crown)
+    for one in crowns:
+        own = ids[start : start + len(one)]
+        assert np.bincount(own)[1:].max(initial=0) < 0.1 * len(one)
         assert (own > 0).mean() < 0.35
-        start += len(crown)
+        start += len(one)
 
 
 def test_smooth_normals_part_what_meets_at_an_edge_without_planarity(tile):

@@ -7,25 +7,13 @@ from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.shapes.hough_planes import PlaneDirections
 from lidar_buildings.algorithms.shapes.segment_planes_hough import METHODS, segment_planes_hough
 from lidar_buildings.algorithms.stage import Monitor
-from lidar_buildings.tests.builders import EXACT_FAR, FAR, crown
+from lidar_buildings.tests.builders import EXACT_FAR, FAR, crown, gable, tilted
 
 each_method = pytest.mark.parametrize("method", METHODS)
 
 
-def gable(rng, density=20.0, noise=0.02, pitch=35.0):
-    """Return points of a roof of 12 m by 8 m with an eastward ridge, and whether each is on its north side."""
-    xy = rng.uniform(0, [12, 8], (round(96 * density), 2))
-    z = 6 + np.tan(np.radians(pitch)) * (4 - np.abs(xy[:, 1] - 4))
-    return np.column_stack([xy, z + rng.normal(0, noise, len(xy))]), xy[:, 1] > 4
-
-
-def square(rng, slope, size=6.0, density=25.0, noise=0.02):
-    """Return points of a square that rises eastward with ``slope`` degrees."""
-    along, across = rng.uniform(0, size, (2, round(size**2 * density)))
-    off, angle = rng.normal(0, noise, len(along)), np.radians(slope)
-    return np.column_stack(
-        [np.cos(angle) * along - np.sin(angle) * off, across, np.sin(angle) * along + np.cos(angle) * off]
-    )
+def square(rng, slope, size=6.0, noise=0.02):
+    return tilted(rng, slope, size, 25.0, noise)
 
 
 def segment(xyz, *, segment_id=None, shape=None, **tunables):
@@ -34,7 +22,7 @@ def segment(xyz, *, segment_id=None, shape=None, **tunables):
 
 @each_method
 def test_a_gable_roof_has_two_planes_and_a_crown_none(method, rng):
-    roof, is_north = gable(rng)
+    roof, is_north = gable(rng, 20.0, 0.02)
     tree = crown(rng, 22, 4, 4, 6, 1500)
     ids, shape, planes = segment(np.concatenate([roof, tree]), method=method)
     assert ids.max() == len(planes) == 2
@@ -135,7 +123,7 @@ def test_segments_are_searched_one_by_one(method, rng):
 
 @each_method
 def test_position_and_order_do_not_matter(method, rng):
-    xyz = np.round(np.concatenate([gable(rng)[0], square(rng, 70) + [15, 0, 0]]) * 1024) / 1024
+    xyz = np.round(np.concatenate([gable(rng, 20.0, 0.02)[0], square(rng, 70) + [15, 0, 0]]) * 1024) / 1024
     expected, _, planes = segment(xyz, method=method)
     far, _, far_planes = segment(xyz + EXACT_FAR, method=method)
     np.testing.assert_array_equal(far, expected)
