@@ -26,16 +26,6 @@ _BEYOND = 0.4
 # Cost of a square meter of roof that is left out although it is farther from the edge than the overhang.
 _INSIDE = 1.0
 
-# Distance (m) from the edge, in addition to the overhang, up to which leaving roof out costs nothing.
-_WELL_INSIDE = 0.3
-
-# Additional cost of a square meter of roof left out farther from the edge than the largest overhang.
-_DEEP = 2.0
-
-# Distance from the edge beyond which ``_DEEP`` is due on roofs too small for the largest overhang, as a share of the
-# distance of the position farthest from the edge.
-_DEEPER = 0.6
-
 # More than any wall costs: for leaving out the deepest position, or including the rim.
 _CERTAIN = 1e5
 
@@ -48,32 +38,24 @@ _ANY = 0.05
 # Cost of a corner.
 _CORNER_COST = 0.6
 
-# Additional cost of a corner that is not square.
-_SKEW_COST = 1.5
-
-# Corners are square within 2°: the cosine of the angle between their walls is no more than this.
-_SQUARE = np.sin(np.deg2rad(2.0))
-
 
 class OutlineCells:
     """The cells that all lines of a building make, and the cost of an outline of some of them.
 
     An outline is given by the cells that are ``inside`` (cells,). Its cost is a sum over cells, edges and crossings.
-    The ``overhangs`` are how far the roof juts out over the ``walls`` (n, 2), and how far a roof may, m.
+    The ``overhang`` is how far the roof juts out over the ``walls`` (n, 2), m.
     """
 
     def __init__(
-        self, lines: list[WallLine], walls: np.ndarray, cover: RoofCover, scale: Scale, overhangs: tuple[float, float]
+        self, lines: list[WallLine], walls: np.ndarray, cover: RoofCover, scale: Scale, overhang: float
     ) -> None:
         self.lines, self.scale = lines, scale
         self.near = [points_near(walls, line, scale) for line in lines]
-        points, self.directions = (np.array([getattr(line, name) for line in lines]) for name in ("point", "direction"))
-        self.arrangement = Arrangement(points, self.directions, cover.low, cover.high)
+        points, directions = (np.array([getattr(line, name) for line in lines]) for name in ("point", "direction"))
+        self.arrangement = Arrangement(points, directions, cover.low, cover.high)
         self.edges = self.arrangement.edges
         self.cost = _edge_costs(self.arrangement, lines, self.near, scale)
-        self.if_inside, self.if_outside = _cell_costs(self.arrangement, cover, *overhangs)
-        u, v = (self.directions[self.arrangement.crossing[:, i]] for i in (0, 1))
-        self.corner_cost = _CORNER_COST + _SKEW_COST * (np.abs(np.einsum("ij,ij->i", u, v)) > _SQUARE)
+        self.if_inside, self.if_outside = _cell_costs(self.arrangement, cover, overhang)
 
     def is_cut(self, inside: np.ndarray) -> np.ndarray:
         """Return the mask of edges (e,) along which an outline runs."""
@@ -82,7 +64,7 @@ class OutlineCells:
     def total(self, inside: np.ndarray) -> float:
         """Return the cost of an outline."""
         area = self.if_inside[inside].sum() + self.if_outside[~inside].sum()
-        return float(self.cost[self.is_cut(inside)].sum() + area + self.corners(inside) @ self.corner_cost)
+        return float(self.cost[self.is_cut(inside)].sum() + area + _CORNER_COST * self.corners(inside).sum())
 
     def corners(self, inside: np.ndarray) -> np.ndarray:
         """Return the number of corners (crossings,) of an outline at each crossing."""
@@ -128,9 +110,7 @@ def _edge_costs(cells: Arrangement, lines: list[WallLine], near: list[np.ndarray
     return weight[edges.line] * np.maximum(length - seen, 0.0) + _ANY * length
 
 
-def _cell_costs(
-    cells: Arrangement, cover: RoofCover, overhang: float, max_overhang: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _cell_costs(cells: Arrangement, cover: RoofCover, overhang: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the cost of each cell (cells,) inside an outline and outside, by the roof."""
     positions, depth = cover.positions, cover.depth
     size = max(1, PAIRS_AT_ONCE // max(1, len(cells.points)))
@@ -141,8 +121,7 @@ def _cell_costs(
         return np.bincount(cell[chosen & (cell >= 0)], minlength=cells.count) * cover.cell**2
 
     if_inside = _OUTSIDE * area(depth < -_BEYOND) + _CERTAIN * cells.is_border
-    if_outside = _INSIDE * area(depth > overhang + _WELL_INSIDE)
-    if_outside += _DEEP * area(depth > min(max_overhang, _DEEPER * depth.max()))
+    if_outside = _INSIDE * area(depth > overhang)
     # The deepest position is inside at any cost.
     if_outside[cell[np.argmax(depth)]] += _CERTAIN
     return if_inside, if_outside

@@ -27,9 +27,6 @@ _FINE = 0.6
 # Most cells in which one roof is compared with walls: extended ones have larger cells.
 _MOST_CELLS = 5e5
 
-# Side (m) of the largest cells.
-_LARGEST_CELL = 1.0
-
 # Width (m) of the margin around the roof in which walls are searched for.
 _ROOM = 2.0
 
@@ -68,7 +65,7 @@ class RoofCover:
 
     def __init__(self, rings: list[np.ndarray]) -> None:
         low, high = plan_box(np.concatenate(rings))
-        self.cell = float(np.clip(np.sqrt((high - low).prod() / _MOST_CELLS), CELL, _LARGEST_CELL))
+        self.cell = max(float(np.sqrt((high - low).prod() / _MOST_CELLS)), CELL)
         shape = np.ceil((high - low + 2 * _ROOM) / self.cell).astype(np.int64)
         self.low, self.high = low - _ROOM, low - _ROOM + shape * self.cell
         self.positions = self.low + (np.indices(shape).reshape(2, -1).T + 0.5) * self.cell

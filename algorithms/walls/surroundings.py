@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from ..criteria import MAJORITY
+from ..footprints.footprint_attributes import EAVE
 from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
 from ..geometry.groups import mask_of, run_starts
 from ..geometry.polygon_overlap import are_within
@@ -34,14 +35,11 @@ _SEEN = 0.3
 # Least distance (m) below the eaves of points that show a courtyard.
 _BELOW = 1.0
 
-# The eave height of a roof is this percentile of its heights.
-_EAVES = 5
-
 # Largest distance between points put into gaps (spacings of the roof's points).
 _FILLED = 2.0
 
-# Distances (m) outward from a side at which the other roof is searched for: gaps between party walls are narrower.
-_OUTWARD = (0.25, 0.5, 0.75, 1.0)
+# Distance (m) outward from a side within which the other roof is searched for: gaps between party walls are narrower.
+_OUTWARD = 1.0
 
 # Distance (m) between the positions on a side where it is searched for.
 _STEP = 0.5
@@ -91,7 +89,7 @@ class Surroundings:
         rows, columns = np.indices(is_roof.shape).reshape(2, -1)
         centers = (np.column_stack([columns, rows]) + low + 0.5) * self.grid.size + self.grid.origin
         lowest = self._at(centers)[0].reshape(is_roof.shape)
-        is_seen, is_low = np.isfinite(lowest), lowest < np.percentile(roof[:, 2], _EAVES) - _BELOW
+        is_seen, is_low = np.isfinite(lowest), lowest < np.percentile(roof[:, 2], EAVE) - _BELOW
         filled, radius = ndimage.binary_fill_holes(is_roof), _BITE / 2 / self.grid.size
         beside = ndimage.distance_transform_edt(~filled)
         if is_seen[(beside > radius) & (beside <= 2 * radius)].mean() < _SEEN_BESIDE:
@@ -106,7 +104,7 @@ class Surroundings:
         """Return the mask of the sides (k, 2, 2) of roof ``number``, to their left, next to which other roofs begin."""
         along, side, outward = along_sides(sides, _STEP)
         is_beside = np.zeros(len(side), bool)
-        for distance in _OUTWARD:
+        for distance in np.arange(CELL, _OUTWARD + CELL, CELL):
             roof = self._at(along + distance * outward)[1]
             is_beside |= (roof > 0) & (roof != number)
         count = np.bincount(side, minlength=len(sides))

@@ -15,10 +15,7 @@ from .roof_outline import RoofCover, RoofOutline
 from .wall_edges import WallEdge
 from .wall_lines import MOST, Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
-# Fewest points that locate a wall below a side of the roof.
-_FEW = 5
-
-# These few points must cover at least this share of the length of the wall.
+# The few points that locate a wall below a side of the roof cover at least this share of its length.
 _LEAST_COVERED = 0.2
 
 # Largest angle (radians) between a wall and its eave.
@@ -93,7 +90,7 @@ def outline_walls(
     overhangs = np.where(is_party(sides), 0.0, overhang)
     seen = [_expectation(line, sides, overhangs) for line in seen]
     lines = [*seen, *_from_roof(seen, sides, overhangs, walls, scale)]
-    cells = OutlineCells(lines, walls, cover, scale, (overhang, limits.max_overhang))
+    cells = OutlineCells(lines, walls, cover, scale, overhang)
     inside = simplified(cells, monitor.part(0.4, 1.0))
     rings = cells.rings(inside)
     return WallOutline(rings, overhang, cells, inside) if rings else None
@@ -153,7 +150,7 @@ def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -
     ordered = np.sort(position)
     count = np.searchsorted(ordered, position + near, side="right") - np.searchsorted(ordered, position - near)
     best = beside[np.abs(position - position[np.argmax(count)]) <= near]
-    if len(best) < _FEW or scale.covered(along[best], -half, half) < _LEAST_COVERED:
+    if scale.covered(along[best], -half, half) < _LEAST_COVERED:
         return line
     moved = line.point + np.mean(across[best]) * line.normal
     return replace(line, point=moved, points=best, along=along[best], deviation=float(np.std(across[best])))

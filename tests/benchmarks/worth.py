@@ -182,15 +182,25 @@ class Rule:
             for part in outer:
                 holder = getattr(holder, part)
             old = vars(holder)[name]
-            copies = [] if outer else [one for one in _loaded() if vars(one).get(name) is old and one is not holder]
-            for one in (holder, *copies):
-                undo.append((one, name, old))
-                setattr(one, name, value)
+            for one, own in [(holder, name), *([] if outer else _copies(holder, name, old))]:
+                undo.append((one, own, old))
+                setattr(one, own, value)
         try:
             yield
         finally:
             for one, name, old in undo:
                 setattr(one, name, old)
+
+
+def _copies(holder: Any, name: str, value: Any) -> list[tuple[Any, str]]:
+    """Return modules and names that a constant has been imported as; numbers only by their own name."""
+    is_number = isinstance(value, (int, float))
+    return [
+        (one, other)
+        for one in _loaded()
+        for other, own in vars(one).items()
+        if own is value and (other == name or not is_number) and (one is not holder or other != name)
+    ]
 
 
 def _loaded() -> list[Any]:
@@ -289,7 +299,8 @@ def _with(value: Any, part: str, factor: float) -> Any:
         return dataclasses.replace(value, **{first: _with(getattr(value, first), rest, factor)})
     if isinstance(value, dict):
         return {key: _with(one, rest, factor) if str(key) == first else one for key, one in value.items()}
-    return tuple(_with(one, rest, factor) if str(n) == first else one for n, one in enumerate(value))
+    parts = [_with(one, rest, factor) if str(n) == first else one for n, one in enumerate(value)]
+    return value._make(parts) if hasattr(value, "_make") else tuple(parts)
 
 
 def tunables() -> list[tuple[str, str, float]]:

@@ -139,6 +139,15 @@ def test_an_expected_wall_moves_to_most_of_the_points_beside_it_in_little_memory
     assert peak < 200 * len(walls)
 
 
+def test_points_in_one_position_show_no_wall(rng):
+    """A bush in front of a wall that nobody saw: its points say nothing about the rest of the wall."""
+    expected = WallLine(np.zeros(2), np.array([1.0, 0.0]), np.zeros(0, np.int64), np.zeros(0), np.nan, True)
+    bush = np.column_stack([rng.uniform(2.0, 3.0, 200), rng.normal(0.2, 0.01, 200)])
+    assert _through_few(expected, 5.0, bush, Scale(0.1, 0.5)) is expected
+    few = np.column_stack([np.linspace(-4, 4, 5), np.full(5, 0.2)])
+    assert _through_few(expected, 5.0, few, Scale(0.1, 0.5)).point[1] == pytest.approx(0.2)
+
+
 def test_right_angles_are_right_and_others_are_kept(rng):
     arrays, _ = building(rng, "L", turn=0.3)
     assert extract_wall_footprints(**arrays)[1].columns["angle"] == pytest.approx([90] * 6, abs=1e-6) or sorted(
