@@ -327,8 +327,8 @@ def _cut(part: int, keep: float) -> tuple[np.ndarray, np.ndarray, LayerFeatures]
     outlines, xyz = _outlines(MAP, found.cloud.origin), found.cloud.get("xyz")
     middles = np.array([rings[0].mean(axis=0) for rings in outlines.geometries])
     center = np.median(middles, axis=0) + (30.0 * part, -20.0 * part)
-    chosen = np.flatnonzero((np.abs(middles - center) < 30.0).all(axis=1)).tolist()
-    near = (np.abs(xyz[:, :2] - center) < 60.0).all(axis=1)
+    chosen = np.flatnonzero((np.abs(middles - center) < 12.0).all(axis=1)).tolist()
+    near = (np.abs(xyz[:, :2] - center) < 40.0).all(axis=1)
     rows = np.flatnonzero(near & (np.random.default_rng(0).random(len(xyz)) < keep))
     return (
         xyz[rows],
@@ -469,7 +469,7 @@ TASKS = {
         ),
         _roof,
     ),
-    "models": Task(_MODELS, ((1, 0.4),), _models),
+    "models": Task(_MODELS, ((0, 1.0), (-1, 0.2)), _models),
 }
 
 
