@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Optional
 
@@ -64,27 +63,20 @@ _REFLECTANCE[[PointClass.LOW_NOISE, PointClass.HIGH_NOISE, PointClass.WIRE_CONDU
 
 @dataclass(frozen=True)
 class _Strip:
-    """A flight line: number, northing (m), and lowest and highest northing (m) of the scanned swath."""
+    """A flight line: number, northing (m), bounds of the swath (m north), scan lines, pulses per line."""
 
     number: int
     y: float
     low: float
     high: float
-
-
-@dataclass(frozen=True)
-class _Block:
-    """Scan lines of a strip that are processed together: first line, number of lines, and sizes of the strip."""
-
-    strip: _Strip
-    line: int
     n_lines: int
-    lines_of_strip: int
-    pulses_per_line: int
+    per_line: int
 
     @property
-    def n_pulses(self) -> int:
-        return self.n_lines * self.pulses_per_line
+    def blocks(self) -> list[np.ndarray]:
+        """Numbers of the scan lines that are processed together."""
+        step = max(1, BLOCK // self.per_line)
+        return [np.arange(line, min(line + step, self.n_lines)) for line in range(0, self.n_lines, step)]
 
 
 @dataclass(frozen=True)
@@ -148,21 +140,21 @@ def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> 
     monitor = monitor or Monitor()
     rng = np.random.default_rng([survey.seed, 1])
     world = World(scene)
-    blocks = list(_blocks(_strips(scene.relief, survey.max_scan_angle, survey.overlap), scene.size, survey.density))
-    firsts = np.cumsum([0] + [block.n_pulses for block in blocks])
+    blocks = [(strip, lines) for strip in _strips(scene.relief, survey) for lines in strip.blocks]
+    firsts = np.cumsum([0] + [len(lines) * strip.per_line for strip, lines in blocks])
     noisy, heights = _noise(int(firsts[-1]), round(survey.noise_points * scene.size**2 / 1e4), rng)
     parts = []
-    for i, block in enumerate(blocks):
-        pulses, time = _pulses(world.relief, block, survey.pattern, rng)
+    for i, (strip, lines) in enumerate(blocks):
+        pulses, time = _pulses(world.relief, strip, lines, survey.pattern, rng)
         first, last = np.searchsorted(noisy, firsts[i : i + 2])
         noise = _noise_echoes(world, pulses.take(noisy[first:last] - firsts[i]), heights[first:last])
-        echoes = _replaced(_recorded_echoes(world, pulses, block.strip, survey.returns, rng), noise)
+        echoes = _replaced(_recorded_echoes(world, pulses, strip, survey.returns, rng), noise)
         # Range noise is along the beam.
         ranges = echoes.range + survey.range_noise * rng.standard_normal(len(echoes))
         # Scan angles are negative to the left of the flight; odd strips are flown to the east.
         angle = np.rad2deg(np.arctan2(echoes.direction[:, 1], -echoes.direction[:, 2]))
-        angle *= -1 if block.strip.number % 2 else 1
-        part = recorded(echoes, time, angle, block.strip.number, rng, survey.returns)
+        angle *= -1 if strip.number % 2 else 1
+        part = recorded(echoes, time, angle, strip.number, rng, survey.returns)
         part["xyz"] = pulses.origin[echoes.pulse] + ranges[:, None] * echoes.direction
         part["pulse"] = echoes.pulse + firsts[i]
         parts.append(part)
@@ -170,52 +162,44 @@ def scan(scene: Scene, survey: AirSurvey, monitor: Optional[Monitor] = None) -> 
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _strips(relief: Relief, max_scan_angle: float, overlap: float) -> list[_Strip]:
+def _strips(relief: Relief, survey: AirSurvey) -> list[_Strip]:
     """Return the flight lines, alternately east and west, so that two of them overlap in the middle of the town."""
-    tangent, rise = np.tan(np.deg2rad(max_scan_angle)), relief.plane_gradient[1]
+    tangent, rise = np.tan(np.deg2rad(survey.max_scan_angle)), relief.plane_gradient[1]
     # On a slope the swath is narrower on the uphill side.
     up, down = _HEIGHT * tangent / (1 + rise * tangent), _HEIGHT * tangent / (1 - rise * tangent)
-    spacing = (up + down) * (1 - overlap)
+    spacing = (up + down) * (1 - survey.overlap)
     start = (relief.size + spacing + down - up) / 2
     numbers = np.arange(np.floor(-(start + up) / spacing), np.ceil((relief.size + down - start) / spacing) + 1)
-    strips: list[_Strip] = []
-    for y in start + numbers * spacing:
-        low, high = max(0.0, y - down), min(relief.size, y + up)
-        if low < high:
-            strips.append(_Strip(len(strips) + 1, float(y), low, high))
+    swaths = [(float(y), max(0.0, y - down), min(relief.size, y + up)) for y in start + numbers * spacing]
+    swaths = [(y, low, high) for y, low, high in swaths if low < high]
+    # Overlaps have more pulses than the rest, as in every survey.
+    cell = sum(high - low for _, low, high in swaths) / relief.size / survey.density
+    strips = []
+    for number, (y, low, high) in enumerate(swaths, start=1):
+        per_line = max(1, round((high - low) / np.sqrt(cell)))
+        n_lines = round(relief.size * (high - low) / cell / per_line)
+        strips.append(_Strip(number, y, low, high, n_lines, per_line))
     return strips
 
 
-def _blocks(strips: list[_Strip], size: float, density: float) -> Iterator[_Block]:
-    """Divide strips into blocks; together they have ``density`` pulses per m² of the town."""
-    # Overlaps have more pulses than the rest, as in every survey.
-    cell = sum(strip.high - strip.low for strip in strips) / size / density
-    for strip in strips:
-        width = strip.high - strip.low
-        per_line = max(1, round(width / np.sqrt(cell)))
-        n_lines = round(size * width / cell / per_line)
-        step = max(1, BLOCK // per_line)
-        for line in range(0, n_lines, step):
-            yield _Block(strip, line, min(step, n_lines - line), n_lines, per_line)
-
-
-def _pulses(relief: Relief, block: _Block, pattern: str, rng: np.random.Generator) -> tuple[Beams, np.ndarray]:
-    """Return the beams of a block, aimed at the mean plane of the ground, and their times (s)."""
-    strip, size = block.strip, relief.size
-    line = np.repeat(np.arange(block.line, block.line + block.n_lines), block.pulses_per_line)
-    share = np.tile((np.arange(block.pulses_per_line) + 0.5) / block.pulses_per_line, block.n_lines)
+def _pulses(
+    relief: Relief, strip: _Strip, lines: np.ndarray, pattern: str, rng: np.random.Generator
+) -> tuple[Beams, np.ndarray]:
+    """Return the beams of scan lines, aimed at the mean plane of the ground, and their times (s)."""
+    size, per_line = relief.size, strip.per_line
+    line = np.repeat(lines, per_line)
+    share = np.tile((np.arange(per_line) + 0.5) / per_line, len(lines))
     ahead: np.ndarray = line + share
     if pattern == "random":
-        forth = ahead = np.sort(block.line + block.n_lines * rng.random(len(line)))
+        forth = ahead = np.sort(lines[0] + len(lines) * rng.random(len(line)))
         across = rng.random(len(line))
     elif pattern == "zigzag":
         forth, across = ahead, np.where(line % 2 == 0, share, 1 - share)
     else:  # "lines"
         # Pulses of neighboring lines have different phases.
-        phase = np.repeat(rng.random(block.n_lines) - 0.5, block.pulses_per_line) / block.pulses_per_line
+        phase = np.repeat(rng.random(len(lines)) - 0.5, per_line) / per_line
         forth, across = line + 0.5, share + phase
-    way = ahead * size / block.lines_of_strip
-    x = forth * size / block.lines_of_strip
+    way, x = ahead * size / strip.n_lines, forth * size / strip.n_lines
     x = x if strip.number % 2 else size - x
     aim = np.column_stack([x, strip.low + across * (strip.high - strip.low)])
     # The turn between two strips takes five minutes.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.groups import mask_of
-from ..stage import LayerFeatures
+from ..stage import Field, LayerFeatures
 from .bodies import Body, Rect, flat, rectangles
 from .pairs import in_boxes
 from .relief import CHANNEL, Relief
@@ -72,10 +72,10 @@ class Scene:
         number = self.new_id() if number is None else number
         self.solids.append(Body(rect, flat(rect, top), bottom, classification, number))
 
-    def add_post(self, rect: Rect, height: float) -> None:
-        """Add a box of a height (m) above the ground at its center, as a new object without class."""
+    def add_post(self, rect: Rect, height: float, depth: float = 1.0) -> None:
+        """Add an unclassified box from ``depth`` below to ``height`` above the ground at its center (m)."""
         ground = float(self.relief.ground(rect.x, rect.y))
-        self.add_box(rect, ground - 1.0, ground + height, PointClass.UNCLASSIFIED)
+        self.add_box(rect, ground - depth, ground + height, PointClass.UNCLASSIFIED)
 
     def add_building(self, kind: str, outline: np.ndarray, solids: list[Body]) -> None:
         """Add a building of ``solids``, the first of which has its id; ``outline`` (m, 2) is open."""
@@ -99,13 +99,18 @@ class Scene:
         return np.abs(self.relief.frame.local(x, y)[0] - self.relief.river) < CHANNEL
 
 
-def footprint_layer(buildings: list[Building], corners: bool = False) -> LayerFeatures:
-    """Return the outlines of the walls with id, kind and area, and optionally the number of corners."""
-    columns: dict[str, list] = {
-        "id": [building.object_id for building in buildings],
-        "kind": [building.kind for building in buildings],
-        "area": [building.area for building in buildings],
-    }
-    if corners:
-        columns["corners"] = [len(building.outline) - 1 for building in buildings]
-    return LayerFeatures([[building.outline] for building in buildings], columns)
+def footprint_fields(kinds: str) -> tuple[Field, ...]:
+    """Return the fields of :func:`footprint_layer`, for buildings of some ``kinds``."""
+    return (
+        Field("id", int, "object id of the building, as SegmentID of its points"),
+        Field("kind", str, kinds),
+        Field("area", float, "area inside the walls", "m²"),
+        Field("corners", int, "number of corners"),
+    )
+
+
+def footprint_layer(buildings: list[Building], fields: tuple[Field, ...]) -> LayerFeatures:
+    """Return the outlines of the walls, with some of the :func:`footprint_fields`."""
+    rows = [(one.object_id, one.kind, one.area, len(one.outline) - 1) for one in buildings]
+    columns = {field.name: [row[i] for row in rows] for i, field in enumerate(fields)}
+    return LayerFeatures([[one.outline] for one in buildings], columns)

@@ -6,23 +6,19 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import SEED
-from ..stage import Field, Layer, stage, tunable
+from ..stage import Layer, stage, tunable
 from .bodies import Rect, flat
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
 from .scanner import refuse_large
-from .scene import Scene, footprint_layer
+from .scene import Scene, footprint_fields, footprint_layer
 from .town_houses import Site
 from .town_layout import CAR, MAX_BUILDINGS, TownPlan, build_town, park_car
 
 # Height (m) above which points over cells of ground belong to the nearest object, whose edge is smeared.
 _SMEARED = 0.3
 
-_FIELDS = (
-    Field("id", int, "object id of the building, as SegmentID of its points"),
-    Field("kind", str, "gable, hip, flat, L, row, shed or hall"),
-    Field("area", float, "area inside the walls", "m²"),
-)
+_FIELDS = footprint_fields("gable, hip, flat, L, row, shed or hall")[:3]
 
 
 @stage(
@@ -132,7 +128,7 @@ def simulate_drone_site(
     colors = (matched.colors[row, column] * 257).astype(np.uint16)
     classes, objects = _truth(field, xyz, row, column)
     ones = np.ones(len(xyz), np.uint8)
-    return xyz, classes, ones, ones.copy(), *colors.T.copy(), objects, footprint_layer(scene.buildings)
+    return xyz, classes, ones, ones.copy(), *colors.T.copy(), objects, footprint_layer(scene.buildings, _FIELDS)
 
 
 def _cells_of_objects(

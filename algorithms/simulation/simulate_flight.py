@@ -32,7 +32,7 @@ def simulate_flight(
         choices=("both", *SCANNERS),
     ),
     trees: int = tunable(4, "Trees along the street.", within="[0, 22]"),
-    slope: float = tunable(1.5, "Slope of the ground, a plane.", within="[0, 10]°"),
+    slope: float = tunable(1.5, "Slope of the plane ground.", within="[0, 10]°"),
     line_rate: float = LINE_RATE,
     angular_step: float = ANGULAR_STEP,
     max_range: float = tunable(30.0, "Maximum range of the scanners.", within="[1, 40] m", advanced=True),

@@ -40,7 +40,7 @@ def simulate_power_line(
     size: float = tunable(200.0, "Side of the site, a square from (0, 0).", within="[80, 1000] m"),
     density: float = PULSE_DENSITY,
     span: float = tunable(120.0, "Distance between the towers of the transmission line.", within="[50, 500] m"),
-    angle: float = tunable(15.0, "Direction of both lines from east.", within="[0, 90]°"),
+    angle: float = tunable(15.0, "Direction of both lines, counterclockwise from east.", within="[0, 90]°"),
     trees: float = tunable(20.0, "Trees outside the forest.", within="[0, 200] per ha"),
     forest: float = FOREST.with_default(0.15),
     range_noise: float = RANGE_NOISE,

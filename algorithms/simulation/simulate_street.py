@@ -283,7 +283,7 @@ def _put_clutter(scene: Scene, street: Rect, side: int, rng: np.random.Generator
         x, y = street.at(along + rng.uniform(-2, 2), side * (half - 2.2))
         foot = (float(x), float(y), float(scene.relief.plane(x, y)))
         plant_tree(scene, foot, rng.uniform(5.0, 7.0), rng)
-        scene.add_post(street.part(along + 7.0, side * (half - 2.4), 0.16, 0.16), 6.0)
+        scene.add_post(street.part(along + 7.0, side * (half - 2.4), 0.16, 0.16), 6.0, 0.5)
     # A person per 8 m on average, 1.75 m tall, on the sidewalk.
     for along in rng.uniform(-street.length / 2, street.length / 2, max(1, round(street.length / 8))):
-        scene.add_post(street.part(float(along), side * (half - 1.2), 0.45, 0.45), 1.75)
+        scene.add_post(street.part(float(along), side * (half - 1.2), 0.45, 0.45), 1.75, 0.5)

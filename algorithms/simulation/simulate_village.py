@@ -12,18 +12,13 @@ from .beams import Echoes, is_vegetation
 from .camera import photograph
 from .relief import Relief
 from .scanner import refuse_large
-from .scene import footprint_layer
+from .scene import footprint_fields, footprint_layer
 from .village_layout import MAX_HOMES, Village, build_village
 
 # Radius (m) of holes where matching fails, and side of the cells in which their centers are drawn.
 _HOLE = 0.5
 
-_FOOTPRINT_FIELDS = (
-    Field("id", int, "object id of the building, as SegmentID of its points"),
-    Field("kind", str, "rectangle, hip, L, bend or shed"),
-    Field("area", float, "area inside the walls", "m²"),
-    Field("corners", int, "number of corners"),
-)
+_FOOTPRINT_FIELDS = footprint_fields("rectangle, hip, L, bend or shed")
 
 _MAP_FIELDS = (
     Field("id", int, "number of the building in the map, from 1"),
@@ -159,7 +154,7 @@ def simulate_village(
     wrong = _wrong_matches(village.scene.relief, round(noise_points * size**2 / 1e4), rng)
     cloud = _joined(xyz, seen, village, colors, *wrong)
     old_map = _old_map(village, map_shift, map_noise, map_changes, rng)
-    return (*cloud, footprint_layer(village.scene.buildings, corners=True), old_map)
+    return (*cloud, footprint_layer(village.scene.buildings, _FOOTPRINT_FIELDS), old_map)
 
 
 def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> np.ndarray:

@@ -18,7 +18,7 @@ from lidar_buildings.algorithms.simulation.plants import plant_trees
 from lidar_buildings.algorithms.simulation.relief import Relief
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.town_houses import Site
-from lidar_buildings.algorithms.simulation.town_layout import park_car
+from lidar_buildings.algorithms.simulation.town_layout import CAR, park_car
 from lidar_buildings.algorithms.simulation.village_layout import Home
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -63,7 +63,7 @@ def dense_town(blocks: int = 3, seed: int = 1) -> Scene:
             middle = _STREET + pitch / 2 + [column, row] * pitch
             _block(town, Rect(*map(float, middle), *_BLOCK, 0.04), rng)
     for x, y in rng.uniform(0.0, town.size, (10 * blocks, 2)):
-        car = Rect(float(x), float(y), 4.3, 1.8, 0.04)
+        car = Rect(float(x), float(y), *CAR, 0.04)
         if not town.near_building(car.corners(), 0.5).any():
             park_car(town, car)
     return town

@@ -72,7 +72,7 @@ def vineyard() -> Scene:
         _house(hill, hut, 2.8, 25.0)
     for x in np.arange(12.0, SIDE, 12.0):
         for y in np.arange(4.0, SIDE, 8.0):
-            _add_box(hill, Rect(x + 1.7, y, 0.4, 8.0, 0.0), 0.7)
+            hill.add_post(Rect(x + 1.7, y, 0.4, 8.0, 0.0), 0.7, 1.5)
             for row in (3.5, 5.5, 7.5, 9.5):
                 vines = Rect(x + row, y, 8.0, 0.5, np.pi / 2)
                 if not hill.near_building(vines.corners(), 1.0).any():
@@ -115,8 +115,8 @@ def station() -> Scene:
     _house(rails, Rect(60.0, 108.0, 80.0, 14.0, 0.0), 10.0, 30.0)
     for y in (20.0, 48.0, 76.0):
         for x in (20.0, 46.0, 72.0, 98.0):
-            _add_box(rails, Rect(x, y, 25.0, 2.9, 0.0), 3.9)
-        _add_box(rails, Rect(60.0, y + 8.0, 116.0, 7.0, 0.0), 0.75)
+            rails.add_post(Rect(x, y, 25.0, 2.9, 0.0), 3.9, 1.5)
+        rails.add_post(Rect(60.0, y + 8.0, 116.0, 7.0, 0.0), 0.75, 1.5)
         _house(rails, Rect(60.0, y + 8.0, 80.0, 5.0, 0.0), 4.2)
     return rails
 
@@ -126,7 +126,7 @@ def port() -> Scene:
     quay = Scene(Relief(SIDE))
     for i, (x, y) in enumerate((x, y) for x in np.arange(15.0, 90.0, 12.6) for y in np.arange(10.0, 110.0, 2.6)):
         if i % 7:
-            _add_box(quay, Rect(x, y, 12.2, 2.44, 0.0), 2.59 * (1 + i % 4))
+            quay.add_post(Rect(x, y, 12.2, 2.44, 0.0), 2.59 * (1 + i % 4), 1.5)
     _house(quay, Rect(106.0, 60.0, 18.0, 60.0, 0.0), 9.0)
     return quay
 
@@ -172,7 +172,7 @@ def churches() -> Scene:
             foot = parts[0].at(1.5, across)
             plant_tree(parish, (*map(float, foot), float(parish.relief.ground(*foot))), eave - 3.0, rng)
     for x, y, length, height in ((60, 112, 30, 2.6), (100, 112, 20, 4.0), (60, 76, 8, 6.0), (60, 50, 14, 2.2)):
-        _add_box(parish, Rect(x, y, length, 0.4, 0.3), height)
+        parish.add_post(Rect(x, y, length, 0.4, 0.3), height, 1.5)
     return parish
 
 
@@ -228,10 +228,3 @@ def _house(scene: Scene, rect: Rect, eave: float, pitch: float = 0.0, kind: str 
     top = site.floor + eave
     tops = gable(rect, top, float(np.tan(np.deg2rad(pitch)))) if pitch else flat(rect, top)
     scene.add_building(kind, rect.corners(), [site.solid(rect, tops)])
-
-
-def _add_box(scene: Scene, rect: Rect, height: float) -> None:
-    """Put down a box that is no building."""
-    ground = float(scene.relief.ground(rect.x, rect.y))
-    top = flat(rect, ground + height)
-    scene.solids.append(Body(rect, top, ground - 1.5, PointClass.UNCLASSIFIED, scene.new_id()))
