@@ -183,12 +183,12 @@ def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndar
     """Return red, green and blue (n, 3), uint16, by material, with a factor per object and noise per point."""
     classes, number = seen.classification, seen.object_id
     is_roof = village.owner[number] != number
-    is_car, is_building = classes == PointClass.UNCLASSIFIED, classes == PointClass.BUILDING
-    kinds = [is_vegetation(classes), is_car, is_building & ~is_roof, is_building & is_roof]
-    palette, *palettes = _COLORS.values()
-    color = np.tile(palette.astype(float), (len(seen), 1))
-    for chosen, palette in zip(kinds, palettes):
-        color[chosen] = palette[number[chosen] % len(palette)]
+    is_building = classes == PointClass.BUILDING
+    walls, roofs = is_building & ~is_roof, is_building & is_roof
+    kinds = {"leaves": is_vegetation(classes), "cars": classes == PointClass.UNCLASSIFIED, "walls": walls, "roofs": roofs}
+    color = np.tile(_COLORS["ground"].astype(float), (len(seen), 1))
+    for kind, chosen in kinds.items():
+        color[chosen] = _COLORS[kind][number[chosen] % len(_COLORS[kind])]
     light = (0.85 + 0.3 * np.modf(number * 0.618034)[0])[:, None] * (1 + 0.06 * rng.standard_normal((len(seen), 1)))
     return np.clip(color * light * 257, 0, 65_535).astype(np.uint16)
 
