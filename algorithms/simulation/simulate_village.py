@@ -184,8 +184,8 @@ def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndar
     classes, number = seen.classification, seen.object_id
     is_roof = village.owner[number] != number
     is_building = classes == PointClass.BUILDING
-    walls, roofs = is_building & ~is_roof, is_building & is_roof
-    kinds = {"leaves": is_vegetation(classes), "cars": classes == PointClass.UNCLASSIFIED, "walls": walls, "roofs": roofs}
+    kinds = {"leaves": is_vegetation(classes), "cars": classes == PointClass.UNCLASSIFIED}
+    kinds |= {"walls": is_building & ~is_roof, "roofs": is_building & is_roof}
     color = np.tile(_COLORS["ground"].astype(float), (len(seen), 1))
     for kind, chosen in kinds.items():
         color[chosen] = _COLORS[kind][number[chosen] % len(_COLORS[kind])]
