@@ -13,7 +13,7 @@ from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED, Reason
 from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
-from ..geometry.polygon_overlap import as_polygons, overlaps
+from ..geometry.polygon_overlap import as_polygons, meeting_boxes, overlaps
 from ..params import MIN_BUILDING_AREA
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
@@ -21,7 +21,7 @@ from ..stage import Layer, LayerFeatures, Monitor, stage, tunable
 from ..threads import made_ahead
 from .drawn_blocks import BlockDrawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
-from .outline_pieces import OutlinePiece, blocks_of, find_pieces, shared_directions
+from .outline_pieces import NEIGHBORS, OutlinePiece, blocks_of, find_pieces, shared_directions
 from .roof_points import edge_weights, find_non_building_points, find_roof_points
 from .row_houses import ROWS, Houses, split_row
 from .soft_shares import APART, LEAST_SPACING, TOLERANCE_SPACINGS, Shares, even_weights, find_shares
@@ -182,7 +182,9 @@ def extract_footprints(
         xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason, weakest_evidence
     )
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
-    parts = _parts(measures, classification, building, cluster, spacing)
+    parts, n_drawn = _asked_for(
+        _parts(measures, classification, building, cluster, spacing), measures, sampling, spacing
+    )
     searching = monitor.part(0.0, 0.4)
     evidence = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), searching))
     unknown = [dict.fromkeys(one.shares, np.zeros(0)) for one in evidence]
@@ -190,7 +192,7 @@ def extract_footprints(
     # Threads work on the arrays of houses and attributes; drawing is many small calls, which hold the interpreter.
     houses_of_parts = made_ahead(
         lambda number, _: _houses(parts[number], evidence[number], directions[number], measures, how),
-        len(parts),
+        n_drawn,
         monitor.part(0.4, 0.9),
     )
     outlines = [
@@ -205,7 +207,7 @@ def extract_footprints(
         lambda number, _: footprint_attributes(
             outlines[number], parts[number].roof, parts[number].members, measures, spacing
         ),
-        len(parts),
+        n_drawn,
         monitor.part(0.9, 1.0),
     )
     attributes = [one for of_part in described for one in of_part]
@@ -267,6 +269,18 @@ def _parts(
         if len(roof) and _has_area(xyz[building[roof], :2]):
             parts.append(_Part(building[rows], building[roof], beside[others], cluster[roof]))
     return parts
+
+
+def _asked_for(
+    parts: list[_Part], measures: PointMeasures, sampling: CloudSampling, spacing: float
+) -> tuple[list[_Part], int]:
+    """Return the parts that are asked for, then those whose walls count for directions; and the number of the first."""
+    if sampling.asked is None:
+        return parts, len(parts)
+    boxes = np.array([plan_box(measures.xyz[part.members]) for part in parts]).reshape(-1, 2, 2)
+    asked = meeting_boxes(sampling.asked[None] + np.array([[-1], [1]]) * APART * spacing, boxes)[1]
+    near = meeting_boxes(boxes[asked] + np.array([[-1], [1]]) * NEIGHBORS, boxes)[1]
+    return [parts[row] for row in (*asked, *np.setdiff1d(near, asked))], len(asked)
 
 
 def _has_area(plan: np.ndarray) -> bool:

@@ -22,7 +22,7 @@ _FEWEST = 12
 _TOGETHER = 4.0
 
 # Distance (m) up to which the walls of neighbors count for directions: across a street.
-_NEIGHBORS = 30.0
+NEIGHBORS = 30.0
 
 # Weight of all neighbors together, as a share of the building's own: a shed has the directions of the houses
 # around, and a house that is turned against them has its own.
@@ -109,7 +109,7 @@ def shared_directions(rings: list[list[np.ndarray]], side: float = SQUARE) -> li
     """
     boxes = np.array([plan_box(np.concatenate(own)) for own in rings]).reshape(-1, 2, 2)
     directions = dict[int, np.ndarray]()
-    for own, near, _ in in_squares(boxes, _NEIGHBORS, side):
+    for own, near, _ in in_squares(boxes, NEIGHBORS, side):
         is_own = np.isin(near, own)
         found = _directions_near([rings[row] for row in near], boxes[near])
         directions.update({row: found[at] for at, row in zip(np.flatnonzero(is_own).tolist(), near[is_own].tolist())})
@@ -120,13 +120,13 @@ def _directions_near(rings: list[list[np.ndarray]], boxes: np.ndarray) -> list[n
     """Return the main directions of buildings that are looked at together; ``boxes`` (n, 2, 2) are theirs, m."""
     pieces = [list(map(RingPieces, own)) for own in rings]
     weights = [sum(weights_of_pieces(own, [None] * len(own))) for own in pieces]
-    one, other = meeting_boxes(boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]]), boxes)
+    one, other = meeting_boxes(boxes + np.array([[-NEIGHBORS], [NEIGHBORS]]), boxes)
     around = []
     for number, rows in enumerate(split_groups(one, len(rings))):
         neighbors = [(each, row) for each in other[rows].tolist() if each != number for row in range(len(rings[each]))]
         # Ignore walls farther away, even of the same neighbor: a block's window may lack them.
         off = (_off_box(rings[each][row], boxes[number]) for each, row in neighbors)
-        counts = [np.maximum(1 - distance / _NEIGHBORS, 0.0) for distance in off]
+        counts = [np.maximum(1 - distance / NEIGHBORS, 0.0) for distance in off]
         around.append(sum(weights_of_pieces([pieces[each][row] for each, row in neighbors], counts), np.zeros(N_STEPS)))
     together = [own + _INFLUENCE * own.sum() * other / (other.sum() or 1.0) for own, other in zip(weights, around)]
     counts = [sum(map(len, own)) for own in rings]

@@ -74,6 +74,8 @@ class CloudSampling:
         Values that steps have measured on this cloud.
     samples : dict of str to tuple
         Tables that steps have learned from on this cloud, each with the function that learns from several together.
+    asked : ndarray of shape (2, 2), optional
+        Least and greatest x and y, local m, of the part of the cloud whose features are asked for; None is all of it.
 
     Examples
     --------
@@ -95,6 +97,7 @@ class CloudSampling:
         self.of_whole: dict[str, Any] = {}
         self.found: dict[str, float] = {}
         self.samples: dict[str, tuple[np.ndarray, Learn]] = {}
+        self.asked: Optional[np.ndarray] = None
         if corner is not None:
             self.corner = corner
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Optional
@@ -166,7 +167,13 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     pipeline = in_blocks(PIPELINES[task.pipeline])
     positions = _positions(task.survey, window)
     wanted = [output.name for output in pipeline.outputs if output.step.name in task.steps]
-    made = run_pipeline(pipeline, window.cloud, monitor, task.layers, wanted, task.samplings, **task.tunables)
+    block = task.block.box - task.survey.origin[:2]
+    # Features around the block are asked for as far as a step reaches that reads their layer.
+    around = sum(step.stage.reach_of(chosen) for step, chosen in pipeline.by_step(task.tunables) if step.layers)
+    samplings = {name: copy(one) for name, one in task.samplings.items()}
+    for one in samplings.values():
+        one.asked = block + np.array([[-around], [around]])
+    made = run_pipeline(pipeline, window.cloud, monitor, task.layers, wanted, samplings, **task.tunables)
     seconds = monitor.seconds()
     point, stays = _result_points(window, made)
     values = _written(pipeline, made, point, task.survey.origin)
@@ -185,7 +192,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
             items = made.files[name].items
             result.items[file.item.__name__] = [(one.name, one.record()) for one in items if one.name in kept]
     for name, surface in made.rasters.items():
-        result.rasters[name], result.lattices[name] = _cropped(surface, task.block.box - task.survey.origin[:2])
+        result.rasters[name], result.lattices[name] = _cropped(surface, block)
     result.seconds = seconds
     found = {name: value for name, value in monitor.values.items() if isinstance(value, (bool, int, float, str))}
     result.values = {name: np.array(value) for name, value in found.items()}

@@ -9,8 +9,9 @@ from lidar_buildings.algorithms.footprints.extract_footprints import extract_foo
 from lidar_buildings.algorithms.footprints.roof_points import is_under_roof
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.packages import spatial
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.stage import Monitor
-from lidar_buildings.tests.builders import roof
+from lidar_buildings.tests.builders import roof, turned
 from lidar_buildings.tests.monitors import Listening
 from lidar_buildings.tests.polygon_validity import assert_valid
 
@@ -215,6 +216,22 @@ def test_a_roof_of_the_minimum_area_is_found_as_often_as_not(density):
         xyz = np.column_stack([plan, np.where(is_roof, 3.0, 0.0)])
         n_found += len(extract_footprints(xyz, np.where(is_roof, 6, 2)))
     assert n_found >= 8
+
+
+def test_of_a_part_that_is_asked_for_only_its_buildings_are_drawn_as_in_the_whole(rng):
+    """The directions of a small shed are those of the block 20 m away, which is not drawn; a third lies farther off."""
+    shed = turned(roof(rng, 0, 0, 4, 3.5, 3.0, density=4), 6.0)
+    xyz = np.concatenate([shed, roof(rng, 24, 0, 40, 24, 9.0, density=4), roof(rng, 120, 0, 10, 10, 6.0, density=4)])
+    sampling = CloudSampling.of(xyz)
+    classes = np.full(len(xyz), 6)
+    whole = extract_footprints(xyz, classes, sampling=sampling)
+    sampling.asked = np.array([[-5.0, -5.0], [10.0, 10.0]])
+    found = extract_footprints(xyz, classes, sampling=sampling)
+    assert (len(whole), len(found)) == (3, 1)
+    np.testing.assert_array_equal(found.geometries[0][0], whole.geometries[0][0])
+    assert found.columns["area"] == whole.columns["area"][:1]
+    alone = extract_footprints(shed, classes[: len(shed)], sampling=CloudSampling.of(shed))
+    assert not np.array_equal(alone.geometries[0][0], whole.geometries[0][0])
 
 
 def test_small_holes_are_filled(village):
