@@ -19,8 +19,8 @@ _BESIDE_SPACINGS, _BESIDE = 6.0, 2.0
 # Least number of contacts of a line.
 _LEAST_CONTACTS = 3
 
-# Lines that turn by less than this (rad) and lie no farther apart (m) are the same.
-_SAME_TURN, _SAME_OFFSET = 0.04, 0.10
+# A line whose ends lie no farther than this (m) from another one is the same.
+_SAME_OFFSET = 0.10
 
 # Walls of at least this share of the length of the longest one give main directions.
 _LONG = 0.5
@@ -199,8 +199,7 @@ def _without_doubles(pieces: list[LinePiece]) -> list[LinePiece]:
     kept: list[int] = []
     for i in range(len(pieces)):
         u = direction[kept]
-        is_parallel = np.abs(u[:, 0] * direction[i, 1] - u[:, 1] * direction[i, 0]) <= _SAME_TURN
-        covers = is_parallel.copy()
+        covers = np.ones(len(kept), bool)
         for position in (start[i], end[i]):
             offset = position - start[kept]
             along = np.einsum("ij,ij->i", offset, u)

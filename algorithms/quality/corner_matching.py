@@ -18,7 +18,7 @@ _LEAST_TURN = 20.0
 # Largest difference in direction between corners that can be the same, degrees.
 _FACING = 60.0
 
-# Search radius (m) for corners before the tolerance is known; most walls are longer.
+# Search radius (m) for walls, and for corners before the tolerance is known; most walls are longer.
 FARTHEST = 3.0
 
 # Automatic tolerances (medians of the differences): where errors are normal, 99.8 % of distances in plan are less, and

@@ -53,7 +53,6 @@ class RULES:
 
     step: float = 0.25  #: Step of the lattice on which both maps are compared, m: finer than any change
     gone: float = 0.15  #: Share of a building up to which the new outlines may cover one that is gone
-    new: float = 0.4  #: Share of new outlines up to which the map may have them for a building to be new
     strip: float = 1.5  #: Depth of a strip along the wall of a row, in widths of a change
     side: float = 0.5  #: Share of the longest border of a part from which another building may own it
     low: float = 1.0  #: Points up to this height (m) above the ground nearest to them show that no roof is there
@@ -88,7 +87,7 @@ class MapUpdate:
         overlap = measure_overlap(shifted, framed, np.zeros(2), Monitor())
         touching = split_groups(np.where(overlap.shared > 0, overlap.other, -1), k)
         is_other = np.bincount(overlap.other, overlap.shared > MAJORITY * overlap.area[overlap.one], k)
-        is_new = (overlap.other_covered <= RULES.new) & (is_other == 0)
+        is_new = (overlap.other_covered < MAJORITY) & (is_other == 0)
         status = np.where(fit.moved.any(axis=1), MOVED, UNCHANGED).astype(object)
         covered = [overlap.one[rows].tolist() for rows in touching]
         zero, unknown = np.zeros(n), np.full(n, np.nan)

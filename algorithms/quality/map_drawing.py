@@ -14,7 +14,7 @@ from ..stage import Monitor
 
 # Cuts along old walls pass vertices this closely (m). Maps have details of a centimeter; where lines nearly coincide,
 # coarser cuts are sound.
-_OLD_SNAPS = 0.002, 0.005, 0.01, 0.02, 0.05
+_OLD_SNAPS = 0.002, 0.01, 0.05
 
 # Vertices nearer than this to an old vertex or wall, in these distances, are of it: more than cutting moves them.
 _SAME = 2.0

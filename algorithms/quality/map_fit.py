@@ -14,7 +14,7 @@ from ..geometry.rings import along_sides, is_valid
 from ..packages import spatial
 from ..stage import Monitor
 from .building_maps import BuildingMap
-from .corner_matching import MEDIANS
+from .corner_matching import FARTHEST, MEDIANS
 
 # Distance (m) of positions along walls: several on the shortest wall.
 _STEP = 0.25
@@ -22,8 +22,8 @@ _STEP = 0.25
 # Walls with another building within this distance (m) beyond are not seen from above.
 _BEYOND = 0.3
 
-# Farthest (m) that a wall is looked for, and how many positions of new walls are: some are of walls across.
-_FARTHEST, _NEAREST = 3.0, 8
+# How many positions of new walls are looked at from one of the map: some are of walls across.
+_NEAREST = 8
 
 # Cosine of the greatest angle between the normals of a wall and its counterpart, 45°.
 _SAME_WAY = 0.7
@@ -161,7 +161,7 @@ class _Walls:
     def _apart(self, fits: np.ndarray) -> np.ndarray:
         """Return how far (p,), m, new walls lie outside of the shifted ones, NaN where none is found."""
         moved = self.position + fits[self.group, :2]
-        _, near = self.tree.query(moved, _NEAREST, distance_upper_bound=_FARTHEST)
+        _, near = self.tree.query(moved, _NEAREST, distance_upper_bound=FARTHEST)
         near = np.minimum(near, len(self.there))
         normal = np.vstack([self.normal, [0.0, 0.0]])[near]
         is_same = (normal * self.outward[:, None]).sum(axis=2) > _SAME_WAY
@@ -175,6 +175,6 @@ class _Walls:
         found = np.isfinite(off)
         median = np.full(self.count, np.nan)
         for number, rows in enumerate(split_groups(self.group, self.count)):
-            median[number] = np.median(np.where(found[rows], off[rows], _FARTHEST)) if len(rows) else np.nan
+            median[number] = np.median(np.where(found[rows], off[rows], FARTHEST)) if len(rows) else np.nan
         size = np.maximum(np.bincount(self.group, minlength=self.count), 1)
         return median, np.bincount(self.group, found, self.count) / size

@@ -43,14 +43,12 @@ _LEAST_SPREAD = 0.005
 # between two levels are found in one of them.
 _WIDER = 1.1
 
-# Side of the bins for centers of circles (least radius of the level), as fine as the steps of the radius.
+# Side of the bins for centers of circles (least radius of the level), as fine as the steps of the radius. Points so far
+# from the circle are of its first fit.
 _CENTER_BIN = 0.15
 
-# Distances from the circle (least radius of the level) of the points of the first fits, before the tolerance counts.
-_FIRST_FITS = (0.15, 0.06)
-
-# Rounds of each first fit; it need not converge, as its points change afterwards.
-_FIRST_ROUNDS = 2
+# Rounds of each fit of a seed; it need not converge, as its points change afterwards.
+_SEED_ROUNDS = 2
 
 # Fewest points of a seed, and of a window in which one is searched for: three times the five unknowns and one more.
 LEAST_POINTS = 16
@@ -178,12 +176,11 @@ class CylinderSearch:
         if len(on_circle) < LEAST_POINTS:
             return None
         cylinder = self._circle(on_circle, axis, low, high)
-        reaches = (*(share * low for share in _FIRST_FITS), 2 * self.tolerance, self.tolerance)
-        for fit, reach in enumerate(reaches, start=1):
+        for reach in (_CENTER_BIN * low, 2 * self.tolerance, self.tolerance):
             points = on_circle[self._is_on(on_circle, cylinder, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None
-            cylinder = self._fitted(points, cylinder, *([_FIRST_ROUNDS] if fit < len(reaches) else []))
+            cylinder = self._fitted(points, cylinder, _SEED_ROUNDS)
             if not LEAST_OF_LEVEL * low <= cylinder.radius <= MOST_OF_LEVEL * high:
                 return None
         if not low / _WIDER <= cylinder.radius <= high * _WIDER:

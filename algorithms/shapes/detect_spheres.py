@@ -27,11 +27,9 @@ _FIELDS = (
     Field("seen", float, "share of the sphere that has points, 0 to 1"),
 )
 
-# Side of the bins of centers, as a share of the least radius of the level.
+# Side of the bins of centers, as a share of the least radius of the level. Points so far from the sphere are of its
+# first fit.
 _CENTER_BIN = 0.25
-
-# Distances from the sphere (times the least radius) at which a start is fitted again, before the tolerance counts.
-_FIRST_FITS = (0.25, 0.1)
 
 # Largest angle between the normal of a point on a sphere and the direction from the center (°).
 _NORMAL_ANGLE = 25.0
@@ -137,7 +135,7 @@ class SphereSearch:
         self, rows: np.ndarray, center: np.ndarray, radius: float, low: float, high: float
     ) -> Optional[tuple[np.ndarray, float]]:
         """Return the least-squares sphere of the points around a start, None where its radius is out of range."""
-        for reach in (*(share * low for share in _FIRST_FITS), 2 * self.tolerance, self.tolerance):
+        for reach in (_CENTER_BIN * low, 2 * self.tolerance, self.tolerance):
             points = rows[self._is_on(rows, center, radius, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None

@@ -86,6 +86,28 @@ def test_what_has_gone_what_was_not_seen_and_what_trees_hide():
     assert [report.values[name] for name in ("gone", "not_seen", "doubtful")] == [1, 1, 1]
 
 
+@pytest.mark.parametrize(("height", "gone"), [(0.6, 1), (2.0, 0)])
+def test_cars_show_that_no_roof_is_there_and_halls_without_a_class_do_not(height, gone):
+    """Unclassified points cover the site of a house of the map."""
+    old = [house(0, 0), house(20, 0)]
+    xyz, classes = cloud([old[0]])
+    inside = are_within(xyz[:, :2], sides_of_rings(old[1]))
+    xyz[inside, 2], classes[inside] = height, 1
+    made = update_map(xyz, classes, old_map=LayerFeatures(old, {"id": [0, 1]}))
+    assert len(made[1]) == gone
+    assert made[0].columns["status"] == [UNCHANGED] + [DOUBTFUL] * (1 - gone)
+
+
+def test_a_house_is_gone_whose_neighbor_has_grown_over_its_edge_and_changed_where_more_of_it_is_left():
+    old = [house(0, 0), house(20, 0)]
+    now = [old[0], house(21, -8.5, (0, 0), (10, 0), (10, 9.5), (0, 9.5))]
+    rows, gone, _ = updated(old, now, now)
+    assert gone.columns["id"] == [1]
+    assert [own[0]["status"] for own in rows.values()] == [UNCHANGED, NEW]
+    rows, gone, _ = updated(old, [old[0], house(20, 0, (0, 0), (4, 0), (4, 8), (0, 8))])
+    assert [own[0]["status"] for own in rows.values()] == [UNCHANGED, CHANGED]
+
+
 def test_a_new_house_gets_an_id_and_shares_its_neighbors_wall():
     old = house(0, 0)
     rows, _, _ = updated([old], [old, house(10, 0)], [old, house(10.2, 0.2)], {"id": [4]})
@@ -94,6 +116,14 @@ def test_a_new_house_gets_an_id_and_shares_its_neighbors_wall():
     assert (new["status"], rows[4][0]["status"]) == (NEW, UNCHANGED)
     assert {(10.0, 0.0), (10.0, 8.0)} <= {tuple(corner) for corner in new["rings"][0].tolist()}
     assert iou(new["rings"], house(10, 0)) > 0.93
+
+
+def test_a_strip_along_a_wall_of_the_map_is_of_the_new_house_beyond_it():
+    """The border between the roofs lies 1.2 m before the wall that both houses share, and the new one is narrower."""
+    old, new = house(20, 0), house(10, 0, (0, 0), (10, 0), (10, 6), (0, 6))
+    outlines = [house(10, 0, (0, 0), (8.8, 0), (8.8, 6), (0, 6)), house(18.8, 0, (0, 0), (11.2, 0), (11.2, 8), (0, 8))]
+    rows, _, _ = updated([old], [old, new], outlines, {"id": [4]}, least_width=1.0)
+    assert (rows[4][0]["status"], rows[5][0]["status"]) == (UNCHANGED, NEW)
 
 
 @pytest.mark.parametrize(("ids", "new"), [([4.0, np.nan], 5), (["a", "b"], "new-1"), ([3, 9], 10)])
