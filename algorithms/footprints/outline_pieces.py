@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.grid import plan_box
 from ..geometry.groups import components, split_groups
 from ..geometry.level_lines import level_lines
-from ..geometry.polygon_overlap import SQUARE, in_squares, meeting_boxes
+from ..geometry.polygon_overlap import in_squares, meeting_boxes
 from ..geometry.ring_directions import N_STEPS, RingPieces, direction_weights, main_directions, weights_of_pieces
 from ..geometry.rings import is_inside, perimeter, signed_area
 from ..packages import spatial
@@ -101,7 +101,7 @@ def blocks_of(pieces: list[OutlinePiece], spacing: float) -> list[list[OutlinePi
     return [[pieces[i] for i in rows] for rows in split_groups(block, count)]
 
 
-def shared_directions(rings: list[list[np.ndarray]], side: float = SQUARE) -> list[np.ndarray]:
+def shared_directions(rings: list[list[np.ndarray]], side: float = 500.0) -> list[np.ndarray]:
     """Return the main directions (k,), °, of buildings, by samples along the rings of each.
 
     The walls of other buildings around count, the nearer the more. Memory: the buildings of a

@@ -15,13 +15,7 @@ from .groups import components, placed, run_starts
 # A near point lies at most this many boxes away.
 _REACH = 2
 
-# Numbers of boxes are of 64 bits.
-_MOST_BOXES = 2**63 - 1
-
 Offset = tuple[int, int, int]
-
-# Up to this number of points, comparing all pairs is faster than searching the boxes around each box.
-_FEW = 300
 
 
 class Boxes:
@@ -61,7 +55,8 @@ class Boxes:
         box = [column - column.min() for column in box]
         # A margin on all sides keeps neighbors from wrapping around.
         self.shape = np.array([column.max() for column in box]) + 2 * _REACH + 1
-        if math.prod(self.shape.tolist()) > _MOST_BOXES:
+        # Numbers of boxes are of 64 bits.
+        if math.prod(self.shape.tolist()) > np.iinfo(np.int64).max:
             spread = " by ".join(f"{extent:,.0f}" for extent in np.ptp(xyz, axis=0))
             raise ValueError(
                 f"The points are spread over {spread} m, too far to be looked at in boxes of {np.min(side):.2g} m; "
@@ -163,7 +158,8 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
     each, which joins most. Pairs of points are never all held at once, and memory follows the points.
     """
     component = np.arange(len(boxes))
-    if len(boxes.order) <= _FEW:
+    # Of so few points, comparing all pairs is faster than searching the boxes around each box.
+    if len(boxes.order) <= 300:
         here, there = np.triu_indices(len(boxes.order), 1)
         near, box = is_near(boxes.xyz[here] - boxes.xyz[there]), boxes.box()
         monitor.progress(1.0)

@@ -11,9 +11,6 @@ from .rings import signed_area
 # Directions of a cell's sides, counterclockwise around it: the south side runs east, the east side north, …
 _EAST, _NORTH, _WEST, _SOUTH = range(4)
 
-# Share of a side that is cut off where cells touch in a corner only, so that rings don't touch.
-_NECK = 0.1
-
 
 def outline_cells(grid: Grid, cells: np.ndarray, group: np.ndarray) -> list:
     """Return the polygon of each group of cells.
@@ -81,7 +78,8 @@ def _ring(grid: Grid, start: np.ndarray, direction: np.ndarray, is_crowded: np.n
     corner = np.column_stack([column, row]) - 1.0
     forward = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]], float)
     before, after = forward[direction[turned - 1]], forward[direction[turned]]
-    neck = _NECK * is_crowded[turned, None]
+    # Where cells touch in a corner only, a tenth of each side is cut off, so that rings don't touch.
+    neck = 0.1 * is_crowded[turned, None]
     vertices = np.stack([corner - neck * before, corner + neck * after], axis=1).reshape(-1, 2)
     vertices = vertices[np.column_stack([np.ones(len(turned), bool), is_crowded[turned]]).ravel()]
     return np.concatenate([vertices, vertices[:1]]) * grid.size + grid.corner

@@ -11,9 +11,6 @@ from .groups import components
 from .rings import signed_area
 from .subdivision import Subdivision
 
-# A vertex closer than this (m) to the line between its neighbors is no corner.
-_STRAIGHT = 0.002
-
 
 @dataclass(frozen=True)
 class CellPolygon:
@@ -86,7 +83,8 @@ def _corners(borders: list[tuple[int, int, int]], vertices: list[tuple[float, fl
             corners.add(vertex)
             continue
         before, after = sorted(others)
-        if _bend(vertices[before], vertices[after], vertices[vertex]) > _STRAIGHT:
+        # Closer than 2 mm to the line between its neighbors it is no corner.
+        if _bend(vertices[before], vertices[after], vertices[vertex]) > 0.002:
             corners.add(vertex)
     return corners
 

@@ -9,17 +9,8 @@ import numpy as np
 from ..packages import csgraph, sparse
 from .groups import mask_of, run_starts
 
-# Steps per unit of cost in :func:`cheapest_cut` by default: the flow takes costs as whole numbers of 32 bits.
-_STEPS = 1000
-
 # Steps per unit of cost in the cuts of :func:`cheapest_labels`.
 STEPS_OF_LABELS = 10_000
-
-# Largest cost in steps. It is a seventh of the largest number of 32 bits, as the costs of edges are added in these.
-_LARGEST = 3e8
-
-# Sweeps over all labels; costs hardly change after the second one.
-_SWEEPS = 4
 
 # Returns the cost (k,) of edges (k,) with these labels (k,) on their two sides.
 Border = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
@@ -51,9 +42,9 @@ def cheapest_labels(
     label = start.copy()
     every, cells = np.arange(len(edges)), np.arange(len(cost))
     border_cost = border(label[edges[:, 0]], label[edges[:, 1]], every)
-    # Labels that were tried since the last change.
+    # Labels that were tried since the last change. Four sweeps over all: costs hardly change after the second one.
     tried = 0
-    for alpha in list(range(cost.shape[1])) * _SWEEPS:
+    for alpha in list(range(cost.shape[1])) * 4:
         if tried == cost.shape[1]:
             break
         tried += 1
@@ -113,7 +104,7 @@ def cheapest_cut(
     if_inside: np.ndarray,
     if_outside: np.ndarray,
     back: Optional[np.ndarray] = None,
-    steps: int = _STEPS,
+    steps: int = 1000,
 ) -> np.ndarray:
     """Return the mask of cells (n,) to put inside so that it costs least: a minimum cut.
 
@@ -128,7 +119,7 @@ def cheapest_cut(
     back : ndarray of shape (e,), optional
         Cost of an edge whose left cell is outside and its right one inside; ``cost`` by default.
     steps : int
-        Steps to which costs are rounded, per unit.
+        Steps to which costs are rounded, per unit: the flow takes them as whole numbers of 32 bits.
     """
     n = len(if_inside)
     source, sink, cells = n, n + 1, np.arange(n)
@@ -137,7 +128,8 @@ def cheapest_cut(
     rows = np.concatenate([left, right, to_source, cells, cells, to_sink])
     columns = np.concatenate([right, left, cells, to_source, to_sink, cells])
     costs = np.concatenate([cost, cost if back is None else back, if_outside, np.zeros(n), if_inside, np.zeros(n)])
-    capacity = np.rint(np.minimum(costs * steps, _LARGEST)).astype(np.int32)
+    # At most a seventh of the largest number of 32 bits, as the costs of edges are added in these.
+    capacity = np.rint(np.minimum(costs * steps, 3e8)).astype(np.int32)
     # Build the matrix by hand: most cuts have few cells, for which scipy's checks take longer than the flow.
     key = rows * (n + 2) + columns
     order = np.argsort(key, kind="stable")

@@ -12,18 +12,6 @@ from .groups import components, mask_of
 # A cell of a raster and the eight around it.
 EIGHT = np.ones((3, 3), bool)
 
-# A raster of up to this many cells is accepted however few points it holds: an array of it has tens of megabytes.
-_MOST_CELLS = 10_000_000
-
-# A raster of up to this many cells costs hardly any time, however empty it is.
-_FEW_CELLS = 200_000
-
-# Cells for each point beyond which a larger raster is refused: nearly empty, it is due to wrong coordinates.
-_MOST_CELLS_PER_POINT = 20
-
-# A table of up to this many entries per number takes less memory and time than sorting the numbers.
-_TABLE = 4
-
 
 @dataclass(frozen=True)
 class Grid:
@@ -132,7 +120,8 @@ def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     least = int(numbers.min()) if len(numbers) else 0
     length = int(numbers.max()) - least + 1 if len(numbers) else 0
-    if length > _TABLE * len(numbers):
+    # A table of up to four entries per number takes less memory and time than sorting the numbers.
+    if length > 4 * len(numbers):
         return np.unique(numbers, return_inverse=True)
     is_there = mask_of(length, numbers - least)
     rank = np.cumsum(is_there, dtype=np.int32) - np.int32(1)
@@ -143,16 +132,17 @@ class SparsePointsError(ValueError):
     """Points lie too far apart for a raster of cells over them."""
 
 
-def is_nearly_empty(xyz: np.ndarray, size: float, most_cells: int = _FEW_CELLS) -> bool:
+def is_nearly_empty(xyz: np.ndarray, size: float, most_cells: int = 200_000) -> bool:
     """Return whether a raster of cells of ``size`` (m) over points (n, 2 or 3) has many and nearly only empty cells.
 
-    Many are more than ``most_cells``, and nearly empty is a raster with more than twenty cells for each point.
+    Many are more than ``most_cells``; up to these a raster costs hardly any time, however empty it is. Nearly empty is
+    a raster with more than twenty cells for each point, which is due to wrong coordinates.
     """
     width, height = np.ptp(plan_box(xyz), axis=0)
-    return bool((width / size + 1) * (height / size + 1) > max(most_cells, _MOST_CELLS_PER_POINT * len(xyz)))
+    return bool((width / size + 1) * (height / size + 1) > max(most_cells, 20 * len(xyz)))
 
 
-def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -> None:
+def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = 10_000_000) -> None:
     """Refuse points that lie too far apart for a raster of cells, which would be nearly empty.
 
     Parameters
@@ -162,7 +152,7 @@ def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -
     size : float
         Side of a cell, m.
     most_cells : int
-        Cells that are no burden however empty they are, ten million unless given.
+        Cells that are no burden however empty they are, unless given ten million: an array of tens of megabytes.
 
     Raises
     ------

@@ -9,12 +9,6 @@ import numpy as np
 from ..criteria import PARALLEL
 from .groups import components, split_groups
 
-# Rounds of moving at most, and the share of an area that may be left: areas are quadratic in the shifts.
-_ROUNDS, _LEFT = 20, 1e-6
-
-# Sine of the angle up to which two edges that meet lie on one line.
-_STRAIGHT = 1e-3
-
 
 def with_areas(polygons: list, wanted: np.ndarray) -> list:
     """Return polygons with wanted areas (n,), m²: whole lines are moved, by least length times squared shift in all.
@@ -26,10 +20,11 @@ def with_areas(polygons: list, wanted: np.ndarray) -> list:
     start, end = np.concatenate(loops), np.concatenate([np.roll(loop, -1) for loop in loops])
     owner = np.repeat(np.arange(len(polygons)), [sum(len(ring) - 1 for ring in own) for own in polygons])
     line, normal = _lines(vertices, start, end)
-    for _ in range(_ROUNDS):
+    # Areas are quadratic in the shifts: a few rounds leave a millionth of them.
+    for _ in range(20):
         (x, y), way = vertices[start].T, vertices[end] - vertices[start]
         area = np.bincount(owner, (x * way[:, 1] - y * way[:, 0]) / 2, len(polygons))
-        if (np.abs(wanted - area) <= _LEFT * wanted).all():
+        if (np.abs(wanted - area) <= 1e-6 * wanted).all():
             break
         length = np.hypot(*way.T)
         outward = np.sign(way[:, 1] * normal[line, 0] - way[:, 0] * normal[line, 1])
@@ -73,9 +68,9 @@ def _lines(vertices: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np
     normal = np.column_stack([-way[:, 1], way[:, 0]]) / length[:, None]
     meeting = split_groups(ends.T.ravel(), len(vertices))
     pairs = np.array([pair for rows in meeting for pair in combinations(rows, 2)]).T
-    # Away from the vertex in which they meet: edges of a wedge fold back.
+    # Away from the vertex in which they meet, within a thousandth of a radian: edges of a wedge fold back.
     (x, y), (u, v) = (np.concatenate([normal, -normal])[rows].T for rows in pairs)
-    is_one = (np.abs(x * v - y * u) < _STRAIGHT) & (x * u + y * v < 0)
+    is_one = (np.abs(x * v - y * u) < 1e-3) & (x * u + y * v < 0)
     one, other = pairs % len(ends)
     count, line = components(one[is_one], other[is_one], len(ends))
     # Of values that go to one position the last one stays: the longest edge.

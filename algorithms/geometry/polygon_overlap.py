@@ -12,15 +12,6 @@ from ..threads import PAIRS_AT_ONCE
 from .groups import items, placed, split_groups
 from .rings import signed_area
 
-# Side (m) of the squares whose polygons are worked on at once, where nothing but memory depends on it.
-SQUARE = 500.0
-
-# Points are sorted into rows so high that a square of that height holds this many of them on average.
-_PER_ROW = 1000
-
-# Polygons between two looks at whether to stop.
-_BETWEEN_LOOKS = 100
-
 
 @dataclass(frozen=True)
 class Polygons:
@@ -138,9 +129,7 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
     return one[by_both], other[by_both]
 
 
-def in_squares(
-    boxes: np.ndarray, reach: float, side: float = SQUARE
-) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def in_squares(boxes: np.ndarray, reach: float, side: float) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Return rows of boxes (n, 2, 2) with middles in a square of a side (m), those within a reach (m), and their box.
 
     The squares begin at the corner of all; together they hold each row once.
@@ -221,7 +210,7 @@ def holders(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> np.ndarra
         return found
     rows = _Rows(plan)
     for number, box in enumerate(polygons.box):
-        if number % _BETWEEN_LOOKS == 0:
+        if number % 100 == 0:
             monitor.progress(number / len(polygons.box))
         near = rows.within(box)
         near = near[found[near] < 0]
@@ -236,7 +225,8 @@ class _Rows:
 
     def __init__(self, plan: np.ndarray) -> None:
         self.plan, self.low = plan, plan[:, 1].min()
-        count = max(1, int(np.sqrt(len(plan) / _PER_ROW)))
+        # A square as high as a row holds 1000 points on average.
+        count = max(1, int(np.sqrt(len(plan) / 1000)))
         self.height = max(float(np.ptp(plan[:, 1])) / count, 1e-9)
         row = ((plan[:, 1] - self.low) / self.height).astype(np.int64)
         self.order = np.lexsort([plan[:, 0], row])

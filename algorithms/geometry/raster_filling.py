@@ -6,10 +6,6 @@ import numpy as np
 
 from ..packages import ndimage
 
-# Widest standard deviation (cells) of a Gaussian mean that is taken of all cells, which gaps of buildings need; wider
-# ones are means of blocks, half of it in blocks. Rasters that are mostly gaps have a narrower one.
-_WIDEST, _WIDEST_IN_EMPTY = 16, 4
-
 
 def nearest_known(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
     """Fill unknown cells with the value of the nearest known one."""
@@ -36,7 +32,9 @@ def filled_by_means(surface: np.ndarray, unknown: np.ndarray, is_nearly_empty: b
     ndarray of shape (rows, columns)
         The surface without gaps; as it is where no cell is known.
     """
-    widest_exact = _WIDEST_IN_EMPTY if is_nearly_empty else _WIDEST
+    # Widest standard deviation (cells) of a mean that is taken of all cells, which gaps of buildings need; wider ones
+    # are means of blocks, half of it in blocks.
+    widest_exact = 4 if is_nearly_empty else 16
     filled = np.where(unknown, np.nan, surface)
     weight = (~unknown).astype(float)
     weighted = np.where(unknown, 0.0, surface)

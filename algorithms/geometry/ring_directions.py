@@ -11,19 +11,6 @@ from ..packages import ndimage
 # Lengths (samples) of the pieces of a ring whose directions are taken: from a bay to a long front.
 _LENGTHS = (4, 8, 16, 32, 64)
 
-# Weight of a piece: its length (samples) to this power, so that long walls count more than their length.
-_POWER = 1.5
-
-# Least standard deviation of a direction (°).
-_LEAST_WIDTH = 1.0
-
-# Standard deviation of the direction of a piece of one sample (°), half a sample across: longer pieces'
-# inverse to their length.
-_WIDTH_OF_ONE = 28.6
-
-# Standard deviation (samples) across a straight piece: the weight falls where it is more, as such a piece is bent.
-_STRAIGHT = 0.25
-
 # Step of the directions (°).
 _STEP = 0.5
 
@@ -32,23 +19,6 @@ N_STEPS = round(90.0 / _STEP)
 
 # The directions (°) of these steps.
 _TRIAL = _STEP * np.arange(N_STEPS)
-
-# No direction dominates where the lower quartile of the weights is more than this share of their mean: 0.76 and more
-# in simulated towers, 0.72 and less in 30 real buildings.
-_EVEN = 0.74
-
-# Samples of the smallest ring that may be round: those towers and buildings have at least as many.
-_ROUND_SAMPLES = 50
-
-# An edge runs along a direction within this angle (°): the deviation of an edge of 6 m whose ends lie 0.3 m apart
-# across.
-_ALONG = 3.0
-
-# Least angle between the first direction and a second one (°).
-_APART = 12.0
-
-# Least weight of a second direction, as a share of the first one's.
-_LEAST_SHARE = 0.25
 
 
 class RingPieces:
@@ -69,7 +39,9 @@ class RingPieces:
                 angle, across = _pieces(samples, length)
                 position = (angle % 90.0) / _STEP
                 low = np.floor(position).astype(np.int64)
-                weight = length ** (_POWER - 1) * np.exp(-((across / (_STRAIGHT * step)) ** 2) / 2)
+                # Long walls count more than their length: by its power of 1.5. The weight falls where the standard
+                # deviation across is more than a quarter of a sample, as such a piece is bent.
+                weight = length**0.5 * np.exp(-((across / (0.25 * step)) ** 2) / 2)
                 self._of_length[length] = low, position - low, weight
 
     def has(self, length: int) -> bool:
@@ -88,22 +60,20 @@ class RingPieces:
         return np.bincount(numbers, np.concatenate([weight * (1 - share), weight * share]), N_STEPS)
 
 
-def direction_weights(samples: np.ndarray, counts: Optional[np.ndarray] = None) -> np.ndarray:
+def direction_weights(samples: np.ndarray) -> np.ndarray:
     """Return the weights (180,) of directions from 0 to 90°, in steps of half a degree, along a ring.
 
     Parameters
     ----------
     samples : ndarray of shape (n, 2)
         Positions at equal steps along a ring, the first not repeated.
-    counts : ndarray of shape (n,), optional
-        How much the piece around each sample counts; all count alike, unless given.
 
     Notes
     -----
     All pieces of a few lengths count, by how straight they are: no piece is chosen, so that the weights change by
     little with the samples.
     """
-    return weights_of_pieces([RingPieces(samples)], [counts])[0]
+    return weights_of_pieces([RingPieces(samples)], [None])[0]
 
 
 def weights_of_pieces(rings: list[RingPieces], counts: list[Optional[np.ndarray]]) -> np.ndarray:
@@ -113,7 +83,8 @@ def weights_of_pieces(rings: list[RingPieces], counts: list[Optional[np.ndarray]
         rows = [row for row, ring in enumerate(rings) if ring.has(length)]
         if rows:
             counted = np.array([rings[row].counted(length, counts[row]) for row in rows])
-            width = np.hypot(_LEAST_WIDTH, _WIDTH_OF_ONE / length)
+            # Standard deviation (°) of the direction of a piece, half a sample across: 28.6° of one sample.
+            width = np.hypot(1.0, 28.6 / length)
             weights[rows] += ndimage.gaussian_filter1d(counted, width / _STEP, mode="wrap")
     return weights
 
@@ -128,12 +99,15 @@ def main_directions(weights: np.ndarray, own: np.ndarray, n_samples: int) -> np.
     n_samples : int
         Samples of its rings. A round building has no direction.
     """
-    if n_samples >= _ROUND_SAMPLES and np.percentile(own, 25) > _EVEN * own.mean():
+    # No direction dominates where the lower quartile of the weights is more than 0.74 of their mean: 0.76 and more in
+    # simulated towers, 0.72 and less in 30 real buildings, all of which have at least 50 samples.
+    if n_samples >= 50 and np.percentile(own, 25) > 0.74 * own.mean():
         return np.zeros(0)
     angles = [_peak(weights, int(np.argmax(weights)))]
     is_top = (weights >= np.roll(weights, 1)) & (weights > np.roll(weights, -1))
-    other = np.where(is_top & (_off(_TRIAL, angles[0]) >= _APART), weights, 0.0)
-    if other.max() >= _LEAST_SHARE * weights.max() > 0:
+    # A second direction is at least 12° off, with at least a quarter of the weight.
+    other = np.where(is_top & (_off(_TRIAL, angles[0]) >= 12.0), weights, 0.0)
+    if other.max() >= 0.25 * weights.max() > 0:
         angles.append(_peak(weights, int(np.argmax(other))))
     return np.array(angles)
 
@@ -179,4 +153,5 @@ def along_two_directions(length: np.ndarray, angle: np.ndarray) -> float:
     angle : ndarray of shape (n,)
         Their directions, °.
     """
-    return float(((_off(angle, _TRIAL[:, None]) <= _ALONG) * length).sum(axis=1).max())
+    # Within 3°: the deviation of an edge of 6 m whose ends lie 0.3 m apart across.
+    return float(((_off(angle, _TRIAL[:, None]) <= 3.0) * length).sum(axis=1).max())

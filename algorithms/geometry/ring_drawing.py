@@ -26,21 +26,6 @@ _FAN = 15.0
 # A run must advance by at least this share of its length; less is a bulge, no edge.
 _ADVANCE = 0.5
 
-# Turn (°) below which a corner is flat.
-_FLAT = 20.0
-
-# Turn (°) above which a corner is sharp. A corner is obtuse if its turn is as far below 90° as this is above.
-_SHARP = 110.0
-
-# Two directions are the same or opposite within this rounding error (°).
-_SAME = 0.5
-
-# Length (samples) of the stretch in which the first corner is searched; doubled until it holds one.
-_TRIAL = 64
-
-# Cosine of the angle between edges of one line, at least: 10°.
-_NEARLY = 0.985
-
 # Greatest distance (steps) of a corner from where the runs part: the corner of a sharp angle lies that far off.
 _FARTHEST = 6.0
 
@@ -164,8 +149,9 @@ def _turn_prices(turned: np.ndarray, prices: Prices) -> np.ndarray:
     size = np.abs(turned)
     # In proportion, from the price at 90° to that at 170°.
     sharp = 1 + (prices.sharp - 1) * np.clip((size - 90) / 80, 0.0, 1.0)
-    cost = np.select([size < _FLAT, size <= 180 - _SHARP, size > _SHARP], [prices.flat, prices.obtuse, sharp], 1.0)
-    return np.where((size < _SAME) | (size > 180 - _SAME), prices.step, cost)
+    cost = np.select([size < 20, size <= 70, size > 110], [prices.flat, prices.obtuse, sharp], 1.0)
+    # Two directions are the same or opposite within half a degree of rounding.
+    return np.where((size < 0.5) | (size > 179.5), prices.step, cost)
 
 
 class _Chain:
@@ -192,7 +178,8 @@ class _Chain:
     def sure_corner(self) -> tuple[int, int]:
         """Return the sample at which a run begins, and its way; the run before it and itself are long."""
         n = len(self.middles)
-        length = min(n, _TRIAL)
+        # The first corner is searched in a stretch of 64 samples, which is doubled until it holds one.
+        length = min(n, 64)
         while True:
             _, runs = self._runs(self.ways.price, np.zeros_like(self.ways.price), length)
             if len(runs) > 1 or length == n:
@@ -369,7 +356,8 @@ def aligned(rings: list[list[Edge]], within: float) -> list[list[Edge]]:
         along = np.sort([(start - start[number]) @ unit[number], (end - start[number]) @ unit[number]], axis=0)
         is_beside = (along[0] <= length[number] + within) & (along[1] >= -within)
         # An edge no longer than the distance may cross the line.
-        is_parallel = np.abs(unit @ unit[number]) >= _NEARLY
+        # Within 10°.
+        is_parallel = np.abs(unit @ unit[number]) >= 0.985
         own = is_free & is_beside & is_parallel & (off <= within) & (ring_of != ring_of[number])
         line[own], is_free[own] = number, False
     moved, first = [], 0

@@ -13,14 +13,12 @@ import numpy as np
 
 from ..packages import spatial
 from ..threads import n_threads
+from .grid import find_cells
 from .groups import components, placed, run_starts
 
 # A coordinate within this distance (m) below the side of a voxel lies on it: above rounding, below the resolution of
 # files.
 TOUCH = 1e-7
-
-# With more voxels along an axis, float64 could not separate cells.
-_MOST_ALONG_AXIS = 2.0**46
 
 # Keys of voxels are int64.
 MOST_KEYS = np.iinfo(np.int64).max
@@ -42,7 +40,7 @@ def refuse_fine(farthest: float, size: float) -> None:
     ValueError
         If there are more than 2^46 along an axis.
     """
-    if farthest / size > _MOST_ALONG_AXIS:
+    if farthest / size > 2.0**46:
         raise ValueError(
             f"Voxels of {size:g} m are too fine for coordinates up to {farthest:g} m; "
             "take larger voxels or check the coordinates."
@@ -140,12 +138,8 @@ class Keys:
 
 def find_keys(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Return the position of each ``wanted`` key (k,) among ascending ``keys`` (m,), int64; -1 if absent."""
-    if not len(keys):
-        return np.full(len(wanted), -1)
-    position = np.searchsorted(keys, wanted)
-    position[position == len(keys)] = 0
-    position[keys[position] != wanted] = -1
-    return position
+    position, found = find_cells(keys, wanted)
+    return np.where(found, position, -1)
 
 
 def locate_voxels(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:

@@ -10,10 +10,6 @@ import numpy as np
 # A cut passes through a vertex within this distance (m).
 SNAP = 0.05
 
-# A segment must reach into a cell by this many snapping distances to cut it, or by half the width of the cell if that
-# is less.
-_LEAST_REACH = 2.5
-
 # The cell beyond the rim of the rectangle.
 OUTSIDE = -1
 
@@ -120,9 +116,9 @@ class Subdivision:
             share = 0.0 if i == j else across[i] / (across[i] - across[j])
             along.append(ux * (xa + share * (xb - xa) - x0) + uy * (ya + share * (yb - ya) - y0))
         first, last = min(along), max(along)
-        if last - first < 0.5 * snap or min(last, length) - max(first, 0.0) < min(
-            _LEAST_REACH * snap, 0.5 * (last - first)
-        ):
+        # A segment must reach into a cell by 2.5 snapping distances, or by half its width if that is less.
+        least = min(2.5 * snap, 0.5 * (last - first))
+        if last - first < 0.5 * snap or min(last, length) - max(first, 0.0) < least:
             return
         # Taken before the first vertex is inserted, which shifts positions in the loop.
         crossed = [(loop[i], loop[j], across[i], across[j]) for i, j in crossings]

@@ -27,12 +27,6 @@ from .tin import CORNERS, Tin
 # smaller ones the overlap of tiles takes more.
 _TILE_NODES = 5_000
 
-# Cells around positions, in distances between nodes: most triangles have their corners in such a cell or the next.
-_CELL = 1.5
-
-# Nodes inside a circle that are added at once.
-_INTRUDERS = 8
-
 
 class TiledTin:
     """The surface of :class:`Tin`, for positions that are all known beforehand.
@@ -149,7 +143,8 @@ class TiledTin:
         # Nodes on a line have no circle, and no position lies between them.
         center[~np.isfinite(radius)], limit[~np.isfinite(radius)] = 0.0, 0.0
         is_wrong = self._tree.query(center)[0] < limit
-        distance, node = self._tree.query(center[is_wrong], np.arange(1, min(_INTRUDERS, len(self.nodes)) + 1))
+        # Up to eight nodes inside a circle are added at once.
+        distance, node = self._tree.query(center[is_wrong], np.arange(1, min(8, len(self.nodes)) + 1))
         is_new = (distance < limit[is_wrong, None]) & ~np.isin(node, rows)
         # Circles in which all nodes found were triangulated already are wrong by rounding only.
         is_wrong[is_wrong] = is_new.any(axis=1)
@@ -192,7 +187,8 @@ def _cell_size(nodes: np.ndarray, rows: np.ndarray) -> float:
     if not len(rows):
         return 0.0
     low, high = plan_box(nodes[rows])
-    return _CELL * float(np.sqrt((high - low).prod() / len(rows)))
+    # Most triangles have their corners in a cell of one and a half distances between nodes, or the next.
+    return 1.5 * float(np.sqrt((high - low).prod() / len(rows)))
 
 
 def _close(nodes: np.ndarray, rows: np.ndarray, positions: np.ndarray) -> np.ndarray:

@@ -20,9 +20,6 @@ PLANE_POINTS = 3
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
 
-# Side of the cells of starts for walks, in mean distances of nodes: two cells for each node.
-_START_CELL = 0.7
-
 # Far corners around the nodes of a surface, which come before these.
 CORNERS = 4
 
@@ -227,10 +224,9 @@ class _NodeRaster:
     def __init__(self, plan: np.ndarray) -> None:
         self._low, high = plan.min(axis=0), plan.max(axis=0)
         extent = high - self._low
-        # Nodes on a line have no area; their raster has a cell for each of them along it.
-        self._size = (
-            max(_START_CELL * float(np.sqrt(extent.prod() / len(plan))), float(extent.max()) / len(plan)) or 1.0
-        )
+        # Two cells for each node. Nodes on a line have no area; their raster has a cell for each of them along it.
+        size = 0.7 * float(np.sqrt(extent.prod() / len(plan)))
+        self._size = max(size, float(extent.max()) / len(plan)) or 1.0
         self._shape = (extent / self._size).astype(np.int64) + 1
         node = np.full(self._shape, -1, np.int64)
         node[tuple(self._cells(plan).T)] = np.arange(len(plan))
@@ -245,39 +241,23 @@ class _NodeRaster:
         return np.clip(((plan - self._low) / self._size).astype(np.int64), 0, self._shape - 1)
 
 
-def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] = None) -> np.ndarray:
-    """Return the height of each node, or of a sample of them, above the plane of its neighbors.
+def node_fits(nodes: np.ndarray, most: Optional[int] = None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the height of each node, or of a sample of them, above the plane of its eight nearest in plan.
 
     Parameters
     ----------
     nodes : ndarray of shape (m, 3), float64
         Points of a surface (m), m > 3.
-    n_neighbors : int
-        Neighbors in plan that the plane is fitted to, the node itself left out.
     most : int, optional
         Size of the sample, about; all nodes, unless given.
 
     Returns
     -------
-    ndarray of shape (m,), or fewer
-        Residuals (m): measurement noise and what the surface bends within its own spacing.
+    residuals : ndarray of shape (m,), or fewer
+        Heights (m): measurement noise and what the surface bends within its own spacing.
+    nearest : ndarray of shape (m,), or fewer
+        Distance (m) of each to its nearest neighbor.
     """
-    return node_fits(nodes, n_neighbors, most)[0]
-
-
-def node_fits(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] = None) -> tuple[np.ndarray, np.ndarray]:
-    """Return the residuals of nodes, see :func:`node_residuals`, and the distance (m) of each to its nearest neighbor.
-
-    Parameters
-    ----------
-    nodes : ndarray of shape (m, 3), float64
-        Points of a surface (m), m > 3.
-    n_neighbors : int
-        Neighbors in plan that the plane is fitted to.
-    most : int, optional
-        Size of the sample, about; all nodes, unless given.
-    """
-    count = min(n_neighbors, len(nodes) - 1)
     tree = spatial.cKDTree(nodes[:, :2])
     # Sample by square decimeters, so that the choice depends neither on the order of nodes nor on the others.
     number = scattered(np.floor(10.0 * nodes[:, :2]).astype(np.int64))
@@ -286,7 +266,7 @@ def node_fits(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] = Non
 
     def fit(sample: np.ndarray) -> None:
         rows = taken[sample]
-        apart, neighbors = (found[:, 1:] for found in tree.query(nodes[rows, :2], k=count + 1))
+        apart, neighbors = (found[:, 1:] for found in tree.query(nodes[rows, :2], k=min(8, len(nodes) - 1) + 1))
         design = nodes[neighbors] - nodes[rows, None]
         heights = design[..., 2].copy()
         # The plane through offsets is slope . (x, y) + level.

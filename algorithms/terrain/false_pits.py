@@ -14,7 +14,7 @@ import numpy as np
 
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import split_groups
-from ..geometry.tin import node_residuals
+from ..geometry.tin import node_fits
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
@@ -129,7 +129,7 @@ def _sunk(
     """Return the indices of the points that may lie under the ground, and of the nodes that are ground next to them."""
     nodes = np.flatnonzero(is_node)
     # In a group, some neighbors of a node are low as well and pull their plane down.
-    is_low = node_residuals(points[nodes]) < -depth / 2
+    is_low = node_fits(points[nodes])[0] < -depth / 2
     below = np.flatnonzero((above < -depth) & is_last & ~is_node)
     return np.append(nodes[is_low], below), nodes[~is_low]
 

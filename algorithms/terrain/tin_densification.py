@@ -8,7 +8,7 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..geometry.grid import plan_box
-from ..geometry.tin import Tin, node_fits, node_residuals, robust_deviation
+from ..geometry.tin import Tin, node_fits, robust_deviation
 from ..rules import rule, rules
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from ..sampling.surface_noise import SURFACES
@@ -125,7 +125,7 @@ class Surface:
 def surface_roughness(nodes: np.ndarray, least: float) -> float:
     """Return the robust standard deviation of nodes (m, 3) across their surface, m, at least ``least``."""
     # Three nodes or fewer have no neighbors to differ from.
-    residuals = node_residuals(nodes, most=SURFACES.sample) if len(nodes) > 3 else np.zeros(1)
+    residuals = node_fits(nodes, SURFACES.sample)[0] if len(nodes) > 3 else np.zeros(1)
     return robust_deviation(residuals, least)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.geometry.tin import node_residuals, robust_deviation
+from lidar_buildings.algorithms.geometry.tin import node_fits, robust_deviation
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.terrain.classify_ground_tin import classify_ground_tin
@@ -233,7 +233,7 @@ def test_sweep_distance_is_six_roughnesses_with_the_last_two_capped(classify, ca
     """
     xyz, _ = scan(rng, TERRAINS["level"], density=density, noise=noise)
     is_node = classify(xyz, unclassified(xyz), sweep_distance=0.0) == 2
-    roughness = robust_deviation(node_residuals(xyz[is_node]))
+    roughness = robust_deviation(node_fits(xyz[is_node])[0])
     roughness = max(roughness, CloudSampling.of(xyz).noise) if classify is classify_ground_tin else roughness
     monitor = Monitor()
     found = classify(xyz, unclassified(xyz), monitor=monitor)
