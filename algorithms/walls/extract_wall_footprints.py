@@ -37,11 +37,12 @@ _Feature = tuple[Any, dict[str, Any]]
 # Distance in plan within which points lie on a wall (times the roughness).
 _ON_WALL = 3.1
 
-# Least automatic distance (m): the least that the parameter takes.
-_LEAST_TOLERANCE = 0.01
-
-# Largest automatic distance (m): the largest that the parameter takes.
-_MOST_TOLERANCE = 2.0
+_TOLERANCE = tunable(
+    None,
+    "Distance within which points lie on a wall.",
+    within="[0.01, 2] m",
+    automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
+)
 
 _FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
@@ -105,12 +106,7 @@ def extract_wall_footprints(
         label="Minimum share of walls seen",
         within="[0, 1]",
     ),
-    tolerance: Optional[float] = tunable(
-        None,
-        "Distance within which points lie on a wall.",
-        within="[0.01, 2] m",
-        automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
-    ),
+    tolerance: Optional[float] = _TOLERANCE,
     seed: int = SEED,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -198,7 +194,7 @@ def extract_wall_footprints(
     corners: list[_Feature] = []
     buildings = _buildings(xyz, cluster_id, wall_of, sampling)
     if tolerance is None:
-        tolerance = min(max(_ON_WALL * sampling.roughness, _LEAST_TOLERANCE), _MOST_TOLERANCE)
+        tolerance = float(np.clip(_ON_WALL * sampling.roughness, _TOLERANCE.low, _TOLERANCE.high))
         monitor.resolved(tolerance=tolerance)
     limits = Limits(tolerance, min_length, max_overhang, min_area, min_seen, seed)
     outlined: list[_Outlined] = []

@@ -43,6 +43,7 @@ from lidar_buildings.algorithms.run import run_pipeline, run_stage, sampling_of 
 from lidar_buildings.algorithms.shapes.segment_planes_hough import segment_planes_hough  # noqa: E402
 from lidar_buildings.algorithms.shapes.segment_tree import segment_tree  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_plant import simulate_plant  # noqa: E402
+from lidar_buildings.algorithms.simulation.simulate_street import simulate_street  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_tree import simulate_tree  # noqa: E402
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor, StageResults  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
@@ -102,6 +103,8 @@ def _walls(scene: tuple[float, float, int]) -> tuple[Figures, list[np.ndarray]]:
 
 def _corners(made: LayerFeatures, true: LayerFeatures) -> Figures:
     """Return how many true buildings have a footprint, how many are invented, and how far corners (cm) are off."""
+    if not len(made):
+        return {"found": 0.0}
     distances, used = corner_distances(made, true)
     off = 100 * np.concatenate([*distances, np.zeros(0)])
     return {"found": len(distances), "invented": len(made) - len(used), "corners": float(off.mean())}
@@ -249,6 +252,26 @@ def _buildings_of_delft(part: int, keep: float, noise: float) -> Any:
     cloud = found.take(rows)
     cloud.set("xyz", cloud.get("xyz") + rng.normal(0, noise, (len(rows), 3)))
     return cloud, [outlines.geometries[i] for i in chosen], _of_corner(cloud)
+
+
+def _facades(scene: dict[str, Any]) -> tuple[Figures, list[np.ndarray]]:
+    """Return how many facades and openings are found in the scan of a street, and how many there are."""
+    cloud, true = _street(**scene)
+    layers = run_pipeline(PIPELINES["model_facades"], cloud.copy()).layers
+    names = {"facades": "openings_facades", "openings": "openings"}
+    figures = {name: float(len(layers[made])) for name, made in names.items()}
+    figures.update({f"true {name}": float(len(true[name])) for name in names})
+    results = [layers[made] for made in names.values()]
+    rings = [ring for layer in results for own in layer.geometries for ring in own]
+    return figures, [*rings, *(np.array(list(column)) for layer in results for column in layer.columns.values())]
+
+
+@cache
+def _street(**scene: Any) -> tuple[Cloud, dict[str, LayerFeatures]]:
+    """Return the scan of a street of 12 m from a vehicle without classes, and its true layers."""
+    made = simulate_street.stage.unpack(simulate_street(length=12.0, **scene))
+    xyz = made.dimensions["xyz"]
+    return create_cloud({"xyz": xyz, "classification": np.zeros(len(xyz), np.uint8)}), made.layers
 
 
 def _map_update(scene: tuple[float, float]) -> tuple[Figures, list[np.ndarray]]:
@@ -440,6 +463,24 @@ TASKS = {
         ),
         ((0, 1.0, 0.0), (1, 0.25, 0.0), (-1, 1.0, 0.05)),
         _footprints,
+    ),
+    "facades": Task(
+        (
+            "facades.approaches",
+            "facades.common_borders",
+            "facades.curved_fronts",
+            "facades.extract_facades",
+            "facades.extract_openings",
+            "facades.facade_frame",
+            "facades.facade_outline",
+            "facades.facade_surfaces",
+            "facades.opening_search",
+        ),
+        (
+            {"line_rate": 40.0, "angular_step": 0.4, "clutter": False, "seed": 2},
+            {"line_rate": 60.0, "angular_step": 0.3, "stoops": 1.0, "unevenness": 0.15, "seed": 3},
+        ),
+        _facades,
     ),
     "update": Task(
         (
