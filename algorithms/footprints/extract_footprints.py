@@ -167,7 +167,7 @@ def extract_footprints(
         classification = np.where(reason == Reason.DELETED, PointClass.BUILDING, classification)
     building = _building_points(classification, cluster_id, monitor)
     if not len(building) or not np.ptp(plan_box(xyz.take(building, axis=0)), axis=0).any():
-        return with_reviewed(_features([], [], min_area), review)
+        return with_reviewed(_features([], min_area), review)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
     spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
     if not merge_touching and spacing > ROWS.max_spacing:
@@ -212,7 +212,8 @@ def extract_footprints(
     )
     attributes = [one for of_part in described for one in of_part]
     rings = [[ring + sampling.corner for ring in outlined.rings] for of_part in outlines for outlined in of_part]
-    return with_reviewed(_features(rings, attributes, min_area), review)
+    found = [one for one in zip(rings, attributes) if sampling.asks_for(plan_box(one[0][0]))]
+    return with_reviewed(_features(found, min_area), review)
 
 
 @dataclass(frozen=True)
@@ -278,7 +279,7 @@ def _asked_for(
     if sampling.asked is None:
         return parts, len(parts)
     boxes = np.array([plan_box(measures.xyz[part.members]) for part in parts]).reshape(-1, 2, 2)
-    asked = meeting_boxes(sampling.asked[None] + np.array([[-1], [1]]) * APART * spacing, boxes)[1]
+    asked = np.flatnonzero([sampling.asks_for(box, APART * spacing) for box in boxes])
     near = meeting_boxes(boxes[asked] + np.array([[-1], [1]]) * NEIGHBORS, boxes)[1]
     return [parts[row] for row in (*asked, *np.setdiff1d(near, asked))], len(asked)
 
@@ -350,11 +351,11 @@ def _houses(
     return found
 
 
-def _features(geometries: list, attributes: list[dict[str, Any]], min_area: float) -> LayerFeatures:
-    """Drop footprints below ``min_area``; number the rest by cluster, then from the south-west."""
-    keys = [(of_one["cluster_id"], *map(float, rings[0].min(axis=0))) for rings, of_one in zip(geometries, attributes)]
-    kept = sorted((i for i, of_one in enumerate(attributes) if of_one["area"] >= min_area), key=keys.__getitem__)
-    return LayerFeatures.numbered([(geometries[i], attributes[i]) for i in kept], FIELDS)
+def _features(found: list[tuple[list, dict[str, Any]]], min_area: float) -> LayerFeatures:
+    """Drop footprints (rings, attributes) below ``min_area``; number the rest by cluster, then from the south-west."""
+    kept = [one for one in found if one[1]["area"] >= min_area]
+    kept.sort(key=lambda one: (one[1]["cluster_id"], *map(float, one[0][0].min(axis=0))))
+    return LayerFeatures.numbered(kept, FIELDS)
 
 
 def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> LayerFeatures:

@@ -222,8 +222,8 @@ class _View:
         pays = self._pays(runs, *sums)
         found = [(*_chosen_walls(pays[chain], runs.length[chain], self.step), chain) for chain in runs.chains()]
         saved, walls, chain = max(found, key=lambda one: one[0], default=(0, *np.zeros((2, 0), np.int64)))
-        house = runs.houses(chain, walls, self.step)
-        if saved <= 0 or not house.any():
+        house = runs.houses(chain, walls, self.step) if saved > 0 else np.zeros(1, np.int64)
+        if not house.any():
             return _Row(0.0, np.zeros((0, 2, 2)), np.zeros(is_own.shape, np.int64))
         nodes = tuple(np.clip(at - low, 0, n - 1) for at, low, n in zip(self.of_lattice, start, inside.shape))
         label = spread_out(np.where(inside, 1 + house[runs.number], 0))[nodes] - 1

@@ -122,6 +122,12 @@ class CloudSampling:
             moved[:, axis] -= start
         return moved
 
+    def asks_for(self, box: np.ndarray, around: float = 0.0) -> bool:
+        """Whether features in a box (2, 2), or up to ``around`` (m) from it, are asked for."""
+        if self.asked is None:
+            return True
+        return bool((box[0] - around <= self.asked[1]).all() and (box[1] + around >= self.asked[0]).all())
+
     def shared(self, name: str, measure: Callable[[], float]) -> float:
         """Return the value of that name of the whole; where the cloud is the whole, the one that ``measure`` returns.
 

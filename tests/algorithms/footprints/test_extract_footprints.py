@@ -234,6 +234,20 @@ def test_of_a_part_that_is_asked_for_only_its_buildings_are_drawn_as_in_the_whol
     assert not np.array_equal(alone.geometries[0][0], whole.geometries[0][0])
 
 
+def test_of_houses_that_touch_those_that_are_asked_for_are_given(rng):
+    """They are drawn together, as they share a wall; each has the points that it has in the whole."""
+    xyz = np.concatenate([roof(rng, 0, 0, 10, 8, 6.0, density=6), roof(rng, 10, 0, 12, 8, 9.0, density=6)])
+    cluster_id = np.repeat([1, 2], [480, 576])
+    sampling = CloudSampling.of(xyz)
+    whole = extract_footprints(xyz, np.full(len(xyz), 6), cluster_id, sampling=sampling)
+    sampling.asked = np.array([[2.0, 2.0], [5.0, 5.0]])
+    found = extract_footprints(xyz, np.full(len(xyz), 6), cluster_id, sampling=sampling)
+    assert whole.columns["cluster_id"] == [1, 2]
+    assert found.columns["cluster_id"] == [1]
+    np.testing.assert_array_equal(found.geometries[0][0], whole.geometries[0][0])
+    assert found.columns["points"] == whole.columns["points"][:1]
+
+
 def test_small_holes_are_filled(village):
     kept = extract_footprints(**village, min_hole_area=500.0)
     assert [len(rings) for rings in kept.geometries] == [1, 1]
