@@ -16,6 +16,7 @@ from ..geometry.polygon_overlap import are_in_polygons, as_polygons
 from ..params import IGNORED_CLASSES, MIN_BUILDING_AREA
 from ..report.page import Row, build_page, draw_map, outcome_of, percent, rows_of
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Report, stage, tunable
+from .confusion import percentage
 from .point_matching import counted_points, match_points
 
 _RATES = (
@@ -28,23 +29,16 @@ _RATES = (
     ("false", "falsely called building", ""),
 )
 _MEASURES = (
-    *(Measure(f"points_{name}", f"Points: {title}", unit) for name, title, unit in _RATES),
-    *(Measure(f"cells_{name}", f"Cells: {title}", unit) for name, title, unit in _RATES),
-    Measure("objects_completeness", "Objects: completeness", "%"),
-    Measure("objects_correctness", "Objects: correctness", "%"),
-    Measure("objects_f", "Objects: F-score", "%"),
-    Measure("objects_misses", "Objects: missed"),
-    Measure("objects_false", "Objects: falsely called building"),
+    *(
+        Measure(f"{of}_{name}", f"{of.capitalize()}: {title}", unit)
+        for of in ("points", "cells", "objects")
+        for name, title, unit in _RATES
+        if of != "objects" or name not in ("quality", "hits")
+    ),
     Measure("objects_true", "Objects in the reference"),
     Measure("objects_predicted", "Objects in the input"),
     Measure("cell_size", "Cell size", "m"),
 )
-
-# Points per m² above which cells are fine.
-_DENSE = 6.0
-
-# Side of a fine cell and of others, m.
-_FINE, _COARSE = 0.5, 1.0
 
 # Names of the objects of the layer, by their outcome.
 FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART = "found", "missed", "invented", "missed part", "invented part"
@@ -164,7 +158,7 @@ def assess_buildings(
     predicted, true = called == PointClass.BUILDING, true == PointClass.BUILDING
     if cell_size is None:
         per_square_meter = len(xyz) / max(float(np.ptp(xyz[:, :2], axis=0).prod()), 1.0)
-        cell_size = _FINE if per_square_meter > _DENSE else _COARSE
+        cell_size = 0.5 if per_square_meter > 6.0 else 1.0
         monitor.resolved(cell_size=cell_size)
     monitor.progress(0.3)
     grid = grid_over(xyz, cell_size)
@@ -203,19 +197,14 @@ def rates(predicted: np.ndarray, true: np.ndarray) -> dict[str, float]:
     """Return completeness, correctness, F and quality (percent, NaN of nothing), and what they are counted from."""
     hits, misses, false = (int(mask.sum()) for mask in (predicted & true, ~predicted & true, predicted & ~true))
     return {
-        "completeness": _percentage(hits, hits + misses),
-        "correctness": _percentage(hits, hits + false),
-        "f": _percentage(2 * hits, 2 * hits + misses + false),
-        "quality": _percentage(hits, hits + misses + false),
+        "completeness": percentage(hits, hits + misses),
+        "correctness": percentage(hits, hits + false),
+        "f": percentage(2 * hits, 2 * hits + misses + false),
+        "quality": percentage(hits, hits + misses + false),
         "hits": hits,
         "misses": misses,
         "false": false,
     }
-
-
-def _percentage(part: float, whole: float) -> float:
-    """Return a part in percent of the whole, NaN of nothing."""
-    return 100.0 * part / whole if whole else float("nan")
 
 
 @dataclass(frozen=True)
@@ -265,11 +254,11 @@ def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
     """Return the share of the objects of each side that the other one covers by half, and their numbers."""
     found, true = int(reference.agreed.sum()), int(reference.is_large.sum())
     correct, predicted = int(result.agreed.sum()), int(result.is_large.sum())
-    completeness, correctness = _percentage(found, true), _percentage(correct, predicted)
+    completeness, correctness = percentage(found, true), percentage(correct, predicted)
     return {
         "objects_completeness": completeness,
         "objects_correctness": correctness,
-        "objects_f": _percentage(2 * completeness * correctness / 100, completeness + correctness),
+        "objects_f": percentage(2 * completeness * correctness / 100, completeness + correctness),
         "objects_true": true,
         "objects_predicted": predicted,
         "objects_misses": true - found,

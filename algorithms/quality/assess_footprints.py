@@ -8,7 +8,7 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..criteria import MILLIMETER
-from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
+from ..report.charts import BLUE, CYAN, GREEN, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import build_page, decimal, draw_table, rows_of
 from ..report.polygon_map import draw_polygons
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
@@ -23,6 +23,7 @@ from .building_maps import (
     rounded_down,
     within,
 )
+from .confusion import percentage
 from .corner_matching import MatchedCorners, corners_of, match_corners
 from .polygon_comparison import hausdorff, polis, squareness
 
@@ -30,11 +31,7 @@ FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "
 
 AROUND, EVERYWHERE = "around the reference", "everywhere"
 
-# Colors of the page that differ in all color visions (Tol's high-contrast and bright schemes).
-COLORS = {FOUND: BLUE, MERGED: "#228833", SPLIT: "#66ccee", MISSED: YELLOW, INVENTED: RED}
-
-# Rows of the table of the buildings that agree least: one screen.
-_WORST = 10
+COLORS = {FOUND: BLUE, MERGED: GREEN, SPLIT: CYAN, MISSED: YELLOW, INVENTED: RED}
 
 # Distances (m) within which agencies want all corners of a building.
 _WITHIN = (0.3, 0.5, 1.0)
@@ -330,7 +327,7 @@ def _values(table: dict, match: _Match, corners: MatchedCorners) -> dict[str, fl
         "all_footprints": n_new,
         **counts,
         "completeness": 100.0 * float(has_footprint.mean()) if n else np.nan,
-        "correctness": 100.0 * (n_new - n_invented) / n_new if n_new else np.nan,
+        "correctness": percentage(n_new - n_invented, n_new),
         "iou": _median(table["iou"][:n][found]),
         "hausdorff": _median(table["hausdorff"][:n][found]),
         "polis": _median(table["polis"][:n][found]),
@@ -414,6 +411,6 @@ def _worst(table: dict) -> str:
     """Return the table of the buildings that agree least with their footprints."""
     order = [row for row in np.argsort(table["iou"], kind="stable").tolist() if np.isfinite(table["iou"][row])]
     forms = {"building": "", "status": "", "area": ",.0f", "iou": ".2f", "hausdorff": ".2f"}
-    rows = [[format(table[name][row], form) for name, form in forms.items()] for row in order[:_WORST]]
+    rows = [[format(table[name][row], form) for name, form in forms.items()] for row in order[:10]]  # one screen
     head = ["Building", "Status", "Area (m²)", "IoU", "Hausdorff distance (m)"]
     return draw_table("Buildings that agree least", head, rows) if rows else ""

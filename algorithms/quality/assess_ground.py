@@ -8,6 +8,7 @@ from ..cloud.asprs import PointClass, parse_classes
 from ..params import IGNORED_CLASSES
 from ..report.page import build_page, draw_map, outcome_of, rows_of
 from ..stage import Measure, Report, stage
+from .confusion import percentage
 from .point_matching import counted_points, match_points
 
 _MEASURES = (
@@ -94,8 +95,8 @@ def ground_errors(called: np.ndarray, ground: np.ndarray) -> dict[str, float]:
     chance = share_called * share_ground + (1 - share_called) * (1 - share_ground)
     lost, taken = int((ground & ~called).sum()), int((~ground & called).sum())
     return {
-        "type_1": 100.0 * lost / n_ground if n_ground else float("nan"),
-        "type_2": 100.0 * taken / (n - n_ground) if n > n_ground else float("nan"),
+        "type_1": percentage(lost, n_ground),
+        "type_2": percentage(taken, n - n_ground),
         "total": 100.0 * (1 - agree),
         "kappa": 100.0 * (agree - chance) / (1 - chance) if chance < 1 else float("nan"),
         "points": n,

@@ -38,12 +38,6 @@ _MAX_SLOPE = 75.0
 # by less than half.
 _FACING = 25.0
 
-# Percentile of the fields and measures named p95.
-_PERCENTILE = 95.0
-
-# Distances that the histogram shows, in tolerances: farther ones would make all its bars narrow.
-_SHOWN = 4
-
 # What a face or plane is, in the attribute status.
 MATCHED, MISSING, INVENTED, UNSEEN = "matched", "missing", "invented", "unseen"
 
@@ -361,9 +355,10 @@ def _volume(faces: list[_Face], points: _RoofPoints) -> float:
     return total
 
 
-def _p95(off: np.ndarray) -> float:
-    """Return the 95th percentile of distances (m), NaN without any."""
-    return float(np.percentile(np.abs(off), _PERCENTILE)) if len(off) else np.nan
+def _measured(off: np.ndarray) -> dict[str, Any]:
+    """Return the number of distances (m), their root mean square and their 95th percentile, NaN without any."""
+    p95 = float(np.percentile(np.abs(off), 95.0)) if len(off) else np.nan
+    return {"points": len(off), "rms": root_mean_square(off), "p95": p95}
 
 
 def _values(buildings: list[_Building]) -> dict[str, float]:
@@ -372,9 +367,7 @@ def _values(buildings: list[_Building]) -> dict[str, float]:
     each = [rms for rms in (root_mean_square(building.off) for building in buildings) if np.isfinite(rms)]
     return {
         "buildings": len(buildings),
-        "points": len(off),
-        "rms": root_mean_square(off),
-        "p95": _p95(off),
+        **_measured(off),
         "median_rms": float(np.median(each)) if each else np.nan,
         "on_model": 100.0 * float(np.mean(np.concatenate([building.is_on for building in buildings]))),
         "all_faces": sum(len(building.faces) for building in buildings),
@@ -390,16 +383,15 @@ def _face_layer(buildings: list[_Building], points: _RoofPoints) -> LayerFeature
     for building in buildings:
         features += [(face.rings, _attributes(building.name, face.status, face.off)) for face in building.faces]
         for xyz in building.missing:
-            facts = _attributes(building.name, MISSING, np.zeros(0), len(xyz))
+            facts = {**_attributes(building.name, MISSING, np.zeros(0)), "points": len(xyz)}
             features += [(rings, facts) for rings in _outlines(xyz, RULES.cell_size(points.spacing))]
     return LayerFeatures.numbered(features, _FACES.fields)
 
 
-def _attributes(building: str, status: str, off: np.ndarray, n_points: int = 0) -> dict[str, Any]:
+def _attributes(building: str, status: str, off: np.ndarray) -> dict[str, Any]:
     """Return the attributes of a face, or of a plane that has points and no face to measure them from."""
     mean = float(off.mean()) if len(off) else np.nan
-    facts = {"building": building, "status": status, "points": len(off) or n_points, "mean": mean}
-    return {**facts, "rms": root_mean_square(off), "p95": _p95(off)}
+    return {"building": building, "status": status, "mean": mean, **_measured(off)}
 
 
 def _outlines(xyz: np.ndarray, size: float) -> list:
@@ -418,9 +410,7 @@ def _building_layer(buildings: list[_Building]) -> LayerFeatures:
     for building in buildings:
         facts = {
             "building": building.name,
-            "points": len(building.off),
-            "rms": root_mean_square(building.off),
-            "p95": _p95(building.off),
+            **_measured(building.off),
             "faces": len(building.faces),
             "missing": len(building.missing),
             "invented": building.n_invented,
@@ -448,7 +438,8 @@ def _page(buildings: list[_Building], values: dict[str, float], tolerance: float
         Row("Volume", f"{values['volume']:,.0f} m³", "Between roofs and the lowest points next to them."),
     ]
     off = np.concatenate([building.off for building in buildings])
-    near = off[np.abs(off) <= _SHOWN * tolerance]
+    # Farther points would make all bars narrow.
+    near = off[np.abs(off) <= 4 * tolerance]
     picture = ""
     if len(near):
         series = [Series("roof points", BLUE, near)]

@@ -9,6 +9,7 @@ import numpy as np
 from ..geometry.groups import mask_of
 from ..report.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, percent
 from ..stage import Measure, Report, stage, tunable
+from .confusion import percentage
 from .point_matching import match_points
 
 
@@ -190,18 +191,14 @@ def _values(found: np.ndarray, true: np.ndarray, matches: Matches) -> dict[str, 
     correct = int((matches.counterpart > 0).sum())
     values: dict[str, float] = {
         "correct": correct,
-        "over": int(matches.is_over.sum()),
-        "under": int(matches.is_under.sum()),
-        "missed": int(matches.is_missed.sum()),
-        "noise": int(matches.is_noise.sum()),
+        **{name: int(getattr(matches, f"is_{name}").sum()) for name in ("over", "under", "missed", "noise")},
         "reference_segments": n_true,
         "segments": n_found,
         "correct_share": 100.0 * correct / n_true,
     }
     in_true, in_found = int((true > 0).sum()), int((found > 0).sum())
     for name, inside in _outcomes(found, true, matches).items():
-        whole = in_found if name == "noise" else in_true
-        values[f"points_{name}"] = 100.0 * int(inside.sum()) / whole if whole else float("nan")
+        values[f"points_{name}"] = percentage(int(inside.sum()), in_found if name == "noise" else in_true)
     return values
 
 

@@ -18,14 +18,8 @@ from ..stage import LayerFeatures, Monitor, feature_names
 # Footprints and a map farther apart than this (m) show different areas, even if both are incomplete.
 _ELSEWHERE = 1000.0
 
-# Share of its area by which a polygon that winds twice, or the wrong way, differs from its overlap with itself.
-_CROSSING = 0.01
-
 # A map covers an area within this distance (m) of its buildings: a wide street or a small park.
 _AROUND = 50.0
-
-# Distance (m) of positions along the outlines of a map: finer than any building.
-_OUTLINE_STEP = 2.0
 
 
 @dataclass(frozen=True)
@@ -67,7 +61,7 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
     polygons, every = found.polygons, np.arange(len(usable))
     # Where rings wind twice, or the wrong way, the overlap of a polygon with itself differs from its area.
     own = shared_areas(polygons, polygons, every, every, Monitor())
-    n_crossing = int((np.abs(own - polygons.area) > _CROSSING * polygons.area).sum())
+    n_crossing = int((np.abs(own - polygons.area) > 0.01 * polygons.area).sum())
     if n_crossing:
         monitor.warn(
             f"{n_crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
@@ -205,7 +199,8 @@ def amid(first: BuildingMap, second: BuildingMap, overlap: Overlap) -> np.ndarra
     rest = np.flatnonzero(~inside)
     if not len(rest) or not first.rings:
         return inside
-    outlines = sampled_rings([ring for rings in first.rings for ring in rings[:1]], _OUTLINE_STEP)
+    # Positions every 2 m, which no building is narrower than.
+    outlines = sampled_rings([ring for rings in first.rings for ring in rings[:1]], 2.0)
     middles = np.array([plan_box(second.rings[row][0]).sum(axis=0) / 2 for row in rest])
     for row, middle, near in zip(rest, middles, spatial.cKDTree(outlines).query_ball_point(middles, _AROUND)):
         angles = np.sort(np.arctan2(*(outlines[near] - middle).T))

@@ -22,9 +22,6 @@ from .building_maps import (
 )
 from .corner_matching import FARTHEST, Corners, MatchedCorners, corners_of, match_corners, nearest_corners
 
-# Most rounds in which the shift is searched for.
-_MOST_ROUNDS = 10
-
 FOUND, MISSED, NEW = "found", "missed", "new"
 
 _DISPLACEMENTS = Layer(
@@ -202,7 +199,7 @@ def _linked(old: BuildingMap, new: BuildingMap, min_overlap: float, shift: np.nd
 def _shift(old: Corners, new: Corners, same: tuple, reach: float) -> np.ndarray:
     """Return by how much (2,), m, the new map is off the old one: the median displacement of corners."""
     shift = np.zeros(2)
-    for _ in range(_MOST_ROUNDS):
+    for _ in range(10):
         one, other, _ = nearest_corners(old, new, same, shift, reach)
         before = shift
         shift = np.median(new.xy[other] - old.xy[one], axis=0) if len(one) else shift
@@ -283,7 +280,7 @@ def _page(values: dict[str, float], moved: np.ndarray) -> str:
             Row("Median", meters(values["median"]), "Half of the corners have moved by less."),
             Row("Standard deviation", meters(values["deviation"]), "How much the distances differ among themselves."),
         ],
-        "Shift between the maps": _shift_rows(moved),
+        "Shift between the maps": _shift_rows(values, moved),
     }
     distance = np.hypot(*moved.T)
     marks = [Mark("mean", values["mean"]), Mark("median", values["median"])]
@@ -293,11 +290,10 @@ def _page(values: dict[str, float], moved: np.ndarray) -> str:
     return build_page("Corners against the old map", lead, tables, pictures)
 
 
-def _shift_rows(moved: np.ndarray) -> list[Row]:
+def _shift_rows(values: dict[str, float], moved: np.ndarray) -> list[Row]:
     """Return the systematic part of the displacements and the rest."""
-    undefined = float("nan")
-    dx, dy = moved.mean(axis=0).tolist() if len(moved) else (undefined, undefined)
-    remaining = float(np.sqrt(((moved - [dx, dy]) ** 2).sum(axis=1).mean())) if len(moved) else undefined
+    dx, dy = values["mean_dx"], values["mean_dy"]
+    remaining = float(np.sqrt(moved.var(axis=0).sum())) if len(moved) else np.nan
     left = "Root mean square of the distances that were left if the shift were taken off."
     return [
         Row("Eastward", meters(dx), "Mean of the displacements to the east; negative is to the west."),

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.groups import components, split_groups
 from ..geometry.rings import distances_to_rings
-from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
+from ..report.charts import BLUE, CYAN, GREEN, PURPLE, RED, YELLOW, Mark, Series, draw_histogram
 from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
 from ..rules import rules
@@ -29,8 +29,7 @@ from .polygon_comparison import positions_along
 UNCHANGED, HEIGHT, OUTLINE, BOTH = "unchanged", "height changed", "outline changed", "height and outline changed"
 NEW, GONE = "new", "gone"
 
-# Colors of the page that differ in all color visions (Tol's high-contrast and bright schemes).
-COLORS = {UNCHANGED: BLUE, HEIGHT: "#66ccee", OUTLINE: "#228833", BOTH: "#aa3377", NEW: RED, GONE: YELLOW}
+COLORS = {UNCHANGED: BLUE, HEIGHT: CYAN, OUTLINE: GREEN, BOTH: PURPLE, NEW: RED, GONE: YELLOW}
 
 # Attributes of heights (m); the first one that both layers have is compared.
 _HEIGHTS = ("ridge_height", "height")

@@ -41,6 +41,11 @@ def cohens_kappa(matrix: np.ndarray) -> float:
     return 100.0 * (np.trace(matrix) / total - chance) / (1 - chance) if chance < 1 else float("nan")
 
 
+def percentage(part: float, whole: float) -> float:
+    """Return a part in percent of the whole, NaN of nothing."""
+    return 100.0 * part / whole if whole else float("nan")
+
+
 def _percent(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """Return parts in percent of wholes, NaN of nothing."""
     whole = np.asarray(whole, float)

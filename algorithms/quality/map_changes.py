@@ -13,7 +13,7 @@ from ..footprints.footprint_points import by_easting
 from ..geometry.groups import components, split_groups
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes
 from ..packages import spatial
-from ..report.charts import BLUE, GRAY, RED, YELLOW
+from ..report.charts import BLUE, CYAN, GRAY, GREEN, PURPLE, RED, YELLOW
 from ..rules import rules
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Monitor
@@ -24,8 +24,7 @@ UNCHANGED, MOVED, CHANGED = "unchanged", "moved", "changed"
 HEIGHTENED, LOWERED = "heightened", "lowered"
 NEW, GONE, UNSEEN, DOUBTFUL = "new", "gone", "not seen", "doubtful"
 
-# Colors of the page that differ in all color visions (Tol's high-contrast and bright schemes).
-COLORS = {UNCHANGED: BLUE, MOVED: "#66ccee", CHANGED: "#aa3377", HEIGHTENED: "#228833", LOWERED: "#ccbb44", NEW: RED}
+COLORS = {UNCHANGED: BLUE, MOVED: CYAN, CHANGED: PURPLE, HEIGHTENED: GREEN, LOWERED: "#ccbb44", NEW: RED}
 COLORS.update({GONE: YELLOW, UNSEEN: GRAY, DOUBTFUL: "#222"})
 
 STATUS = Field(

@@ -16,18 +16,8 @@ from ..stage import Monitor
 # coarser cuts are sound.
 _OLD_SNAPS = 0.002, 0.01, 0.05
 
-# Vertices nearer than this to an old vertex or wall, in these distances, are of it: more than cutting moves them.
-_SAME = 2.0
-
-# A cut along a new wall takes vertices this near, as a share of the least width of a change.
-_NEW_SNAP = 0.3
-
 # Area of a cell as a share (m) of the length around it below which it is a seam: a strip 5 cm wide.
 _THIN = 0.025
-
-# Greatest overlap (m²) with a building that stays, and difference in area from the nodes wanted, in widths of a change
-# along the outline: more is a wall that was not cut.
-_OVERLAP, _MOST_OFF = 0.01, 0.5
 
 # Sine of the greatest angle between a new wall and the old one that it is part of, 10°.
 _PARALLEL = 0.17
@@ -61,7 +51,7 @@ def draw_labels(
     built = _along_old(built, np.concatenate([there, stays]), width)
     best: dict[int, list] = {}
     for snap in _OLD_SNAPS:
-        drawn = _drawn(lattice, wanted, there, stays, built, (snap, _NEW_SNAP * width))
+        drawn = _drawn(lattice, wanted, there, stays, built, (snap, 0.3 * width))
         sound = {one: own for one, own in drawn.items() if _is_sound(own, (wanted == one).sum(), lattice, fixed, width)}
         if len(sound) == len(drawn):
             return drawn
@@ -73,9 +63,10 @@ def _is_sound(polygons: list, count: int, lattice: Lattice, fixed: list, width: 
     """Return whether polygons are valid, about as large as that many nodes, and overlap nothing that stays."""
     edges = as_polygons(polygons)
     around = sum(perimeter(ring) for rings in polygons for ring in rings)
-    is_sized = abs(edges.area.sum() - count * lattice.step**2) <= _MOST_OFF * width * around
+    # More than half the width of a change along the outline, or an overlap of 0.01 m², is a wall that was not cut.
+    is_sized = abs(edges.area.sum() - count * lattice.step**2) <= 0.5 * width * around
     shared = overlaps(edges, as_polygons(fixed), Monitor())[2]
-    return is_sized and bool((shared <= _OVERLAP).all()) and all(map(is_valid, polygons))
+    return is_sized and bool((shared <= 0.01).all()) and all(map(is_valid, polygons))
 
 
 def _drawn(
@@ -91,8 +82,9 @@ def _drawn(
             cells.cut(start, end, snap)
     found: dict[int, list] = {}
     label = np.where(are_within(cells.centers(), fixed), 0, _labels(cells, lattice, wanted))
+    # Vertices nearer than twice the snap to an old vertex or wall are of it: cutting moves them less.
     for polygon in cell_polygons(cells, label):
-        found.setdefault(polygon.label, []).append([_on_old(ring, walls, _SAME * snaps[0]) for ring in polygon.rings])
+        found.setdefault(polygon.label, []).append([_on_old(ring, walls, 2 * snaps[0]) for ring in polygon.rings])
     return {number: sorted(own, key=polygon_area, reverse=True) for number, own in found.items()}
 
 

@@ -22,17 +22,8 @@ _STEP = 0.25
 # Walls with another building within this distance (m) beyond are not seen from above.
 _BEYOND = 0.3
 
-# How many positions of new walls are looked at from one of the map: some are of walls across.
-_NEAREST = 8
-
 # Cosine of the greatest angle between the normals of a wall and its counterpart, 45°.
 _SAME_WAY = 0.7
-
-# Rounds of the fit; a shift of 3 m is found in five.
-_ROUNDS = 8
-
-# Positions with a larger deviation (m) get less weight, as in a fit of least absolute deviations.
-_SURE = 0.1
 
 # Weight of the usual shift and overhang, as a share of the weight of the walls: it holds rows along their street.
 _USUAL = np.array([0.005, 0.005, 0.05])
@@ -142,12 +133,14 @@ class _Walls:
         """
         fits = np.tile(usual, (self.count, 1))
         factors = np.column_stack([self.outward, np.ones(len(self.outward))])
-        for _ in range(_ROUNDS):
+        # A shift of 3 m is found in five rounds.
+        for _ in range(8):
             apart = self._apart(fits)
             found = np.flatnonzero(np.isfinite(apart))
             own, one = self.group[found], factors[found]
             off = apart[found] - fits[own, 2]
-            weight = 1 / np.maximum(np.abs(off), _SURE)
+            # Deviations of more than 0.1 m get less weight, as in a fit of least absolute deviations.
+            weight = 1 / np.maximum(np.abs(off), 0.1)
             total = np.bincount(own, weight, self.count) + 1e-9
             matrix = np.zeros((self.count, 3, 3))
             np.add.at(matrix, own, weight[:, None, None] * one[:, :, None] * one[:, None, :])
@@ -161,7 +154,8 @@ class _Walls:
     def _apart(self, fits: np.ndarray) -> np.ndarray:
         """Return how far (p,), m, new walls lie outside of the shifted ones, NaN where none is found."""
         moved = self.position + fits[self.group, :2]
-        _, near = self.tree.query(moved, _NEAREST, distance_upper_bound=FARTHEST)
+        # Several, as some are of walls across.
+        _, near = self.tree.query(moved, 8, distance_upper_bound=FARTHEST)
         near = np.minimum(near, len(self.there))
         normal = np.vstack([self.normal, [0.0, 0.0]])[near]
         is_same = (normal * self.outward[:, None]).sum(axis=2) > _SAME_WAY

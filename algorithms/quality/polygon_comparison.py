@@ -7,9 +7,6 @@ import numpy as np
 from ..geometry.ring_directions import along_two_directions
 from ..geometry.rings import distances_to_rings, sampled_rings
 
-# Step (m) of the samples between which the distance of two outlines is measured: below the accuracy of outlines.
-_STEP = 0.1
-
 
 def hausdorff(first: list[np.ndarray], second: list[np.ndarray]) -> float:
     """Return the greatest distance (m) between the outlines of two polygons, both ways."""
@@ -29,8 +26,11 @@ def _farthest(rings: list[np.ndarray], others: list[np.ndarray]) -> float:
 
 
 def positions_along(rings: list[np.ndarray]) -> np.ndarray:
-    """Return positions (n, 2) along closed rings, at most 0.1 m apart, vertices among these."""
-    return sampled_rings(rings, _STEP)
+    """Return positions (n, 2) along closed rings, at most 0.1 m apart, vertices among these.
+
+    The accuracy of outlines is lower.
+    """
+    return sampled_rings(rings, 0.1)
 
 
 def squareness(rings: list[np.ndarray]) -> float:

@@ -15,14 +15,8 @@ _WIDTH, _HEIGHT = 340, 240
 # Width of the surroundings of a building in its view, m.
 _AROUND = 4.0
 
-# Half of the thickness of a section, m: at one point per square meter each roof has points in it.
-_HALF = 1.0
-
 # Colors of the sections along and across a building.
 _CUTS = ("#004488", "#aa4499")
-
-# Height left empty below the lowest and above the highest point of a section, m.
-_ROOM = 1.0
 
 # Colors of a view (red, green, blue): background, other points, points of buildings.
 _COLORS = np.array([[255, 255, 255], [187, 187, 187], [187, 85, 102]])
@@ -97,11 +91,12 @@ def draw_sections(xyz: np.ndarray, kind: np.ndarray, ring: np.ndarray, colors: n
     lines, sections = [(ring, "#222")], []
     for axis, color in enumerate(_CUTS if len(xyz) else ()):
         cut = np.repeat([ends.mean(axis=0)], 2, axis=0)
-        is_in = np.abs(turned[:, 1 - axis] - cut[0, 1 - axis]) <= _HALF
+        # At one point per square meter each roof has points in a section of 2 m.
+        is_in = np.abs(turned[:, 1 - axis] - cut[0, 1 - axis]) <= 1.0
         cut[:, axis] = ends[:, axis] + (-_AROUND, _AROUND)
         lines.append((cut @ axes.T, color))
         seen = xyz[is_in, 2] if is_in.any() else xyz[:, 2]
-        heights = np.array([seen.min() - _ROOM, seen.max() + _ROOM])
+        heights = np.array([seen.min() - 1.0, seen.max() + 1.0])
         walls = [(np.column_stack([[at, at], heights]), color) for at in ends[:, axis]]
         plane = np.column_stack([turned[:, axis], xyz[:, 2]])[is_in]
         low, high = np.column_stack([cut[:, axis], heights])

@@ -9,29 +9,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..criteria import ROUNDING
+from .page import draw_legend
 
-# Tol's high-contrast scheme, as in the maps of the pages, and a gray.
+# Colors that differ in all color visions: Tol's high-contrast scheme, as in the maps of the pages, a gray, and more of
+# his bright scheme.
 BLUE, YELLOW, RED, GRAY = "#004488", "#ddaa33", "#bb5566", "#bbbbbb"
+CYAN, GREEN, PURPLE = "#66ccee", "#228833", "#aa3377"
 
 # Size of a histogram, and its margins with titles and numbers, pixels.
 _WIDTH, _HEIGHT = 720, 320
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 50, 50
-
-# Bounds of the number of bars: narrower ones are not distinguishable, wider ones hide two groups.
-_MOST_BARS = 40
-_FEWEST_BARS = 20
-
-# Smaller values are 0 in a chart: powers of ten of their widths are beyond what float64 holds.
-_LEAST_VALUE = 1e-200
 
 # Side of a scatter plot, and the margin around its circle, pixels.
 _SIDE, _MARGIN = 420, 50
 
 # Sides of a cell of a matrix, and room for the names of its rows and columns, pixels.
 _CELL_WIDTH, _CELL_HEIGHT, _NAMES = 84, 44, 190
-
-# Most dots of a scatter plot: more slow browsers down.
-_MOST_DOTS = 3000
 
 
 @dataclass(frozen=True)
@@ -88,13 +81,15 @@ def bar_edges(values: np.ndarray) -> np.ndarray:
     """Return where bars begin and end: round numbers, as fine as the values bear (Freedman and Diaconis)."""
     low, high = float(values.min()), float(values.max())
     extent, size = high - low, max(abs(low), abs(high))
-    if size < _LEAST_VALUE:
+    # Of smaller values, powers of ten of their widths are beyond what float64 holds: they are 0 in a chart.
+    if size < 1e-200:
         return np.array([0.0, 1.0] if low >= 0 else [-1.0, 0.0, 1.0])
     if extent <= ROUNDING * size:  # equal but for rounding
         step = round_step(size / 10)
     else:
         width = 2 * float(np.subtract(*np.percentile(values, [75, 25]))) / len(values) ** (1 / 3)
-        step = round_step(float(np.clip(width, extent / _MOST_BARS, extent / _FEWEST_BARS)))
+        # Narrower bars are not distinguishable, wider ones hide two groups.
+        step = round_step(float(np.clip(width, extent / 40, extent / 20)))
     first, last = math.floor(low / step + ROUNDING), math.ceil(high / step - ROUNDING)
     return np.arange(first, max(last, first + 1) + 1) * step
 
@@ -132,7 +127,8 @@ def draw_scatter(xy: np.ndarray, axis: str, unit: str, mean_name: str) -> str:
     )
     cross = f"M{_MARGIN} {middle}H{_SIDE - _MARGIN}M{middle} {_MARGIN}V{_SIDE - _MARGIN}"
     positions = np.column_stack([middle + xy[:, 0] * scale, middle - xy[:, 1] * scale])
-    every = -(-len(xy) // _MOST_DOTS)
+    # More than 3000 dots slow browsers down.
+    every = -(-len(xy) // 3000)
     dots = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3"/>' for x, y in positions[::every].tolist())
     shown = axis if every == 1 else f"{axis} (one in {every} is drawn)"
     x, y = positions.mean(axis=0).tolist()
@@ -265,10 +261,7 @@ def _mark(mark: Mark, i: int, across: _Axis) -> str:
 
 def _legend(series: list[Series]) -> str:
     """Return the names of series next to their colors."""
-    names = "".join(
-        f'<span class="swatch" style="background:{one.color}"></span>{html.escape(one.name)}' for one in series
-    )
-    return f"<p>{names}</p>\n"
+    return f"<p>{draw_legend((one.name, one.color) for one in series)}</p>\n"
 
 
 def _picture(width: int, height: int, title: str, body: str) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..packages import ndimage
-from .page import svg_image
+from ..geometry.raster_filling import nearest_known
+from .page import pixel_size, svg_image
 
 # Cells along the longest side of a map: as many as pages have pixels for it.
 CELLS = 900
@@ -33,13 +33,10 @@ def draw_hillshade(xyz: np.ndarray, low: np.ndarray, high: np.ndarray, scale: fl
     scale : float
         Units of the picture per meter.
     """
-    # Four points per cell on average leave few cells empty.
-    cell = max(float((high - low).max()) / CELLS, 2 * float(np.sqrt((high - low).prod() / len(xyz))), 1e-3)
+    cell = pixel_size(high - low, len(xyz), CELLS)
     surface = topmost(xyz, low, cell)
     empty = np.isnan(surface)
-    if empty.any():
-        nearest = ndimage.distance_transform_edt(empty, return_distances=False, return_indices=True)
-        surface = surface[tuple(nearest)]
+    surface = nearest_known(surface, empty)
     image = np.where(empty, 255, 90 + 160 * _shade(surface, cell)).astype(np.uint8)
     height, (up, across) = float(high[1] - low[1]) * scale, np.array(surface.shape) * cell * scale
     return svg_image(image[::-1], _GRAYS, (0.0, height - up, across, up))

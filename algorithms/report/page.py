@@ -23,12 +23,6 @@ _COLORS = ((221, 221, 221), (0, 68, 136), (221, 170, 51), (187, 85, 102), (255, 
 # Outcomes of a point, as positions of their colors.
 REST, HIT, MISS, FALSE, _EMPTY = range(5)
 
-# Longest side of the map, pixels.
-_MAP_SIDE = 800
-
-# Width at which a map is shown at least, pixels: one of few pixels is enlarged.
-_LEAST_WIDTH = 360
-
 _STYLE = """
 body { font: 16px/1.5 sans-serif; color: #222; background: #fff; max-width: 60em; margin: 2em auto; padding: 0 1em }
 table { border-collapse: collapse; margin: 1em 0 }
@@ -184,6 +178,18 @@ def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
     return f"<h2>{html.escape(title)}</h2>\n<table>\n<tr>{names}</tr>\n" + "\n".join(lines) + "\n</table>\n"
 
 
+def draw_legend(colors: Iterable[tuple[str, str]]) -> str:
+    """Return names, each behind a swatch of its color."""
+    swatch = '<span class="swatch" style="background:{}"></span>{}'
+    return "".join(swatch.format(color, html.escape(name)) for name, color in colors)
+
+
+def pixel_size(extent: np.ndarray, count: int, most: int) -> float:
+    """Return the side (m) of the pixels of a map of an extent (2,), m: ``most`` along a side, few of them empty."""
+    # Four points per pixel on average leave few pixels empty.
+    return max(float(extent.max()) / most, 2 * float(np.sqrt(extent.prod() / count)), 1e-3)
+
+
 def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, str]) -> str:
     """Return the HTML of a map, north up, of the outcome of the topmost point of each pixel.
 
@@ -191,19 +197,16 @@ def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, s
     """
     low, high = plan_box(xyz)
     extent = high - low
-    # Four points per pixel on average leave few pixels empty.
-    size = max(float(extent.max()) / _MAP_SIDE, float(np.sqrt(4 * extent.prod() / len(xyz))), 1e-3)
+    size = pixel_size(extent, len(xyz), 800)
     column, row = np.floor((xyz[:, :2] - low) / size).astype(np.int64).T
     image = np.full((int(row.max()) + 1, int(column.max()) + 1), _EMPTY, np.uint8)
     order = np.argsort(xyz[:, 2], kind="stable")
     # Of values that go to one pixel the last one stays, which is the highest.
     image[row[order], column[order]] = outcome[order]
     data = base64.b64encode(png(image[::-1], _COLORS)).decode()
-    legend = "".join(
-        f'<span class="swatch" style="background:rgb{_COLORS[code]}"></span>{html.escape(name)}'
-        for code, name in enumerate(names)
-    )
-    width = max(_LEAST_WIDTH, image.shape[1])
+    legend = draw_legend((name, f"rgb{color}") for name, color in zip(names, _COLORS))
+    # A map of few pixels is enlarged.
+    width = max(360, image.shape[1])
     caption = f"The map is {extent[0]:,.0f} m wide and {extent[1]:,.0f} m high, north is up; one pixel is {size:.2g} m."
     return (
         f'<h2>Map</h2>\n<p>{legend}</p>\n<img alt="Map of the result" width="{width}" '

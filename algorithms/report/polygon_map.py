@@ -8,10 +8,7 @@ from typing import Optional
 import numpy as np
 
 from .hillshade import draw_hillshade
-from .page import position
-
-# Width of the map and its greatest height, in units of the picture.
-_WIDTH, _HEIGHT = 720.0, 900.0
+from .page import draw_legend, position
 
 
 def draw_polygons(
@@ -38,15 +35,14 @@ def draw_polygons(
     extent = corners if xyz is None else np.concatenate([corners, xyz[:, :2]])
     low, high = extent.min(axis=0), extent.max(axis=0)
     size = np.maximum(high - low, 1e-3)
-    scale = min(_WIDTH / size[0], _HEIGHT / size[1])
+    # Width of the map and its greatest height, in units of the picture.
+    scale = min(720.0 / size[0], 900.0 / size[1])
     width, height = size * scale
     order = sorted(range(len(kinds)), key=lambda row: list(colors).index(kinds[row]))
     paths = [" ".join(_path((np.asarray(ring)[:, :2] - low) * scale, height) for ring in rings) for rings in geometries]
     shapes = [f'<path fill="{colors[kinds[row]]}" d="{paths[row]}"/>' for row in order]
+    legend = draw_legend(colors.items())
     below = "" if xyz is None else draw_hillshade(xyz, low, high, scale)
-    legend = "".join(
-        f'<span class="swatch" style="background:{color}"></span>{html.escape(kind)}' for kind, color in colors.items()
-    )
     return (
         f'<h2>Map</h2>\n<p>{html.escape(what)}{legend}</p>\n<svg role="img" aria-label="Map of the buildings" '
         f'viewBox="-2 -2 {width + 4:.0f} {height + 4:.0f}" width="{width + 4:.0f}" fill-rule="evenodd" '
