@@ -12,9 +12,12 @@ from ..geometry.grid import lattice
 from ..geometry.groups import run_starts
 from ..packages import spatial
 from ..sampling.surface_noise import SURFACES
+from ..stage import Monitor
 
 
-def decided_together(xyz: np.ndarray, gain: np.ndarray, spacing: float, side: float, margin: float) -> np.ndarray:
+def decided_together(
+    xyz: np.ndarray, gain: np.ndarray, spacing: float, side: float, margin: float, monitor: Monitor
+) -> np.ndarray:
     """Return the mask of points (n,) of buildings that together contradict evidence and neighbors least.
 
     The cut is exact in each square of a fixed lattice with a margin around it; only the square itself is kept. So a
@@ -31,6 +34,8 @@ def decided_together(xyz: np.ndarray, gain: np.ndarray, spacing: float, side: fl
         Mean distance between neighboring points in plan, m.
     side, margin : float
         Side of the squares and width of their margin, at most half of it, m.
+    monitor : Monitor
+        Receives progress.
 
     References
     ----------
@@ -40,11 +45,13 @@ def decided_together(xyz: np.ndarray, gain: np.ndarray, spacing: float, side: fl
     alone = gain > 0
     if not len(alone):
         return alone
-    together = alone.copy()
+    together, done = alone.copy(), 0
     for rows, is_own in _squares(xyz[:, :2], side, margin):
         # If all points lean to one class, there is nothing to decide.
         if alone[rows].any() and not alone[rows].all():
             together[rows[is_own]] = _cheapest(xyz[rows], gain[rows], spacing)[is_own]
+        done += int(is_own.sum())
+        monitor.progress(done / len(xyz))
     return together
 
 

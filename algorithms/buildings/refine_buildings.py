@@ -247,7 +247,7 @@ def _as_learned(
     monitor.progress(0.9)
 
     # 3. The classes of points near edges, all together.
-    becomes, ceases, nearest = scene.changes(probability[used], density)
+    becomes, ceases, nearest = scene.changes(probability[used], density, monitor.part(0.9, 0.95))
     becomes, ceases = used[becomes], used[ceases]
     monitor.resolved(points_added=len(becomes), points_removed=len(ceases))
     if confidence is not None:
@@ -316,7 +316,9 @@ class _Scene:
         of_cells[labeled.chosen] = likely
         return np.where(self.is_raised, of_cells[labeled.cells.cell], 0.0)
 
-    def changes(self, probability: np.ndarray, density: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def changes(
+        self, probability: np.ndarray, density: float, monitor: Monitor
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the rows of points that become building, and of those that cease; the building nearest to the former.
 
         ``probability`` (n,) is the probability of building, ``density`` the density of points (points/m²).
@@ -336,7 +338,9 @@ class _Scene:
         was = self.is_building[rows]
         gain = _log_odds(probability[rows]) - _log_odds(np.where(was, _RULES.ceases, _RULES.becomes))
         gain = np.where(distance[rows] <= COLUMNS.edge, gain, np.where(was, np.inf, -np.inf))
-        together = decided_together(self.xyz[rows], gain, 1 / float(np.sqrt(density)), HALVES.half, COLUMNS.edge)
+        together = decided_together(
+            self.xyz[rows], gain, 1 / float(np.sqrt(density)), HALVES.half, COLUMNS.edge, monitor
+        )
         becomes, ceases = rows[together & ~was], rows[was & ~together]
         of_nearest = building[tuple(nearest)]
         return becomes, ceases, of_nearest[tuple(index[becomes] for index in cell)]

@@ -5,6 +5,8 @@ import pytest
 
 from lidar_buildings.algorithms.buildings import edge_classes
 from lidar_buildings.algorithms.buildings.edge_classes import decided_together
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 SIDE, MARGIN = 10.0, 2.0
 
@@ -20,7 +22,7 @@ def edge(rng):
 
 def decided(xyz, gain):
     """Return the classes of points with a spacing of half a meter."""
-    return decided_together(xyz, gain, 0.5, SIDE, MARGIN)
+    return decided_together(xyz, gain, 0.5, SIDE, MARGIN, Monitor())
 
 
 def test_single_points_follow_their_neighbors(edge):
@@ -64,7 +66,7 @@ def test_a_part_with_the_margins_of_its_squares_decides_as_the_whole(edge):
 
 def test_squares_decide_nearly_as_all_points_at_once(edge):
     xyz, _, gain = edge
-    at_once = decided_together(xyz, gain, 0.5, 1000.0, MARGIN)
+    at_once = decided_together(xyz, gain, 0.5, 1000.0, MARGIN, Monitor())
     assert (decided(xyz, gain) == at_once).mean() > 0.995
 
 
@@ -89,3 +91,15 @@ def test_the_order_of_points_decides_nothing(edge, rng):
 def test_there_may_be_no_points_or_one():
     assert not len(decided(np.empty((0, 3)), np.empty(0)))
     np.testing.assert_array_equal(decided(np.zeros((1, 3)), np.array([2.0])), [True])
+
+
+def test_progress_is_heard_from_square_to_square_where_the_work_can_be_stopped(edge):
+    xyz, _, gain = edge
+    listening = Listening()
+    decided_together(xyz, gain, 0.5, SIDE, MARGIN, listening)
+    # The strip has six squares.
+    assert listening.heard == sorted(listening.heard)
+    assert len(listening.heard) >= 6
+    assert listening.heard[-1] == 1.0
+    with pytest.raises(Cancelled):
+        decided_together(xyz, gain, 0.5, SIDE, MARGIN, Listening(stop_at=0.5))
