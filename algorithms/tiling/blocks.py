@@ -34,12 +34,6 @@ _BESIDE = 4.0
 # A window is enlarged where it cuts off features, to at most this many times its halo on a side.
 MOST_HALOS = 8
 
-# Length (halos) beyond which features that can be put together from pieces are left in pieces.
-_PIECE_HALOS = 2
-
-# A window of fewer points is enlarged, too, as stages reject windows of a few points.
-_FEWEST_POINTS = 20
-
 
 @dataclass(frozen=True)
 class Block:
@@ -135,7 +129,8 @@ def work_on_block(task: BlockTask) -> Path:
         if window is None:
             result = BlockResult(np.zeros(0, np.int32), np.zeros(0, np.int64))
             break
-        if len(window.cloud) < _FEWEST_POINTS and margin.max() < most:
+        # Stages reject windows of a few points.
+        if len(window.cloud) < 20 and margin.max() < most:
             margin *= 2
             continue
         result, cuts = _run(task, window, box, monitor)
@@ -242,7 +237,8 @@ def _keep_layers(
             is_cut = _cut_off(boxes, box, task.survey.box, declared[name].around)
             grows = kept
             if declared[name].whole:
-                grows = kept & (np.ptp(boxes, axis=1).max(axis=1) < _PIECE_HALOS * task.halo)
+                # Features longer than two halos are left in pieces, which are put together afterwards.
+                grows = kept & (np.ptp(boxes, axis=1).max(axis=1) < 2 * task.halo)
                 result.pieces[name] = is_cut.any(axis=(1, 2))[kept]
             cuts |= is_cut[grows].any(axis=0)
         result.layers[name] = take_features(features, np.flatnonzero(kept))

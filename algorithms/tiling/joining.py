@@ -17,12 +17,6 @@ from .blocks import NUMBERED, Block, feature_boxes, take_features
 from .same_features import leaders
 from .tiled_steps import layers_of
 
-# Columns and rows from a block to those neighbors that come after it in the order of the blocks.
-_FORWARD = ((1, 0), (-1, 1), (0, 1), (1, 1))
-
-# Blocks whose edges stay in memory: a block, its four neighbors, and some that it shares with the block before.
-_EDGES_KEPT = 8
-
 # Fields with the number of a feature in its layer, and with the number of the cluster that it outlines.
 _ID, _CLUSTER = "id", "cluster_id"
 
@@ -121,10 +115,12 @@ def _largest(result: BlockResult, name: str) -> int:
 def _links(blocks: list[Block], edges: Edges) -> list[tuple[int, int, str, np.ndarray]]:
     """Return for pairs of neighboring blocks and each dimension which numbers (k, 2) of the two are one segment."""
     position = {(block.column, block.row): at for at, block in enumerate(blocks)}
-    read = lru_cache(_EDGES_KEPT)(edges)
+    # Kept in memory: a block, its four neighbors, and some that it shares with the block before.
+    read = lru_cache(8)(edges)
     found = []
     for (column, row), one in position.items():
-        for east, north in _FORWARD:
+        # The neighbors that come after it in the order of the blocks.
+        for east, north in ((1, 0), (-1, 1), (0, 1), (1, 1)):
             other = position.get((column + east, row + north))
             if other is None:
                 continue
@@ -163,10 +159,6 @@ class References:
         """Return the objects that points of blocks refer to by a dimension, before any number is known."""
         kinds = [(one.used.get(name, _NO_NUMBERS), one.counts.get(name, _NO_NUMBERS)) for one in results]
         return cls([dict(zip(used.tolist(), counts.tolist())) for used, counts in kinds])
-
-    def count_of(self, key: tuple[int, int]) -> int:
-        """Return the number of points of a block, by its position, that have a number there."""
-        return self.counts[key[0]].get(key[1], 0)
 
 
 def join_features(
@@ -226,7 +218,7 @@ def join_features(
     rows = rows[np.argsort(called[rows])]
     if declared.whole and is_piece is not None:
         leader = np.where(is_piece[leader], leader, np.arange(len(leader)))
-        _put_together(features, declared.whole, leader, [references.count_of(key) for key in keys])
+        _put_together(features, declared.whole, leader, [references.counts[block].get(one, 0) for block, one in keys])
     return _numbered(features, rows, called[rows]), np.column_stack([of_block[rows], own_id[rows], called[rows]])
 
 

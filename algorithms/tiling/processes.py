@@ -29,12 +29,6 @@ _PROGRAM = str(Path(__file__).with_name("worker_process.py"))
 # Seconds that an interpreter has to answer.
 ANSWER = 15
 
-# Seconds that a process has to end.
-_END = 5
-
-# Most attempts at a call: once more where the system ended the process that worked on it.
-_ATTEMPTS = 2
-
 
 class WorkerEnded(Exception):
     """The system ended the process that worked on a call, and the one that worked on it again."""
@@ -91,7 +85,8 @@ class Processes(Executor):
 
     def _call(self, function: Callable, arguments: tuple) -> Any:
         """Return the result of a function in the process of this thread, or in its successor."""
-        for _ in range(_ATTEMPTS):
+        # Once more where the system ended the process that worked on it.
+        for _ in range(2):
             process: Optional[_Process] = getattr(self._own, "process", None)
             try:
                 process = self._own.process = process or self._started()
@@ -204,7 +199,7 @@ class _Process:
             with suppress(OSError):
                 pipe.close()  # type: ignore[union-attr]
         try:
-            self.program.wait(_END)
+            self.program.wait(timeout=5)
         except subprocess.TimeoutExpired:
             self.program.kill()
             self.program.wait()

@@ -13,16 +13,6 @@ from ..geometry.polygons import area_vector, axes_across
 from ..stage import Layer, LayerFeatures, Monitor
 from .blocks import feature_boxes
 
-# Pieces of one feature overlap around the edge between their blocks by more than this part of the smaller one. Features
-# that merely touch do not.
-_PIECES = 0.1
-
-# Pieces are also of one feature if their overlap has more than this length (m) or area (m²).
-_SHARED = 1.0
-
-# Tolerance (m) of planes whose points have no noise; ``DEVIATIONS`` times their noise is added.
-_LEAST = 0.005
-
 # Largest distance between axes or centers that are the same one, and largest difference of their radii (of the smaller
 # radius). Shapes of the same points differ by less, and pipes in insulation or next to each other by more.
 _OFF = 0.2
@@ -69,7 +59,9 @@ def leaders(
     is_same &= ~are_pieces
     leader = _led(one[is_same], other[is_same], share[is_same], _ranks(size, is_own, is_piece))
     stays = leader == np.arange(len(leader))
-    meet = are_pieces & stays[one] & stays[other] & ((share > _PIECES) | (shared > _SHARED))
+    # Pieces of one feature overlap around the edge between their blocks by a tenth of the smaller one, or 1 m or m².
+    # Features that merely touch do not.
+    meet = are_pieces & stays[one] & stays[other] & ((share > 0.1) | (shared > 1.0))
     largest = _largest(size, components(one[meet], other[meet], len(size))[1])
     return np.where(stays, largest, leader)
 
@@ -175,7 +167,8 @@ def _shared_in_space(
 
 def _tolerance(features: LayerFeatures, layer: Layer) -> np.ndarray:
     """Return the distances (n,), m, within which another plane is the same as a feature's."""
-    return DEVIATIONS * np.asarray(features.columns[layer.deviation], float) + _LEAST
+    # 5 mm where its points have no noise.
+    return DEVIATIONS * np.asarray(features.columns[layer.deviation], float) + 0.005
 
 
 def _areas(geometries: list) -> tuple[np.ndarray, np.ndarray]:

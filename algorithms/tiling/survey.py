@@ -28,9 +28,6 @@ SHOWN = "shown"
 # Dimensions by which two records are recognized as the same measurement.
 _KEYS = ("gps_time", "return_number", "number_of_returns", "point_source_id", "intensity")
 
-# Most points of a column of cubes of a spacing, on average: the ground, and a roof, crown or wall above it.
-_PER_COLUMN = 2.0
-
 
 @dataclass(frozen=True)
 class Source:
@@ -94,13 +91,14 @@ class Survey:
     def expected(self) -> float:
         """Number of points; a file that reaches beyond the extent counts by the share of its area within.
 
-        With a spacing there are no more than _PER_COLUMN in each column of cubes.
+        With a spacing there are no more than two on average in each column of cubes: the ground, and a roof, crown or
+        wall above it.
         """
         wholes = [_box(source.header, self.crs) for source in self.sources]
         areas, of_wholes = (np.array([np.prod(np.ptp(one, axis=0)) for one in boxes]) for boxes in (self.boxes, wholes))
         counts = [source.header.count for source in self.sources] * areas / of_wholes
         if self.header.spacing is not None:
-            counts = np.minimum(counts, _PER_COLUMN * areas / np.prod(self.header.spacing[:2] * self.crs.horizontal))
+            counts = np.minimum(counts, 2.0 * areas / np.prod(self.header.spacing[:2] * self.crs.horizontal))
         return float(counts.sum())
 
     def _of_cubes(self, box: np.ndarray) -> np.ndarray:

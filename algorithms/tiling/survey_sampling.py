@@ -21,16 +21,6 @@ _SAMPLED_WHOLE = 3_000_000
 # Windows along each side of a survey.
 _SAMPLES_ACROSS = 4
 
-# Largest side of a window, m.
-_SAMPLE_SIDE = 100.0
-
-# Share of the windows that must have points; else windows are put around points of the survey.
-_LEAST_FILLED = 0.25
-
-# Most points on which steps measure the values that blocks take of the whole; one window may have more. *Detect
-# buildings* takes a core half a minute for as many.
-_MEASURED = 1_500_000
-
 
 def samplings_of(
     pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor, layers: Any = None
@@ -61,8 +51,8 @@ def samplings_of(
     reading = monitor.part(0, 0.3)
     boxes, corner = _sample_boxes(survey), survey.corner
     clouds, survey = _sampled(survey, boxes, reading)
-    if len(clouds) < _LEAST_FILLED * len(boxes):
-        # The survey fills little of its extent, as a corridor or a coast does.
+    if len(clouds) < len(boxes) / 4:
+        # The survey fills little of its extent, as a corridor or a coast does: windows are put around its points.
         positions = survey.positions(_SAMPLES_ACROSS**2, reading.part(1.0, 1.0))
         clouds, _ = _sampled(survey, _squares_around(positions, _sample_side(survey)), reading.part(1.0, 1.0))
     if not clouds:
@@ -88,9 +78,9 @@ def samplings_of(
 
 
 def _sample_side(survey: Survey) -> float:
-    """Return the side of the windows that the sampling is measured on, m; all have _SAMPLED_WHOLE points at most."""
+    """Return the side of the windows that the sampling is measured on, m; together they have _SAMPLED_WHOLE points."""
     density = survey.expected / np.prod(survey.boxes[:, 1] - survey.boxes[:, 0], axis=1).sum()
-    return float(min(_SAMPLE_SIDE, np.sqrt(_SAMPLED_WHOLE / _SAMPLES_ACROSS**2 / density)))
+    return float(min(100.0, np.sqrt(_SAMPLED_WHOLE / _SAMPLES_ACROSS**2 / density)))
 
 
 def _sample_boxes(survey: Survey) -> list[np.ndarray]:
@@ -162,8 +152,11 @@ def _measured(
 
 
 def _enough(clouds: list[Cloud]) -> list[Cloud]:
-    """Return as many of the clouds, spread over all of them, as hold _MEASURED points, one at least."""
-    count = max(1, int(len(clouds) * min(1.0, _MEASURED / sum(len(cloud) for cloud in clouds))))
+    """Return as many of the clouds, spread over all of them, as hold 1.5 million points, one at least.
+
+    *Detect buildings* takes a core half a minute for as many.
+    """
+    count = max(1, int(len(clouds) * min(1.0, 1_500_000 / sum(len(cloud) for cloud in clouds))))
     return [clouds[at] for at in np.linspace(0, len(clouds) - 1, count).round().astype(int)]
 
 

@@ -19,8 +19,6 @@ from typing import Any
 # Python searches the folder of a program first; the modules here are imported by the name of their package only.
 # Before the search path is set, pathlib may not be imported.
 _OWN_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
-# Exit code where the other end is gone.
-_GONE = 1
 # The size of a message (bytes), which comes before it.
 _SIZE = struct.Struct("<Q")
 
@@ -75,7 +73,7 @@ def _receive(calls: SimpleQueue) -> None:
         while True:
             calls.put(receive(sys.stdin.buffer))
     except (EOFError, OSError):
-        os._exit(_GONE)
+        os._exit(1)
 
 
 def _answer(answers: Any, function: Any, arguments: tuple) -> None:

@@ -24,28 +24,10 @@ from .processes import ANSWER, FOLDER, PACKAGE, CannotStart, Processes, WorkerEn
 # Seconds between two messages about tasks that are done or waited for.
 BETWEEN_MESSAGES = 10.0
 
-# Seconds that work has to end after the signal to stop. Then its process is ended.
-_TO_STOP = 1.5
-
-# What Dask raises, by its name, when the workers that were given a task have died one after the other.
-_ALL_DIED = "KilledWorker"
-
-# The message for blocks whose process the system has ended.
-_ENDED = (
-    "the processes that worked on it were ended, by the system where memory was short; run it again with fewer "
-    "processes or smaller blocks"
-)
-
 # The message where a cluster has forgotten what it was given.
 _DROPPED = (
     "The Dask scheduler has ended or dropped the work; start it and the same run again, which goes on from there."
 )
-
-# Share of this computer's memory for the processes of a run: the rest is for the system, QGIS and enlarged windows.
-_SHARE_OF_MEMORY = 0.75
-
-# The most processes that concurrent.futures allows on Windows.
-_MOST_PROCESSES = 61
 
 
 @dataclass(frozen=True)
@@ -95,11 +77,13 @@ class Workers:
         """Return how many processes of this machine work at once, each of which needs ``memory`` bytes."""
         have_room = self.memory(1) / memory
         count = self.processes or int(max(1, min(n_threads(), have_room)))
-        return min(count, _MOST_PROCESSES) if os.name == "nt" else count
+        # The most processes that concurrent.futures allows on Windows.
+        return min(count, 61) if os.name == "nt" else count
 
     def memory(self, count: int) -> float:
         """Return the bytes of memory for each of ``count`` processes."""
-        return _SHARE_OF_MEMORY * installed_memory() / count
+        # The rest is for the system, QGIS and enlarged windows.
+        return 0.75 * installed_memory() / count
 
     @contextmanager
     def _cluster(self) -> Iterator[Executor]:
@@ -234,7 +218,8 @@ def run_all(
         for future in open_:
             future.cancel()
         if isinstance(error, Cancelled):
-            wait([future for future in open_ if not future.cancelled()], timeout=_TO_STOP)
+            # Work has that long (s) to end by itself; then its process is ended.
+            wait([future for future in open_ if not future.cancelled()], timeout=1.5)
         raise
     return results, failed
 
@@ -247,8 +232,12 @@ def _why_failed(error: BaseException) -> str:
         return str(error) or type(error).__name__
     if isinstance(error, CannotStart):
         raise ValueError(str(error)) from error
-    if isinstance(error, WorkerEnded) or type(error).__name__ == _ALL_DIED:
-        return f"{_ENDED}."
+    # The latter is Dask's, when the workers that were given a task have died one after the other.
+    if isinstance(error, WorkerEnded) or type(error).__name__ == "KilledWorker":
+        return (
+            "the processes that worked on it were ended, by the system where memory was short; run it again with fewer "
+            "processes or smaller blocks."
+        )
     raise error
 
 
