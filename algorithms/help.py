@@ -144,15 +144,10 @@ def with_picture(text: str, algorithm: str, folder: str) -> str:
     if algorithm not in captions():
         return text
     caption = html.escape(captions()[algorithm])
-    picture = (
-        f'<p><img src="{folder}/{algorithm}.png" width="{_PICTURE_WIDTH}" alt="{caption}"></p>\n<p><i>{caption}</i></p>'
-    )
+    # So many pixels the help pane of a dialog has room for, at the width that it opens with; pages set their own.
+    picture = f'<p><img src="{folder}/{algorithm}.png" width="220" alt="{caption}"></p>\n<p><i>{caption}</i></p>'
     summary, rest = text.split("\n", 1)
     return f"{summary}\n{picture}\n{rest}"
-
-
-# Pixels that the help pane of a dialog has room for, at the width that it opens with; pages set their own.
-_PICTURE_WIDTH = 220
 
 
 def page(title: str, text: str) -> str:
@@ -205,7 +200,7 @@ def _cloud_text(stage: Stage) -> str:
     chosen = _chosen(stage)
     if chosen is not None:
         meanings = [_meaning(name) for name in stage.writes]
-        return f"the cloud as it was, and what '{chosen.label}' names of these dimensions:{_sublist(meanings)}"
+        return f"the cloud as it was, and what '{chosen.label}' names of these dimensions:\n{listed(meanings)}"
     if stage.creates:
         return f"a new cloud with {_disk_names(stage.creates)}."
     if stage.merges:
@@ -241,8 +236,8 @@ def _result_text(stage: Stage, of: str, name: str) -> str:
     """Describe one output of a stage, under the name that it has for users."""
     declared = stage.outputs[of]
     if isinstance(declared, Layer):
-        attributes = _sublist([_field_text(field) for field in declared.fields])
-        made = f"{html.escape(declared.title)}, with the attributes:{attributes}"
+        attributes = listed(map(_field_text, declared.fields))
+        made = f"{html.escape(declared.title)}, with the attributes:\n{attributes}"
     elif isinstance(declared, Raster):
         made = f"{html.escape(with_unit(declared.title, declared.unit))}, a raster."
     elif isinstance(declared, TextFile):
@@ -290,13 +285,12 @@ def _disk_names(names) -> str:
 def _list(title: str, rows: list, ordered: bool = False) -> str:
     if not rows:
         return ""
-    tag = "ol" if ordered else "ul"
-    return f"<h3>{html.escape(title)}</h3>\n<{tag}>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + f"\n</{tag}>"
+    return f"<h3>{html.escape(title)}</h3>\n{listed(rows, 'ol' if ordered else 'ul')}"
 
 
-def _sublist(rows: list) -> str:
-    """Return rows as a list within a row of another one."""
-    return "\n<ul>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + "\n</ul>"
+def listed(rows: Iterable[str], tag: str = "ul") -> str:
+    """Return rows as a list, HTML."""
+    return f"<{tag}>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + f"\n</{tag}>"
 
 
 def _section(title: str, text: str) -> str:
@@ -321,9 +315,8 @@ def _items(block: str) -> Optional[str]:
     first = _ITEM.match(block)
     if first is None:
         return None
-    tag = "ol" if first.group(1) else "ul"
-    items = [item for item in _ITEM.sub("\0", block).split("\0") if item.strip()]
-    return f"<{tag}>\n" + "\n".join(f"<li>{inline(item)}</li>" for item in items) + f"\n</{tag}>"
+    items = (inline(item) for item in _ITEM.sub("\0", block).split("\0") if item.strip())
+    return listed(items, "ol" if first.group(1) else "ul")
 
 
 def inline(text: str) -> str:

@@ -7,9 +7,6 @@ import os
 import sys
 from typing import Callable, Optional
 
-# The parameter of GNU's C library that is the most arenas (heaps) of a process, by its number in malloc.h.
-_MOST_ARENAS = -8
-
 
 def installed_memory() -> float:
     """Return the bytes of memory of this computer, infinity where the system doesn't report it."""
@@ -36,7 +33,8 @@ def share_freed() -> None:
     """
     set_option = _of_libc("mallopt")
     if set_option is not None:
-        set_option(_MOST_ARENAS, 1)
+        # By its number in malloc.h: the most arenas of a process.
+        set_option(-8, 1)
 
 
 def return_freed() -> None:

@@ -64,6 +64,11 @@ _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
     "source": ("ground", "roofs", "buildings", "complete", "refine"),
 }
 
+# Distances of the corners of walls from those of an old map.
+_COMPARISON = Step(
+    "comparison", "compare_corners", layers={"footprints": "footprints.wall_footprints"}, only_with=("old_map",)
+)
+
 _PIPELINES = (
     Pipeline(
         name="detect_buildings",
@@ -223,12 +228,7 @@ _PIPELINES = (
             Step("roofs", "classify_roofs"),
             Step("walls", "classify_walls"),
             Step("footprints", "extract_wall_footprints"),
-            Step(
-                "comparison",
-                "compare_corners",
-                layers={"footprints": "footprints.wall_footprints"},
-                only_with=("old_map",),
-            ),
+            _COMPARISON,
         ),
         shared={"min_area": ("roofs", "footprints"), "source": ("ground", "roofs")},
         shown=("min_area", "voxels_voxel_size", "ground_max_building_size", "roofs_min_height", "footprints_min_seen"),
@@ -260,12 +260,7 @@ _PIPELINES = (
             Step("roofs", "segment_clusters", {"segments_only": True}),
             Step("walls", "classify_walls"),
             Step("footprints", "extract_wall_footprints_2022"),
-            Step(
-                "comparison",
-                "compare_corners",
-                layers={"footprints": "footprints.wall_footprints"},
-                only_with=("old_map",),
-            ),
+            _COMPARISON,
         ),
         shown=(
             "voxels_voxel_size",

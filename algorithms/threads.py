@@ -16,13 +16,6 @@ import numpy as np
 from .packages import threadpoolctl
 from .stage import Cancelled, Monitor
 
-# Each thread holds arrays of its own, up to 20 MB: with one for each core of a large server they would take more memory
-# than the cloud.
-_MOST_THREADS = 32
-
-# Least number of positions whose neighbors a thread searches: starting it takes as long as a few hundred of these.
-_SEARCHED = 5_000
-
 # Rows that a thread works on at once: their values stay in the processor's caches.
 ROWS_AT_ONCE = 20_000
 
@@ -45,12 +38,15 @@ def n_threads() -> int:
         return _ASSIGNED[-1]
     # Where batch systems and containers give a process some of the cores, only Linux shows which.
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(cores, _MOST_THREADS)
+    # Each thread holds arrays of its own, up to 20 MB: with one for each core of a large server they would take more
+    # memory than the cloud.
+    return min(cores, 32)
 
 
 def searchers(count: int) -> int:
     """Return how many threads search the neighbors of ``count`` positions: no more than are worth starting."""
-    return max(1, min(n_threads(), count // _SEARCHED))
+    # Starting a thread takes as long as the search of a few hundred positions.
+    return max(1, min(n_threads(), count // 5_000))
 
 
 def use_threads(count: Optional[int]) -> None:

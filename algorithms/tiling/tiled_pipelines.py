@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional
 
-from ..help import output_text, paragraphs, pipeline_help, written_by
+from ..help import listed, output_text, paragraphs, pipeline_help, written_by
 from ..packages import ESSENTIAL
 from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
@@ -129,8 +129,7 @@ CUT_INTO_TILES = SurveyTool(
 
 def settings_help(settings: dict[str, Setting]) -> str:
     """Return a list of settings, as HTML."""
-    rows = "\n".join(f"<li>{setting.text()}</li>" for setting in settings.values())
-    return f"<h3>Parameters: Survey</h3>\n<ul>\n{rows}\n</ul>"
+    return f"<h3>Parameters: Survey</h3>\n{listed(setting.text() for setting in settings.values())}"
 
 
 def survey_tool_help(tool: SurveyTool) -> str:
