@@ -80,19 +80,20 @@ def run(algorithm: Pipeline, given: argparse.Namespace, monitor: Monitor) -> Non
     values = vars(given)
     targets = [(one, values[one.name]) for one in algorithm.outputs if values[one.name] is not None]
     clouds = _listed(values.get("cloud"))
-    _check(algorithm, targets, [*clouds, *_listed(values.get("reference")), *_layer_files(algorithm, values)])
+    files = {one: values[one.name] for one in algorithm.input_layers.values() if values[one.name] is not None}
+    _check(algorithm, targets, [*clouds, *_listed(values.get("reference")), *files.values()])
     for _, path in targets:
         check_compression(path, [file_at(one) for one in clouds])
-    read = [read_cloud(path, monitor, box=_box(values)) for path in clouds]
-    reference = read_cloud(values["reference"], monitor, box=_box(values)) if values.get("reference") else None
-    files = {one: values[one.name] for one in algorithm.input_layers.values() if values[one.name] is not None}
+    box = None if values.get("extent") is None else np.array(values["extent"])
+    read = [read_cloud(path, monitor, box=box) for path in clouds]
+    reference = read_cloud(values["reference"], monitor, box=box) if values.get("reference") else None
     layers, place = _layers(files, read[0] if read else None, monitor)
     tunables = {name: values[name] for name in algorithm.parameters if values[name] is not None}
     wanted = [output.name for output, _ in targets]
     cloud = read if algorithm.merges else read[0] if read else None
     results = run_pipeline(algorithm, cloud, monitor, layers, wanted, reference=reference, **tunables)
     if results.cloud is not None:
-        place = _Place(results.cloud.to_map, results.cloud.from_map, *_codes(results.cloud))
+        place = _Place.of(results.cloud)
     if place is None:
         raise ValueError(f"{algorithm.title} has neither a point cloud nor a layer; give one.")
     with all_or_nothing() as written:
@@ -113,23 +114,16 @@ class _Place:
     plane: str = ""
     code: str = ""
 
-
-def _codes(cloud: Cloud) -> tuple[str, str]:
-    crs = cloud.crs
-    plane = next((text for text in (crs.plane, crs.code, crs.identity) if text.startswith("EPSG:")), "")
-    return plane, crs.code or plane
+    @classmethod
+    def of(cls, cloud: Cloud) -> _Place:
+        """Return the place of a cloud."""
+        crs = cloud.crs
+        plane = next((text for text in (crs.plane, crs.code, crs.identity) if text.startswith("EPSG:")), "")
+        return cls(cloud.to_map, cloud.from_map, plane, crs.code or plane)
 
 
 def _listed(value: Any) -> list[str]:
     return [] if value is None else [value] if isinstance(value, str) else value
-
-
-def _box(values: dict[str, Any]) -> Optional[np.ndarray]:
-    return None if values.get("extent") is None else np.array(values["extent"])
-
-
-def _layer_files(algorithm: Pipeline, values: dict[str, Any]) -> list[Path]:
-    return [values[name] for name in algorithm.input_layers if values[name] is not None]
 
 
 def _check(algorithm: Pipeline, targets: list[tuple[Output, Path]], sources: Sequence[Any]) -> None:
@@ -159,7 +153,7 @@ def _layers(
     files: dict[InputLayer, Path], cloud: Optional[Cloud], monitor: Monitor
 ) -> tuple[dict[str, Optional[LayerFeatures]], Optional[_Place]]:
     """Return the layers of files in local meters: from the cloud's origin, else from a corner of the first layer."""
-    place = _Place(cloud.to_map, cloud.from_map, *_codes(cloud)) if cloud is not None else None
+    place = _Place.of(cloud) if cloud is not None else None
     layers: dict[str, Optional[LayerFeatures]] = {}
     for wanted, path in files.items():
         if wanted.read is not None:

@@ -21,9 +21,6 @@ _DEPTH = {"MultiSurface": 0, "CompositeSurface": 0, "Solid": 1, "MultiSolid": 2,
 
 _KINDS: dict[Any, str] = {name: kind for kind, name in SURFACES.items()}
 
-# Coordinates are less than this in all systems (m or feet).
-_FARTHEST = 1e9
-
 # Entries of a semantic surface that are no attributes.
 _NO_FACTS = ("type", "parent", "children")
 
@@ -71,7 +68,8 @@ def _faces(document: dict, transform: Any) -> Iterator[tuple[list[np.ndarray], d
     vertices = np.array(document["vertices"], float).reshape(-1, 3)
     if transform is not None:
         vertices = vertices * transform["scale"] + transform["translate"]
-    if not (np.abs(vertices) < _FARTHEST).all():
+    # Coordinates are less than this in all systems (m or feet).
+    if not (np.abs(vertices) < 1e9).all():
         raise ValueError("a vertex lies beyond the Earth")
     objects = document["CityObjects"]
     for name, one in objects.items():

@@ -12,9 +12,9 @@ import numpy as np
 from ..criteria import ROUNDING
 from ..footprints.footprint_points import rows_near
 from ..geometry.polygons import area_vector, axes_across
+from ..geometry.raster_filling import nearest_known
 from ..models3d.set_openings import DOOR, WINDOW
 from ..models3d.solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL
-from ..packages import ndimage
 from ..stage import LayerFeatures, Monitor, feature_names
 
 # Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window, door,
@@ -25,14 +25,8 @@ KINDS = (ROOF, WALL, GROUND, WINDOW, DOOR, TERRAIN, SOFFIT)
 # Levels of detail, of which files get their names.
 _LEVELS = re.compile(r"\d(\.\d)?")
 
-# Faces of unknown kind are walls if the vertical part of their unit normal is less than this: slopes over 80°.
-_UPRIGHT = 0.17
-
 # Points within this distance (m) of a face color it: noise, tiles, sills.
 _NEAR = 0.3
-
-# A face has an image if points are seen on this share of its texels at least; one of its kind's color is more honest.
-_SEEN = 0.1
 
 # Widest image (texels): what browsers of any device show.
 _WIDEST = 8192
@@ -149,7 +143,8 @@ def _model(name: str, levels: dict[str, list[Face]], rise: float) -> ExportedMod
 def kind_by_slope(ring: np.ndarray) -> str:
     """Return whether a face with this exterior (k, 3), counterclockwise from outside, is a wall, roof or ground."""
     normal = area_vector(ring)
-    if abs(normal[2]) < _UPRIGHT * np.linalg.norm(normal):
+    # Of the unit normal, less than this is vertical: slopes over 80° are walls.
+    if abs(normal[2]) < 0.17 * np.linalg.norm(normal):
         return WALL
     return ROOF if normal[2] > 0 else GROUND
 
@@ -206,14 +201,13 @@ def _texture(face: Face, xyz: np.ndarray, colors: np.ndarray, texel: float) -> O
     on = (np.abs(offset @ normal) <= _NEAR) & (column >= 0) & (column < width) & (row >= 0) & (row < height)
     cell, size = (row * width + column)[on], width * height
     count = np.bincount(cell, minlength=size)
-    if (count > 0).sum() < _SEEN * size or not on.any():
+    # With less than a tenth of its texels seen, the color of its kind is more honest.
+    if (count > 0).sum() < 0.1 * size or not on.any():
         return None
     sums = np.column_stack([np.bincount(cell, band, size) for band in colors[on].T])
     mean = (sums / np.maximum(count, 1)[:, None]).reshape(height, width, 3)
-    rows, columns = ndimage.distance_transform_edt(
-        count.reshape(height, width) == 0, return_distances=False, return_indices=True
-    )
-    return Texture(start, axes / texel, mean[rows, columns].astype(np.uint8))
+    filled = nearest_known(mean, count.reshape(height, width) == 0)
+    return Texture(start, axes / texel, filled.astype(np.uint8))
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,6 @@ COLORS = dict(zip(KINDS, _RGB))
 _FLOAT, _UINT = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 
-# Parts of the buffer begin at multiples of this (bytes), as numbers of 64 bits must.
-_ALIGNED = 8
-
 # Value of numbers that an object has no attribute for.
 _NO_DATA = -9999
 
@@ -67,8 +64,7 @@ def glb(
     rows = [(number, face) for number, model in enumerate(models) for face in model.at(level)]
     rows.sort(key=lambda row: KINDS.index(row[1].kind))
     file = _File()
-    is_textured = any(face.texture is not None for _, face in rows)
-    atlas = atlas_of([image_of(face) for _, face in rows]) if is_textured else None
+    atlas = shared_atlas([face for _, face in rows])
     primitives = _primitives(rows, lambda local: (placed(local) - np.asarray(middle)) @ _Y_UP.T, file, atlas)
     of_models = [{"name": model.name, **model.facts} for model in models]
     of_faces = [{"kind": face.kind, **({} if face.kind in (GROUND, TERRAIN) else face.facts)} for _, face in rows]
@@ -80,7 +76,7 @@ def glb(
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0, "translation": (_Y_UP @ middle).tolist()}],
         "meshes": [{"primitives": primitives}],
-        "materials": [_material(kind, is_textured) for kind in KINDS],
+        "materials": [_material(kind, atlas is not None) for kind in KINDS],
         **(_images(png(atlas.image), file) if atlas else {}),
         "extensionsUsed": ["EXT_mesh_features", "EXT_structural_metadata"],
         "extensions": {"EXT_structural_metadata": {"schema": schema, "propertyTables": [table for _, table in tables]}},
@@ -88,7 +84,13 @@ def glb(
     return file.packed(root)
 
 
-def image_of(face: Face) -> np.ndarray:
+def shared_atlas(faces: Sequence[Face]) -> Optional[Atlas]:
+    """Return the images of faces in one, None where no face has one."""
+    is_textured = any(face.texture is not None for face in faces)
+    return atlas_of([_image_of(face) for face in faces]) if is_textured else None
+
+
+def _image_of(face: Face) -> np.ndarray:
     """Return the image on a face, one texel of the color of its kind where it has none."""
     return np.array([[COLORS[face.kind]]], np.uint8) if face.texture is None else face.texture.image
 
@@ -124,7 +126,8 @@ class _File:
 
     def view(self, raw: bytes, target: int = 0) -> int:
         """Add bytes; return the number of their view."""
-        self.data += bytes(-len(self.data) % _ALIGNED)
+        # Numbers of 64 bits must begin at multiples of 8 bytes.
+        self.data += bytes(-len(self.data) % 8)
         self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw)})
         if target:
             self.views[-1]["target"] = target

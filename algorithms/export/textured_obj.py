@@ -10,8 +10,8 @@ import numpy as np
 from ..models3d.wavefront import object_line, vertex_lines
 from ..report.page import png
 from ..stage import MapFrame, Piece
-from .exported_models import KINDS, ExportedModel, atlas_of
-from .gltf import COLORS, image_of, triangles_of
+from .exported_models import KINDS, ExportedModel
+from .gltf import COLORS, shared_atlas, triangles_of
 
 
 def obj_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) -> Iterator[Piece]:
@@ -22,8 +22,7 @@ def obj_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame) 
     Coordinates are meters, z up, less an offset that the second line names. Rows of images count from below.
     """
     faces = [(model, face) for model in models for face in model.best]
-    is_textured = any(face.texture is not None for _, face in faces)
-    atlas = atlas_of([image_of(face) for _, face in faces]) if is_textured else None
+    atlas = shared_atlas([face for _, face in faces])
     stem = re.sub(r"\s+", "_", frame.file)
     if atlas is not None:
         yield f"{stem}.png", png(atlas.image)

@@ -18,18 +18,6 @@ from .gltf import glb
 # Semiaxes (m) of the ellipsoid WGS 84.
 _EQUATORIAL, _POLAR = 6_378_137.0, 6_356_752.314245
 
-# Buildings in a file, at most: about 1 MB.
-_BUILDINGS = 100
-
-# Deepest level of the quadtree: it ends the division of buildings at one position.
-_DEEPEST = 16
-
-# Rounding (m) of vertices to 24 bits, which stay within their box.
-_ROUNDED = 0.001
-
-# Leave out a coarser level if its error exceeds the next finer one's by less than this (m).
-_LEAST_ERROR = 0.1
-
 
 def ellipsoid_positions(degrees: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Return positions (n, 3), m, from the middle of the Earth.
@@ -117,7 +105,8 @@ _Tile = Generator[Piece, None, dict[str, Any]]
 
 def _tile(models: Sequence[ExportedModel], boxes: np.ndarray, name: str, site: _Site, depth: int = 0) -> _Tile:
     """Yield the files of models with boxes (n, 2, 3), m, and return their tile: divided, or by levels of detail."""
-    if len(models) <= _BUILDINGS or depth == _DEEPEST:
+    # A hundred buildings are about 1 MB. A deepest level ends the division of buildings at one position.
+    if len(models) <= 100 or depth == 16:
         return (yield from _levels(models, boxes, name, site))
     middles = boxes[:, :, :2].mean(axis=1)
     quadrant = (middles > (middles.min(axis=0) + middles.max(axis=0)) / 2) @ [1, 2]
@@ -137,7 +126,8 @@ def _levels(models: Sequence[ExportedModel], boxes: np.ndarray, name: str, site:
     tile: dict[str, Any] = {}
     for level in levels:
         error = float(np.sqrt(np.mean([_error(model, level) ** 2 for model in models])))
-        if tile and error < tile["geometricError"] + _LEAST_ERROR:
+        # Leave out a coarser level if its error exceeds the next finer one's by less than this (m).
+        if tile and error < tile["geometricError"] + 0.1:
             continue
         file = f"{name}-{level or 'tile'}.glb"
         yield file, glb(models, level, site.placed, middle.tolist())
@@ -161,7 +151,8 @@ def _roof_heights(faces: Sequence[Any]) -> np.ndarray:
 def _bounded(boxes: np.ndarray, error: float) -> dict[str, Any]:
     """Return the box around models, in the form of 3D Tiles: middle, and half of each side along its axis."""
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
-    box = np.concatenate([(low + high) / 2, np.diag((high - low) / 2 + _ROUNDED).reshape(-1)]).round(4).tolist()
+    # Vertices that are rounded to 24 bits stay within their box.
+    box = np.concatenate([(low + high) / 2, np.diag((high - low) / 2 + 0.001).reshape(-1)]).round(4).tolist()
     return {"boundingVolume": {"box": box}, "geometricError": round(error, 3), "refine": "REPLACE"}
 
 
