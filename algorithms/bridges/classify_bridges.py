@@ -11,6 +11,7 @@ from ..geometry.adjacent_cells import DIRECTIONS
 from ..geometry.boxes import connect
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..geometry.groups import least_of
+from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage, spatial
 from ..params import BRIDGE_AREA, BRIDGE_HEIGHT, BRIDGE_WIDTH, POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
@@ -147,9 +148,8 @@ def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, deck
     cell = row * shape[1] + column
     ground = _lowest(cell[is_ground], xyz[is_ground, 2], shape)
     unseen = ~np.isfinite(ground)
-    nearest = ndimage.distance_transform_edt(unseen, return_distances=False, return_indices=True)
     is_other = is_open & ~is_ground
-    is_over = is_other & (xyz[:, 2] - ground[tuple(nearest)].ravel()[cell] >= decks.min_height)
+    is_over = is_other & (xyz[:, 2] - nearest_known(ground, unseen).ravel()[cell] >= decks.min_height)
     hides = _count(cell[is_ground], shape) < DECK.most_below * _count(cell[is_over], shape)
     surface = np.where(unseen, _lowest(cell[is_other], xyz[is_other, 2], shape), ground)
     surface = np.where(hides, _lowest(cell[is_over], xyz[is_over, 2], shape), surface)

@@ -17,8 +17,6 @@ SAME_PLANE = 70
 # The axis of heights in WKT 2 of a system of three axes, and their numbers.
 _HEIGHT_AXIS = re.compile(r',\s*AXIS\["[^"]*",up(?:,\s*\w+\[(?:[^\[\]]|\[[^\[\]]*\])*\])*\]')
 _AXES = "CS[Cartesian,3]", "CS[Cartesian,2]"
-# Systems that are kept in memory: more than a survey has.
-_REMEMBERED = 256
 
 
 class Area(NamedTuple):
@@ -112,13 +110,14 @@ def _quietly() -> Iterator[None]:
         yield
 
 
+# More systems than a survey has.
 class _Pyproj:
     """Systems by pyproj, which reads no GeoKeys but the codes in them."""
 
     def __init__(self, pyproj: Any) -> None:
         self.pyproj = pyproj
 
-    @lru_cache(maxsize=_REMEMBERED)  # noqa: B019 - there is one for the life of the process
+    @lru_cache(maxsize=256)  # noqa: B019 - there is one for the life of the process
     def define(self, text: str, keys: tuple[tuple[int, bytes], ...] = ()) -> Optional[Definition]:
         if not text:
             return None

@@ -23,9 +23,6 @@ _ORIGIN_STEP = 1000.0
 # Scale of new clouds (units of the file): more precise than any scanner.
 _NEW_SCALE = 0.001
 
-# Rounding error (steps of the scale) of the sum of large coordinates at a half.
-_HALF = 1e-4
-
 
 class Cloud:
     """A point cloud: the records of a file, and what stages have set.
@@ -165,8 +162,9 @@ class Cloud:
         for i, axis in enumerate("XYZ"):
             steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self.crs.factors[i])
             steps /= step[i]
-            # Round half up: the center of two points is often a half, and half to even would depend on the offset.
-            np.floor(steps + (0.5 + _HALF), out=steps)
+            # Round half up: the center of two points is often a half, and half to even would depend on the offset. The
+            # sum of large coordinates at a half has a rounding error.
+            np.floor(steps + (0.5 + 1e-4), out=steps)
             if not max(steps.max(), -steps.min()) <= LARGEST_STEP:
                 raise ValueError(
                     f"Points are moved too far for the file, which reaches {LARGEST_STEP * step[i]:.0f} m from "

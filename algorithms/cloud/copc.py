@@ -33,12 +33,8 @@ _LEAF_POINTS = 65_536
 _GRID_LEVELS = 7
 # Bits per axis of a position in the root cube; three of them fill a 64-bit Morton code.
 _BITS = 21
-# Highest bits of a Morton code that number the 64 cubes of the second level: points are sorted in one cube at a time.
-_TOP_BITS = 6
 # Level of the smallest nodes, whose grid is the finest one.
 _DEEPEST = _BITS - _GRID_LEVELS
-# Seed of the random choice of the points that a level shows.
-_SEED = 0
 
 
 @dataclass(frozen=True)
@@ -96,7 +92,8 @@ def _morton(points: np.ndarray, header: Header, low: np.ndarray, side: float) ->
 
 def _sorted(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the order of ``codes``, found cube by cube so that it can be cancelled."""
-    top = (codes >> np.uint64(3 * _BITS - _TOP_BITS)).astype(np.uint8)
+    # The highest six bits number the 64 cubes of the second level: points are sorted in one cube at a time.
+    top = (codes >> np.uint64(3 * _BITS - 6)).astype(np.uint8)
     order = np.argsort(top, kind="stable")
     start = 0
     for count in np.bincount(top):
@@ -131,7 +128,7 @@ def _gathered(code: int, axis: int) -> int:
 
 def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the octree level of each point, uint8 (n,); ``codes`` is sorted."""
-    generator = np.random.default_rng(_SEED)
+    generator = np.random.default_rng(0)
     levels = np.empty(len(codes), np.uint8)
     waiting = np.arange(len(codes))
     for level in range(_DEEPEST + 1):

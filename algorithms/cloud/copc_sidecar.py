@@ -22,8 +22,6 @@ _DIGEST_AT, _DIGEST_SIZE = 8, 16
 # Positions (bytes) in that header of the name of the writing program and of the offsets to points and EVLRs, and the
 # size (bytes) of the header.
 _SOFTWARE_AT, _POINTS_AT, _EVLRS_AT, _HEADER_SIZE = 58, 96, 235, 375
-# Size (bytes) of a portion for the digest, so that large files need little memory.
-_BLOCK = 1 << 20
 
 
 def copc_path(path: Path) -> Path:
@@ -82,6 +80,7 @@ def _digest(view: BinaryIO, shown: BinaryIO) -> bytes:
     digest = hashlib.blake2b(digest_size=_DIGEST_SIZE)
     for stream, first, last in ((view, start, stop), (shown, 0, shown.seek(0, 2))):
         stream.seek(first)
-        while block := stream.read(max(0, min(_BLOCK, last - stream.tell()))):
+        # In portions of a megabyte large files need little memory.
+        while block := stream.read(max(0, min(1 << 20, last - stream.tell()))):
             digest.update(block)
     return digest.digest()

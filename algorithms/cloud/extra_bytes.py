@@ -19,8 +19,6 @@ _RANGE = slice(64, 112)
 _TEXTS = (slice(4, 36), slice(160, 192))
 # Where it has what the numbers mean: options; "no data" of all axes; scales and offsets.
 _MEANING = (slice(3, 4), slice(40, 64), slice(112, 160))
-# Largest number of a type; types from 11 on are the vectors of earlier versions.
-_LARGEST_TYPE = 30
 # Most bytes of unknown meaning that one descriptor holds: their number is stored in a byte.
 _LONGEST_UNDOCUMENTED = 255
 
@@ -136,7 +134,8 @@ def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:
 def _field(raw: bytes) -> ExtraField:
     """Return the field that a descriptor describes."""
     descriptor = _parsed(raw)
-    if not 1 <= descriptor.data_type <= _LARGEST_TYPE:
+    # Types from 11 on are the vectors of earlier versions.
+    if not 1 <= descriptor.data_type <= 30:
         # Type 0 keeps its number of bytes where the others keep their options.
         return ExtraField("", np.dtype(f"V{descriptor.options}"), raw)
     return ExtraField(descriptor.name.decode("utf-8", "replace"), descriptor.dtype().newbyteorder("<"), raw)

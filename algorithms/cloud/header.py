@@ -37,17 +37,12 @@ WKT_BIT = 16
 WAVEFORMS_INSIDE, WAVEFORMS_OUTSIDE = 2, 4
 # Bit of the point format of compressed records.
 _COMPRESSED = 128
-# Most points that 32 bits count, and most bytes of the payload of a VLR.
-_LARGEST_OLD_COUNT = 2**32 - 1
+# Most bytes of the payload of a VLR.
 _LARGEST_VLR = 65_535
 # Largest coordinate of a record, in steps of the scale from the offset.
 LARGEST_STEP = 2**31 - 1
-# Payloads of more bytes (waveforms), and indexes, stay in their file until they are copied.
+# Payloads of more bytes (waveforms), and indexes, stay in their file until they are copied, in parts of this size.
 _KEPT_IN_MEMORY = 2**24
-# Bytes of a payload that are copied at once.
-_COPIED_AT_ONCE = 2**24
-# Largest spacing of doubles (steps of the scale); some files have far too fine a scale.
-_COARSEST = 1000.0
 # Areas of cells whose sides are a smaller step are 0 in doubles.
 _LEAST_STEP = float(np.sqrt(np.finfo(float).tiny))
 # The name of the writing program, in the header of every file written here.
@@ -94,8 +89,8 @@ class Vlr:
             return
         with self.path.open("rb") as source:
             source.seek(self.start)
-            for done in range(0, self.size, _COPIED_AT_ONCE):
-                stream.write(source.read(min(_COPIED_AT_ONCE, self.size - done)))
+            for done in range(0, self.size, _KEPT_IN_MEMORY):
+                stream.write(source.read(min(_KEPT_IN_MEMORY, self.size - done)))
 
 
 @dataclass
@@ -204,7 +199,7 @@ class Header:
         raw[_SYSTEM], raw[_DATE] = self.system.ljust(32, b"\0"), self.date
         struct.pack_into("<I", raw, _VLRS_AT, len(self.vlrs) + len(las.vlrs))
         # LAS 1.4 has the number of points in the old place too, where it fits and the format is an old one.
-        if self.minor == 4 and self.layout.is_old and las.point_count <= _LARGEST_OLD_COUNT:
+        if self.minor == 4 and self.layout.is_old and las.point_count < 2**32:
             returns = map(int, las.number_of_points_by_return[:5])
             struct.pack_into("<6I", raw, _OLD_COUNTS_AT, las.point_count, *returns)
         stream.seek(0)
@@ -318,7 +313,8 @@ class _Reader:
         with np.errstate(over="ignore"):
             farthest = np.abs(header.offset) + 2.0**31 * step
         # Beyond, all coordinates are one and the same; of NaN and infinity the comparison is false. Below, areas are 0.
-        if not ((np.spacing(farthest) <= _COARSEST * step) & (step >= _LEAST_STEP)).all():
+        # Largest spacing of doubles (steps of the scale); some files have far too fine a scale.
+        if not ((np.spacing(farthest) <= 1000.0 * step) & (step >= _LEAST_STEP)).all():
             raise ValueError(
                 f"{self.path.name} has no usable coordinates: scale {header.scale.tolist()}, offset "
                 f"{header.offset.tolist()} in its header; get the file again."

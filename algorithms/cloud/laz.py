@@ -29,8 +29,6 @@ _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
 _ITEM = struct.Struct("<HHH")
 # The position of the chunk table, and its head: version, number of chunks.
 _TABLE_POSITION, _TABLE_START = struct.Struct("<q"), struct.Struct("<II")
-# Bytes of points without chunks that are read at once.
-_READ_AT_ONCE = 2**20
 # Layers that points of formats 6 to 10 are stored in, by the type of their item; extra bytes (type 14) have one a byte.
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 # Versions of the items of points in layers, and of all others; lazrs lacks the newest.
@@ -265,7 +263,7 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
             record = struct.pack("<H", _CHUNKED) + record[2:]
             backend, stream_at = need_laspy().LazBackend[_LAZRS_IN_TURN], 0
             with explained(path):
-                stream = io.BufferedReader(_OneChunk(stream, header, record), _READ_AT_ONCE)
+                stream = io.BufferedReader(_OneChunk(stream, header, record), 2**20)
     else:
         table_at = laz.table_at()
         laz.check_number(table_at, _chunk_size(record))

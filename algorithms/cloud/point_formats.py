@@ -14,8 +14,6 @@ from .laspy_library import need_laspy
 FORMATS = range(11)
 # Step of the scan angle in formats 6-10, degrees; formats 0-5 count degrees.
 _ANGLE_STEP = 0.006
-# Largest scan angle of formats 6-10, in steps: 180 degrees.
-_LARGEST_ANGLE = 30_000
 # laspy has another name for the scan angle of the formats 0-5.
 _NAMES = {"scan_angle_rank": "scan_angle"}
 
@@ -90,7 +88,8 @@ class Layout:
             If a value of a bit field needs more bits than the format has.
         """
         if name == "scan_angle":
-            step, limit = (1, 90) if self.is_old else (_ANGLE_STEP, _LARGEST_ANGLE)
+            # The largest angles are 90 and 180 degrees, in steps.
+            step, limit = (1, 90) if self.is_old else (_ANGLE_STEP, 30_000)
             points[name] = np.clip(np.rint(values / step), -limit, limit)
             return
         if name in points.dtype.names:

@@ -17,8 +17,6 @@ from .point_formats import FORMATS, UPGRADED, Layout
 Index = Union[slice, np.ndarray]
 # Name of a field, and which one of that name.
 _Key = tuple[str, int]
-# Largest class in the 5 bits of formats 0 to 5.
-_LARGEST_OLD_CLASS = 31
 
 
 def find_extra(layout: Layout, dimension: Dimension, component: int = 0) -> Optional[int]:
@@ -93,7 +91,8 @@ class PointRecords:
 def _needed_format(layout: Layout, standard: dict[str, np.ndarray]) -> int:
     """Return the point format that holds the classes: 5 bits in formats 0-5, 8 in LAS 1.4's."""
     classes = standard.get("classification")
-    if layout.is_old and classes is not None and len(classes) and classes.max() > _LARGEST_OLD_CLASS:
+    # Formats 0 to 5 have 5 bits for the class.
+    if layout.is_old and classes is not None and len(classes) and classes.max() > 31:
         return UPGRADED[layout.point_format]
     return layout.point_format
 

@@ -29,9 +29,6 @@ from .web_file import WebStream, is_on_web
 # well under a second.
 AT_ONCE = 10 * POINTS_PER_CHUNK
 
-# Points that are all alike come to 5,500 bytes per compressed byte in chunks of the usual size; nothing sound has more.
-_MOST_BYTES_PER_BYTE = 10_000
-
 # Files that a warning names.
 _NAMED = 5
 
@@ -40,13 +37,6 @@ _PROBES = 16
 
 # A box in plan that all points lie in.
 EVERYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
-
-# Bytes that are read at once of a file on the web without an index.
-_BUFFER = 2**22
-
-# If points take less than this share of the stated extent on an axis, all are measured: a bound that was never set is
-# 0, thousands of kilometers from the points.
-_LEAST_SHARE = 0.01
 
 
 def open_header(path: Path) -> Header:
@@ -115,7 +105,9 @@ def _held_header(path: Path) -> Header:
     """Return the header of a file after its number of points was held against its size."""
     header = read_header(path)
     left = path.stat().st_size - header.points_at
-    most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize
+    # Points that are all alike come to 5,500 bytes per compressed byte in chunks of the usual size; nothing sound has
+    # more.
+    most = left * (10_000 if header.is_compressed else 1) // header.layout.dtype.itemsize
     if header.count > most:
         raise truncated(path, f"it promises {header.count} points, but {left} bytes hold at most {most}")
     return header
@@ -141,7 +133,9 @@ def _can_be(header: Header, low: np.ndarray, high: np.ndarray) -> bool:
         return False
     # The bounds of some files are rounded.
     holds = (header.low - header.scale <= low) & (header.high + header.scale >= high)
-    return bool((holds & (high - low >= _LEAST_SHARE * (header.high - header.low))).all())
+    # If points take less than this share of the stated extent on an axis, all are measured: a bound that was never set
+    # is 0, thousands of kilometers from the points.
+    return bool((holds & (high - low >= 0.01 * (header.high - header.low))).all())
 
 
 def _bounds(header: Header, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -391,7 +385,8 @@ def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarra
 def _reads(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, int, Callable]]:
     """Yield (start, stop, function that fills an array with these points), with progress between."""
     opened: Any = path.open("rb") if is_on_web(path) else KeptFailure(path)
-    with opened as file, BufferedReader(file, _BUFFER if is_on_web(path) else DEFAULT_BUFFER_SIZE) as stream:
+    # Files on the web without an index are read in pieces of 4 MB.
+    with opened as file, BufferedReader(file, 2**22 if is_on_web(path) else DEFAULT_BUFFER_SIZE) as stream:
         if is_on_web(path):
             file.prefetch([(0, min(path.stat().st_size, FETCHED))], monitor.part(0.0, 0.0))
         read = _compressed(path, header, stream, file) if header.is_compressed else _plain(path, header, stream)

@@ -24,8 +24,6 @@ from .printable import shown
 from .web_addresses import is_address, is_allowed, split_address
 from .web_file import WebFile, fetch_files, is_on_web
 
-# Bit of the header's encoding that says how GPS time is counted.
-_GPS_TIME_BIT = 1
 # Role by which a STAC item marks the assets that are its point clouds.
 _DATA_ROLE = "data"
 # How a URI of a file begins, up to the path on this computer; and the slash before a drive of Windows in it.
@@ -320,7 +318,8 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
     first = headers[0]
     if any(header.find(WAVEFORMS) or header.has_waveforms_outside for header in headers):
         monitor.warn(f"The waveforms of the {what} are not merged; their references are kept.")
-    if any((header.encoding ^ first.encoding) & _GPS_TIME_BIT for header in headers):
+    # The first bit says how GPS time is counted.
+    if any((header.encoding ^ first.encoding) & 1 for header in headers):
         monitor.warn(f"The {what} count GPS time in different ways; the values are kept as they are.")
     layout = merged_layout([header.layout for header in headers])
     scale, offset = _grid(headers, what)

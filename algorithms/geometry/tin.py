@@ -7,11 +7,12 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..criteria import ROUNDING
-from ..packages import ndimage, spatial
+from ..packages import spatial
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 from .delaunay import Triangulation, circles, triangulate
 from .grid import plan_box
+from .raster_filling import nearest_known
 from .scattered import scattered
 
 # Points that a plane needs.
@@ -230,8 +231,7 @@ class _NodeRaster:
         self._shape = (extent / self._size).astype(np.int64) + 1
         node = np.full(self._shape, -1, np.int64)
         node[tuple(self._cells(plan).T)] = np.arange(len(plan))
-        filled = ndimage.distance_transform_edt(node < 0, return_distances=False, return_indices=True)
-        self._node = node[tuple(filled)]
+        self._node = nearest_known(node, node < 0)
 
     def at(self, plan: np.ndarray) -> np.ndarray:
         """Return a node (n,) near each position (n, 2)."""

@@ -10,6 +10,7 @@ from ..cloud.asprs import PointClass
 from ..criteria import DEVIATIONS, MAJORITY
 from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
 from ..geometry.groups import least_of
+from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 from ..params import SURFACE_NOISE
 from ..rules import rules
@@ -208,8 +209,7 @@ def _bodies(
             shows_level[box] |= on_level
     if not shows_level.any():
         return is_water, None
-    nearest = ndimage.distance_transform_edt(~shows_level, return_distances=False, return_indices=True)
-    return is_water, lowest[tuple(nearest)]
+    return is_water, nearest_known(lowest, ~shows_level)
 
 
 def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Optional[np.ndarray]:
