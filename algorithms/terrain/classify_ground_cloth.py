@@ -20,12 +20,6 @@ _BORDER = 2
 # A cloth of up to this many particles is simulated however few points there are: all steps take about a minute.
 _MOST_PARTICLES = 500_000
 
-# Hanging parts of the cloth with more particles than this are let down to the ground.
-_SMALL_PART = 50
-
-# Largest step (m) between neighboring particles over which a hanging part is let down.
-_LARGEST_STEP = 0.3
-
 # Grid cells up to which particles take over the floor of one with a point as the authors' program does, link by link.
 # The search grows with the square of the distance, and no point lies near particles farther away.
 _FARTHEST_BY_LINKS = 20
@@ -230,11 +224,12 @@ def _let_down(cloth: Cloth) -> np.ndarray:
     A particle comes down if small steps of the floor lead from it to one that lies on the floor.
     """
     part, n_parts = ndimage.label(cloth.is_movable)
-    hangs = (np.bincount(part.ravel(), minlength=n_parts + 1) > _SMALL_PART)[part] & cloth.is_movable
+    # Parts of more than 50 particles are large.
+    hangs = (np.bincount(part.ravel(), minlength=n_parts + 1) > 50)[part] & cloth.is_movable
     number = np.arange(part.size).reshape(part.shape)
     links, is_held = [], np.zeros(part.size, bool)
     for first, second in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
-        smooth = np.abs(cloth.floor[first] - cloth.floor[second]) < _LARGEST_STEP
+        smooth = np.abs(cloth.floor[first] - cloth.floor[second]) < 0.3
         both = smooth & hangs[first] & hangs[second]
         links.append((number[first][both], number[second][both]))
         for one, other in ((first, second), (second, first)):

@@ -10,27 +10,13 @@ import numpy as np
 from ..geometry.tin import CORNERS, Tin
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
+from .classify_ground_tin import GROUND
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_lowest
 from .tin_densification import JoinRules, grow, offset_and_angle, surface_roughness, to_nearest_node
 
-# Share of the point spacing by which the surface may bend between points, when they join.
-_GROW_BEND = 0.5
-
-# The final sweep takes points within this many times the roughness of the finished surface.
-_SWEEP_DEVIATIONS = 6.0
-
 # Edge length below which facets are closed: at least this, m, and the point spacing.
 _MIN_EDGE = 2.0
-
-# Distance in plan over which points are mirrored: at least this, m, and the point spacing.
-_MIN_MIRROR_REACH = 1.0
-
-# Beyond a breakline the surface continues if it is less steep than this, °.
-_LEVEL = 20.0
-
-# A mirrored point joins within this share of the distance at which others join.
-_MIRROR_SHARE = 0.25
 
 
 @stage(
@@ -85,7 +71,7 @@ def classify_ground_tin_2000(
         None,
         "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
         within="[0, 100] m",
-        automatic=f"{_SWEEP_DEVIATIONS:g} times the roughness of the finished surface.",
+        automatic=f"{GROUND.sweep:g} times the roughness of the finished surface.",
         advanced=True,
     ),
     sampling: CloudSampling = MEASURED,
@@ -158,17 +144,17 @@ def classify_ground_tin_2000(
     rules = JoinRules(
         max_angle=iteration_angle,
         max_distance=iteration_distance,
-        bend=_GROW_BEND * spacing,
+        bend=GROUND.bend * spacing,
         edge_length=edge_length,
         least=least,
         estimates_angle=True,
         terrain_angle=terrain_angle,
         is_exhaustive=True,
-        beyond=partial(mirrored_angle, longest=max(_MIN_MIRROR_REACH, spacing)),
+        beyond=partial(mirrored_angle, longest=max(1.0, spacing)),
     )
     surface, distance, angle = grow(points, seeds, last, rules, monitor.part(0, 0.9))
     if sweep_distance is None:
-        sweep_distance = _SWEEP_DEVIATIONS * surface_roughness(surface.nodes, least)
+        sweep_distance = GROUND.sweep * surface_roughness(surface.nodes, least)
     monitor.resolved(iteration_distance=distance, last_angle=angle)
     monitor.resolved(edge_length=edge_length, sweep_distance=sweep_distance)
     return with_ground(classification, usable[surface.within(sweep_distance)])
@@ -208,7 +194,8 @@ def mirrored_angle(
     image = image[rows]
     other_facet = tin.locate_near(image, highest[rows])
     offset, image_angle = offset_and_angle(tin, other_facet, image, to_nearest_node(tin, other_facet, image))
-    level = (tin.slope_cosine() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
-    fits = (offset <= _MIRROR_SHARE * distance) & level[other_facet]
+    # Nearly level is less steep than 20°. A mirrored point joins within a quarter of the distance at which others join.
+    level = (tin.slope_cosine() > np.cos(np.radians(20.0))) & ~tin.is_extrapolated()
+    fits = (offset <= 0.25 * distance) & level[other_facet]
     angle[rows[fits]] = image_angle[fits]
     return angle

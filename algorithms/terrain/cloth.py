@@ -17,18 +17,6 @@ import numpy as np
 
 from ..stage import Monitor
 
-# Height (m) over the highest point from which particles fall: they touch nothing yet.
-_ABOVE = 0.05
-
-# Gravity, per square of the time step, of the authors' program.
-_GRAVITY = 0.2
-
-# Share of its speed that a particle keeps from step to step, of the authors' program.
-_KEPT_SPEED = 0.99
-
-# Greatest motion (m) in the step that ends the fall, of the authors' program.
-_AT_REST = 0.005
-
 # Share of its height difference to a neighbor that a particle moves in one pass; rigidness is the number of passes.
 _SHARE = 0.3
 
@@ -63,10 +51,6 @@ class _Front(NamedTuple):
     first_diagonal: int
     last_step: int
     diagonals: int
-
-    def without_last_step(self) -> _Front:
-        """Return the particles but for those in their last step, which are on the first diagonal."""
-        return _Front(self.phase, self.first_diagonal + _STEP_LAG, self.last_step - 1, self.diagonals - 1)
 
 
 @dataclass(frozen=True)
@@ -192,12 +176,14 @@ class Cloth:
     def __init__(self, floor: np.ndarray, rigidness: int, time_step: float, top: float | None = None) -> None:
         self.floor = floor
         both, one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
-        self._motion = _Motion(_GRAVITY * time_step**4, both, one)
+        # Gravity, per square of the time step, of the authors' program.
+        self._motion = _Motion(0.2 * time_step**4, both, one)
         self._order = _Order(*floor.shape)
         self._positions = self._order.positions()
         zero = np.zeros(self._order.size)
         self._state = _State(zero, zero.copy(), np.full(self._order.size, -np.inf), zero.copy(), zero.copy())
-        start = (floor.max() if top is None else top) + _ABOVE
+        # So high (m) they touch nothing yet.
+        start = (floor.max() if top is None else top) + 0.05
         values = {"height": start, "before": start, "floor": floor, "movable": 1.0, "draw": both}
         for name, value in values.items():
             getattr(self._state, name)[self._positions] = value
@@ -224,7 +210,8 @@ class Cloth:
             before = self._state.copy() if count > 1 else None
             part = monitor.part(done / steps, (done + count) / steps)
             motion = self._fall_level() if is_level else self._make(count, part)
-            resting = np.flatnonzero(motion < _AT_REST)
+            # The greatest motion (m) in the step that ends the fall, of the authors' program.
+            resting = np.flatnonzero(motion < 0.005)
             if len(resting):
                 count = int(resting[0]) + 1
                 if before is not None and count < len(motion):
@@ -282,14 +269,16 @@ class Cloth:
         moved = self._land(self._order.own(front)).reshape(front.diagonals, -1).max(axis=1)[::-1]
         steps = slice(front.last_step - front.diagonals + 1, front.last_step + 1)
         motion[steps] = np.maximum(motion[steps], moved)
-        falling = front.without_last_step() if front.last_step == len(motion) - 1 else front
-        if falling.diagonals:
-            self._fall(self._order.own(falling))
+        if front.last_step == len(motion) - 1:
+            front = _Front(front.phase, front.first_diagonal + _STEP_LAG, front.last_step - 1, front.diagonals - 1)
+        if front.diagonals:
+            self._fall(self._order.own(front))
 
     def _fall(self, where: slice) -> None:
         """Begin the step of the particles stored there: those that are movable fall."""
         height, before = self._state.height[where], self._state.before[where]
-        moved = (height - before) * _KEPT_SPEED - self._motion.fall
+        # The share of its speed that a particle keeps from step to step, of the authors' program.
+        moved = (height - before) * 0.99 - self._motion.fall
         before[:] = height
         height += moved * self._state.movable[where]
 

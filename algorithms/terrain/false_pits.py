@@ -19,69 +19,8 @@ from ..packages import spatial
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 
-# Least depth under the ground (m): less is grass, ruts, curbs and the scanner's own noise.
-_DEPTH = 0.45
-
-# Least depth under the ground in point spacings, if that is more: the ground bends unseen between points.
-_DEPTH_SPACINGS = 0.4
-
-# Least depth in standard deviations of the ground around, if that is more: rough ground has true hollows.
-_DEPTH_DEVIATIONS = 6.0
-
-# Above this deviation (m) the ground around is too rough to show a pit.
-_ROUGH = 0.25
-
-# A group of this many points needs no more than the least depth.
-_GROUP_POINTS = 3
-
-# Depth (m) under the ground of one or two points that are noise: shallower, they are as likely a gutter or a hollow.
-_SINGLE_DEPTH = 1.0
-
 # Nodes whose plane is the level of the ground around a suspect: enough that a group is a minority of them.
 _AROUND = 32
-
-# Rounds in which nodes far off their plane lose weight: planes change by millimeters then.
-_ROUNDS = 8
-
-# Residual (m) up to which a node has its full weight: about the noise of a scanner.
-_FULL_WEIGHT = 0.05
-
-# Extent in plan (m) of the widest group: mirrors are panes, cars and wet spots.
-_WIDEST = 3.0
-
-# Extent of the widest group in point spacings, if that is more.
-_WIDEST_SPACINGS = 3.0
-
-# Points of a group lie in cells of this side (m) that touch.
-_LINK = 0.5
-
-# Side of these cells in point spacings, if that is more.
-_LINK_SPACINGS = 1.5
-
-# Width (m) of the rim around a group that must be ground.
-_RIM = 2.0
-
-# Width of the rim in point spacings, if that is more.
-_RIM_SPACINGS = 3.0
-
-# Sectors around a group in which ground is looked for.
-_SECTORS = 8
-
-# Least number of sectors with ground: half of them, as no ground shows beyond a wall.
-_LEAST_SECTORS = 4
-
-# Largest share of the points on the rim between the heights of ground and group; more show terrain that leads down.
-_LEADS_DOWN = 0.05
-
-# Least number of points of a floor; with fewer it can't be decided whether they fill a pit.
-_FLOOR_POINTS = 6
-
-# Largest number of ground points amid a floor, as a share of its pulses: pulses see a true floor or the ground, not
-# both.
-_MIXED = 0.15
-
-# A floor may have more points than expected on its area by this many standard deviations; more are multipath points.
-_CROWDED_DEVIATIONS = 2.0
 
 
 def false_pits(
@@ -109,13 +48,15 @@ def false_pits(
     ndarray of shape (m,), int64
         Indices of the points, ascending.
     """
-    depth = max(_DEPTH, _DEPTH_SPACINGS * spacing)
+    # Less than 0.45 m is grass, ruts, curbs and the scanner's own noise, and the ground bends unseen between points.
+    depth = max(0.45, 0.4 * spacing)
     sunk, ground = _sunk(points, is_node, above, is_last, depth)
     if not len(sunk) or len(ground) < _AROUND:
         return np.empty(0, np.int64)
     level = _levels(points[ground], points[sunk], monitor)
-    limit = np.maximum(depth, _DEPTH_DEVIATIONS * level.deviation)
-    is_deep = (points[sunk, 2] < level.height - limit) & (level.deviation < _ROUGH)
+    # Rough ground has true hollows, and with a deviation of 0.25 m or more it shows no pit.
+    limit = np.maximum(depth, 6.0 * level.deviation)
+    is_deep = (points[sunk, 2] < level.height - limit) & (level.deviation < 0.25)
     if not is_deep.any():
         return np.empty(0, np.int64)
     near = _Near.around(points, is_last, sunk[is_deep], level.take(is_deep), limit[is_deep], spacing)
@@ -156,20 +97,32 @@ def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Lev
         off = ground[tree.query(positions[rows, :2], _AROUND)[1]] - positions[rows, None]
         design = np.concatenate([off[..., :2], np.ones((*off.shape[:2], 1))], axis=2)
         weight = np.ones(off.shape[:2])
-        for _ in range(_ROUNDS):
+        # After eight rounds, in which nodes far off their plane lose weight, planes change by millimeters.
+        for _ in range(8):
             # A small term on the diagonal keeps the equations of collinear nodes solvable.
             normal = np.einsum("mki,mk,mkj->mij", design, weight, design) + 1e-6 * np.eye(3)
             right = np.einsum("mki,mk,mk->mi", design, weight, off[..., 2])
             plane = np.linalg.solve(normal, right[..., None])[..., 0]
             residual = np.abs(off[..., 2] - np.einsum("mki,mi->mk", design, plane))
-            # Least sum of absolute residuals: a few nodes far off do not count for more than others.
-            weight = 1 / np.maximum(residual, _FULL_WEIGHT)
+            # Least sum of absolute residuals: a few nodes far off do not count for more than others. All have their
+            # full weight up to about the noise of a scanner (m).
+            weight = 1 / np.maximum(residual, 0.05)
         made.height[rows], made.slope[rows] = positions[rows, 2] + plane[:, 2], plane[:, :2]
         # The standard deviation of normally distributed residuals is 1.4826 times their median.
         made.deviation[rows] = 1.4826 * np.median(residual, axis=1)
 
     in_chunks(fit, np.arange(len(positions)), ROWS_AT_ONCE, monitor)
     return made
+
+
+def _widest(spacing: float) -> float:
+    """Return the extent in plan (m) of the widest group: mirrors are panes, cars and wet spots."""
+    return max(3.0, 3.0 * spacing)
+
+
+def _rim_width(spacing: float) -> float:
+    """Return the width (m) of the rim around a group that must be ground."""
+    return max(2.0, 3.0 * spacing)
 
 
 @dataclass(frozen=True)
@@ -187,7 +140,7 @@ class _Near:
         cls, xyz: np.ndarray, is_last: np.ndarray, deep: np.ndarray, level: _Levels, limit: np.ndarray, spacing: float
     ) -> _Near:
         """Return the last returns as near to the ``deep`` points as a group and its rim are."""
-        reach = max(_WIDEST, _WIDEST_SPACINGS * spacing) + max(_RIM, _RIM_SPACINGS * spacing)
+        reach = _widest(spacing) + _rim_width(spacing)
         grid = grid_over(xyz, reach)
         cells = np.unique(grid.number(xyz[deep])[:, None] + [0, *grid.around])
         rows = np.flatnonzero(find_cells(cells, grid.number(xyz))[1] & is_last)
@@ -204,7 +157,8 @@ class _Near:
     def groups(self) -> list[np.ndarray]:
         """Return the groups of points under the ground, by their positions here."""
         low = np.flatnonzero(self.height < -self.limit)
-        grid = grid_over(self.xyz[low], max(_LINK, _LINK_SPACINGS * self.spacing))
+        # Points of a group lie in cells that touch.
+        grid = grid_over(self.xyz[low], max(0.5, 1.5 * self.spacing))
         cells, which = distinct(grid.number(self.xyz[low]))
         n_groups, group = connected_cells(grid, cells)
         return [low[rows] for rows in split_groups(group[which], n_groups)]
@@ -212,29 +166,31 @@ class _Near:
     def is_false(self, group: np.ndarray) -> bool:
         """Return whether a group is small, deep enough, has ground around, and does not fill its pit."""
         plan = self.xyz[group, :2]
-        if np.ptp(plan, axis=0).max() > max(_WIDEST, _WIDEST_SPACINGS * self.spacing):
+        if np.ptp(plan, axis=0).max() > _widest(self.spacing):
             return False
-        if len(group) < _GROUP_POINTS and self.height[group].max() > -_SINGLE_DEPTH:
+        # One or two points that are less than 1 m under the ground are as likely a gutter or a hollow as noise.
+        if len(group) < 3 and self.height[group].max() > -1.0:
             return False
         rim = self._rim(group)
         is_ground = np.abs(self.height[rim]) <= self.limit[rim] / 2
         is_between = self.height[rim] < -self.limit[rim] / 2
-        if is_between.sum() > _LEADS_DOWN * is_ground.sum():
+        # More points between the heights of ground and group show terrain that leads down.
+        if is_between.sum() > 0.05 * is_ground.sum():
             return False
         x, y = (self.xyz[rim[is_ground], :2] - plan.mean(axis=0)).T
-        sectors = np.unique(np.floor(np.arctan2(y, x) / (2 * np.pi) * _SECTORS))
-        return len(sectors) >= _LEAST_SECTORS and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
+        # Half of the eight sectors around it must have ground, as none shows beyond a wall.
+        sectors = np.unique(np.floor(np.arctan2(y, x) / (2 * np.pi) * 8))
+        return len(sectors) >= 4 and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
 
     def _rim(self, group: np.ndarray) -> np.ndarray:
         """Return the positions of the points around a group's."""
-        width = max(_RIM, _RIM_SPACINGS * self.spacing)
-        found = self._tree.query_ball_point(self.xyz[group, :2], width)
+        found = self._tree.query_ball_point(self.xyz[group, :2], _rim_width(self.spacing))
         return np.setdiff1d(np.concatenate(found).astype(np.int64), group)
 
     def _is_floor(self, plan: np.ndarray, ground: np.ndarray) -> bool:
         """Return whether points (m, 2) fill the pit that they make, and points of the ground (k, 2) lie around it."""
-        # Points on a line have no hull.
-        if len(plan) < _FLOOR_POINTS or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
+        # With fewer than six it can't be decided, and points on a line have no hull.
+        if len(plan) < 6 or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
             return False
         hull = spatial.ConvexHull(plan)
         inside = (ground @ hull.equations[:, :2].T + hull.equations[:, 2] <= 0).all(axis=1)
@@ -243,11 +199,12 @@ class _Near:
         # the perimeter their area.
         step = density**-0.5
         expected = density * (hull.volume + hull.area * step / 2 + np.pi * step**2 / 4)
-        is_crowded = len(plan) > expected + _CROWDED_DEVIATIONS * np.sqrt(expected)
-        return inside.sum() <= _MIXED * min(len(plan), density * hull.volume) and not is_crowded
+        # More than by two standard deviations are multipath points. Pulses see a true floor or the ground, not both.
+        is_crowded = len(plan) > expected + 2.0 * np.sqrt(expected)
+        return inside.sum() <= 0.15 * min(len(plan), density * hull.volume) and not is_crowded
 
     def _density(self, position: np.ndarray) -> float:
         """Return the density of last returns around a position (2,), points/m², at least the cloud's."""
-        radius = max(_RIM, _RIM_SPACINGS * self.spacing)
+        radius = _rim_width(self.spacing)
         count = self._tree.query_ball_point(position, radius, return_length=True)
         return max(count / (np.pi * radius**2), self.spacing**-2)

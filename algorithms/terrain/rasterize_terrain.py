@@ -21,9 +21,6 @@ _LEAST_CELL = 0.05
 # Largest side of a cell (m): rasters begin at whole kilometers, so that larger cells would differ between clouds.
 _MOST_CELL = 1000.0
 
-# Round sizes of cells: 1, 2 or 5 times a power of ten.
-_ROUND = np.array([1.0, 2.0, 5.0, 10.0])
-
 # Gaps are filled up to this distance (cells) from the nearest cell with points.
 _GAP_CELLS = 5.0
 
@@ -134,7 +131,8 @@ def rasterize_terrain(
 def round_cell_size(size: float) -> float:
     """Return the round number nearest in proportion to a size, both in m, from 0.05 to 1000."""
     power = np.floor(np.log10(size))
-    number = _ROUND[np.argmin(np.abs(np.log(_ROUND * 10**power / size)))]
+    numbers = np.array([1.0, 2.0, 5.0, 10.0])
+    number = numbers[np.argmin(np.abs(np.log(numbers * 10**power / size)))]
     return float(np.clip(float(f"{number * 10**power:.0e}"), _LEAST_CELL, _MOST_CELL))
 
 
