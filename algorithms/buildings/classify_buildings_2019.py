@@ -19,12 +19,6 @@ from .entropy_split import MEAN_ENTROPIES, Split, split_of_whole
 # Reach of neighborhoods (m): 1.1 m for 4 m², more in sparse clouds.
 _REACH = 5.0
 
-# Means closer than this are equal; real clusters differ by 0.01 and more.
-_SAME = 1e-3
-
-# Runs of K-means, of which the best counts: the default of scikit-learn for years.
-_STARTS = 10
-
 
 @stage(
     "Buildings",
@@ -163,14 +157,15 @@ def k_means(means: np.ndarray, monitor: Monitor) -> Split:
     alike = _alike(known, monitor)
     if alike is not None:
         return alike
-    found = cluster.KMeans(n_clusters=2, n_init=_STARTS, random_state=0).fit(known[:, None])
+    found = cluster.KMeans(n_clusters=2, n_init=10, random_state=0).fit(known[:, None])
     building, other = np.sort(found.cluster_centers_.ravel())
     return Split(float(building), float(other))
 
 
 def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
     """Return the split of ascending mean entropies that can't be separated, and say so; None where they can."""
-    if len(known) >= 2 and np.ptp(known) >= _SAME:
+    # Means closer than this are equal; real clusters differ by 0.01 and more.
+    if len(known) >= 2 and np.ptp(known) >= 1e-3:
         return None
     only = "are only clusters of the same entropy"
     if len(known) < 2:

@@ -16,21 +16,9 @@ from ..stage import Monitor
 # Rings with less area (m²) are no footprints.
 NO_AREA = 0.5
 
-# Vertices nearer than this (m) to each other, or to the line between the kept ones, are superfluous.
-_CLOSE = 0.01
-
-# Fewer points than this over a footprint show no roof.
-_LEAST_POINTS = 6
-
-# A smaller share of the area of a footprint with points shows no roof.
-_LEAST_COVERED = 0.1
-
 # The ground of a building is this percentile of the elevations of ground points nearest to positions along its outline.
 # It is low, so that walls reach the ground on slopes, but not the least, which may be an error.
 GROUND_PERCENTILE = 5.0
-
-# Distance between these positions (m).
-_GROUND_STEP = 2.0
 
 # Least and greatest tolerance (m): above the courses of tiles, below the steps between parts of a roof.
 _TOLERANCES = 0.08, 0.35
@@ -84,7 +72,8 @@ def by_easting(xyz: np.ndarray) -> np.ndarray:
 
 def sound_rings(rings: list) -> list:
     """Return the rings of a footprint that have an area, in plan; none if its exterior has hardly any."""
-    plan = [simplify_ring(np.asarray(ring, float)[:, :2], _CLOSE) for ring in rings]
+    # Vertices within 1 cm of each other, or of the line between the kept ones, are superfluous.
+    plan = [simplify_ring(np.asarray(ring, float)[:, :2], 0.01) for ring in rings]
     sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
     has_area = bool(sound) and sound[0] is plan[0] and abs(signed_area(plan[0])) >= NO_AREA
     return sound if has_area else []
@@ -92,9 +81,10 @@ def sound_rings(rings: list) -> list:
 
 def shows_roof(count: int, spacing: float, rings: list) -> bool:
     """Return whether ``count`` points over a footprint, ``spacing`` m apart, show its roof."""
-    return count >= _LEAST_POINTS and count * spacing**2 >= _LEAST_COVERED * polygon_area(rings)
+    # Six points, and points on a tenth of its area.
+    return count >= 6 and count * spacing**2 >= 0.1 * polygon_area(rings)
 
 
 def ground_beside(ground: np.ndarray, tree: Any, rings: list) -> np.ndarray:
-    """Return the elevations (m) of the ground along a footprint; ``tree`` is the search tree of the ground in plan."""
-    return ground[tree.query(sampled_rings(rings[:1], _GROUND_STEP))[1], 2]
+    """Return the elevations (m) of the ground every 2 m along a footprint; ``tree`` has the ground in plan."""
+    return ground[tree.query(sampled_rings(rings[:1], 2.0))[1], 2]

@@ -21,33 +21,15 @@ from .soft_shares import LEAST_SPACING, TOLERANCE_SPACINGS, Lattice, Shares
 # them. With samples one scale apart outlines of rasters have a fifth more corners, no closer.
 _SAMPLE_SCALES = 1.5
 
-# Automatic scale: the standard deviation across straight pieces times this; stairs of 1 m deviate by 0.25 m.
-_SCALE_DEVIATIONS = 2.5
-
-# Length of these pieces: in edges, then its bounds (m). Longer pieces go around corners.
-_PIECE_EDGES, _SHORTEST, _LONGEST = 4.0, 2.0, 4.0
-
 # Largest number of rings that are measured: the rings of a country would take hours and gigabytes.
 _MEASURED = 20_000
 
 # Step (m) of the samples along which they are measured.
 _FINE = 0.1
 
-# If a polygon can't be drawn at its scale, try again at this share of it, at most this many times.
-_FINER, _TRIALS = 0.6, 8
-
 # Largest shift (scales) of all walls of a drawn polygon to restore its area; a larger one would make another polygon.
 # Where it is drawn finer more is allowed, as neighbors take or leave the strip between.
 _MOST_MOVED = 0.5
-
-# Vertices of the smallest closed ring.
-_LEAST_RING = 4
-
-# Weld edges up to this multiple of the length of an edge that has turned around.
-_LONGER = 1.01
-
-# Share of its area by which a polygon may differ in the end.
-_KEPT = 0.01
 
 # Two polygons are drawn separately if this share of the smaller one overlaps the other: it is a part or a storey, not a
 # neighbor.
@@ -160,11 +142,13 @@ def _scale(rings: list) -> float:
     """Return the scale (m) of the detail along rings that is no wall: stairs of cells, noise of points."""
     length = np.sort(np.concatenate([np.hypot(*np.diff(ring, axis=0).T) for ring in rings]))
     step = float(length[np.searchsorted(np.cumsum(length), length.sum() / 2)])
-    count = round(float(np.clip(_PIECE_EDGES * step, _SHORTEST, _LONGEST)) / _FINE)
+    # Pieces of four edges are measured, of 2 to 4 m: longer ones go around corners.
+    count = round(float(np.clip(4.0 * step, 2.0, 4.0)) / _FINE)
     long = [ring for ring in rings if perimeter(ring) >= 2 * count * _FINE]
     long = long[:: 1 + len(long) // _MEASURED]
     across = np.concatenate([np.zeros(0), *(deviations(sampled(ring, _FINE), count) for ring in long)])
-    noise = _SCALE_DEVIATIONS * float(np.median(across)) if len(across) else 0.0
+    # Stairs of 1 m deviate by 0.25 m.
+    noise = 2.5 * float(np.median(across)) if len(across) else 0.0
     return max(LEAST_SPACING, min(step, noise))
 
 
@@ -205,12 +189,12 @@ def _block(polygons: dict[int, list], directions: dict[int, np.ndarray], scale: 
     Polygons and main directions, °, go by their numbers.
     """
     finer = dict.fromkeys(polygons, 1.0)
-    for trial in range(_TRIALS):
-        monitor.progress(trial / _TRIALS)
+    for trial in range(8):
+        monitor.progress(trial / 8)
         drawn, bad = _tried(polygons, directions, scale, finer)
         if not bad:
             return drawn
-        finer.update({number: _FINER * finer[number] for number in bad})
+        finer.update({number: 0.6 * finer[number] for number in bad})
     return list(polygons.values())
 
 
@@ -233,8 +217,9 @@ def _tried(
     turned = np.zeros(1)
     # Walls that end side by side leave short edges, which may turn around where walls are moved.
     while (turned < scale).all():
-        drawn = welded(drawn, _LONGER * turned.max())
-        lost = [number for (number, _), new in zip(own, drawn) if min(map(len, new)) < _LEAST_RING]
+        drawn = welded(drawn, 1.01 * turned.max())
+        # A closed ring has four vertices at least.
+        lost = [number for (number, _), new in zip(own, drawn) if min(map(len, new)) < 4]
         if lost:
             return drawn, lost
         moved = with_areas(drawn, wanted)
@@ -243,7 +228,7 @@ def _tried(
             break
     edges = as_polygons(moved)
     one, other, shared = overlaps(edges, edges, Monitor())
-    is_bad = (turned > 0) | (np.abs(edges.area - wanted) > _KEPT * wanted)
+    is_bad = (turned > 0) | (np.abs(edges.area - wanted) > 0.01 * wanted)
     is_bad[one[np.abs(shared - np.where(one == other, edges.area[one], 0.0)) > MICROMETER]] = True
     return moved, [own[row][0] for row in np.flatnonzero(is_bad)]
 
