@@ -24,6 +24,9 @@ MICROMETER = 1e-6
 # Positions closer than this (m) are the same, as maps and files have millimeters at best.
 MILLIMETER = 1e-3
 
+# Semi-major axis (m) of the ellipsoids of WGS 84 and GRS 1980.
+EQUATORIAL_RADIUS = 6_378_137.0
+
 # Lines with a smaller sine between them, and planes with a smaller share of the greatest singular value, are parallel:
 # the position of their intersection is undetermined.
 PARALLEL = 0.05

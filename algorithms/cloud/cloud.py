@@ -20,9 +20,6 @@ from .printable import shown
 # Origins are multiples of this (m): coordinates from there keep their digits, and neighboring clouds have the same one.
 _ORIGIN_STEP = 1000.0
 
-# Scale of new clouds (units of the file): more precise than any scanner.
-_NEW_SCALE = 0.001
-
 
 class Cloud:
     """A point cloud: the records of a file, and what stages have set.
@@ -337,7 +334,7 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     crs = read_crs(header)
     coordinates = xyz / crs.factors
     header.offset = np.floor(coordinates.min(axis=0) / _ORIGIN_STEP) * _ORIGIN_STEP
-    steps = np.rint((coordinates - header.offset) / _NEW_SCALE)
+    steps = np.rint((coordinates - header.offset) / header.scale)
     if steps.max() > LARGEST_STEP:
         raise ValueError(
             f"The cloud spans {np.ptp(xyz, axis=0).max():.0f} m, more than a file of millimeters can hold."

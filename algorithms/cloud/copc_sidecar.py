@@ -13,15 +13,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import BinaryIO
 
+from .header import SIZES
 from .outputs import COPC, LAS, same_file
 
 # What the header of a view says of the program that wrote it.
 VIEW_SOFTWARE = "LiDAR Buildings view"
 # Position and size (bytes) of the project id (GUID) in the header of LAS 1.4, which holds the digest of a view.
 _DIGEST_AT, _DIGEST_SIZE = 8, 16
-# Positions (bytes) in that header of the name of the writing program and of the offsets to points and EVLRs, and the
-# size (bytes) of the header.
-_SOFTWARE_AT, _POINTS_AT, _EVLRS_AT, _HEADER_SIZE = 58, 96, 235, 375
+# Positions (bytes) in that header of the name of the writing program and of the offsets to points and EVLRs.
+_SOFTWARE_AT, _POINTS_AT, _EVLRS_AT = 58, 96, 235
 
 
 def copc_path(path: Path) -> Path:
@@ -55,8 +55,8 @@ def is_view(copc: Path, path: Path) -> bool:
     if not (copc.is_file() and path.is_file()):
         return False
     with copc.open("rb") as view, path.open("rb") as shown:
-        header = view.read(_HEADER_SIZE)
-        if len(header) < _HEADER_SIZE or not header[_SOFTWARE_AT:].startswith(VIEW_SOFTWARE.encode()):
+        header = view.read(SIZES[4])
+        if len(header) < SIZES[4] or not header[_SOFTWARE_AT:].startswith(VIEW_SOFTWARE.encode()):
             return False
         return _digest(view, shown) == header[_DIGEST_AT : _DIGEST_AT + _DIGEST_SIZE]
 

@@ -10,6 +10,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
+from ..criteria import EQUATORIAL_RADIUS
 from ..stage import Monitor
 from .authority import Authority, Definition, authority_here
 from .header import WKT_BIT, Header, Vlr
@@ -48,8 +49,8 @@ _LARGEST_DISTORTION = 1.1
 _STEP = 1e-4
 # Distance (m) of the positions that the scale is measured by from the middle, and the directions to them.
 _APART, _CROSS = 50.0, np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
-# Semi-major axis (m) and squared eccentricity of the ellipsoid of GRS 1980: all others are within 0.02 % of it.
-_AXIS, _ECCENTRICITY = 6378137.0, 0.00669438
+# Squared eccentricity of the ellipsoid of GRS 1980: all others are within 0.02 % of it.
+_ECCENTRICITY = 0.00669438
 
 # A code, and the code of the vertical system.
 _CODE = re.compile(r"[A-Za-z]{3,}:\w+(\+\d+)?")
@@ -225,7 +226,7 @@ def _on_the_ground(crs: Crs, header: Header, authority: Authority) -> Crs:
     if not np.isfinite([longitude, latitude]).all():
         return crs
     across = 1 - _ECCENTRICITY * np.sin(latitude.mean()) ** 2
-    radii = _AXIS / np.sqrt(across) * np.array([[np.cos(latitude.mean())], [(1 - _ECCENTRICITY) / across]])
+    radii = EQUATORIAL_RADIUS / np.sqrt(across) * np.array([[np.cos(latitude.mean())], [(1 - _ECCENTRICITY) / across]])
     on_ground = radii * np.array([np.unwrap(longitude), latitude]) @ _CROSS / (2 * _APART)
     high, low = 1 / np.maximum(np.linalg.svd(on_ground, compute_uv=False)[::-1], _STEP)
     is_within = area is None or area.holds(*np.degrees(radians[0]))

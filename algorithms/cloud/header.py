@@ -35,8 +35,6 @@ _FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 # Bits of the encoding: the CRS is a WKT; waveforms are in the file, in a file of their own.
 WKT_BIT = 16
 WAVEFORMS_INSIDE, WAVEFORMS_OUTSIDE = 2, 4
-# Bit of the point format of compressed records.
-_COMPRESSED = 128
 # Most bytes of the payload of a VLR.
 _LARGEST_VLR = 65_535
 # Largest coordinate of a record, in steps of the scale from the offset.
@@ -109,6 +107,7 @@ class Header:
     layout: Layout = Layout(6)
     is_compressed: bool = False
     count: int = 0
+    #: (3,): units of the file per step; those of new clouds are more precise than any scanner
     scale: np.ndarray = field(default_factory=lambda: np.full(3, 0.001))
     offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
     #: low, high, (3,): bounds in coordinates of the file
@@ -258,7 +257,7 @@ class _Reader:
             raw, _SIZES_AT
         )
         # LASzip marks compressed files in the upper two bits of the point format.
-        self.point_format, self.is_compressed = kind & 63, bool(kind & _COMPRESSED)
+        self.point_format, self.is_compressed = kind & 63, bool(kind & 128)
 
     def header(self) -> Header:
         self._check()

@@ -30,9 +30,6 @@ _LENGTHS = {
 _NAMES = {9001: "metre", 9002: "foot", 9003: "US survey foot"}
 # GeoTIFF's value "user-defined": the key holds no EPSG code.
 USER_DEFINED = 32767
-# Lengths that a unit may have (m), from a micrometer to a thousand kilometers: all others are damage.
-_SHORTEST_UNIT = 1e-6
-_LONGEST_UNIT = 1e6
 # GeoKeys: kind of the coordinates; codes of the geographic, the projected and the vertical system; the projection, by
 # code and by method.
 MODEL, _GEOGRAPHIC, PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
@@ -159,7 +156,8 @@ def _axis_units(node: _Node) -> list[float]:
 
 def _length(size: float) -> float:
     """Return meters per unit, or refuse a unit that is no length."""
-    if not _SHORTEST_UNIT <= size <= _LONGEST_UNIT:
+    # All but a micrometer to a thousand kilometers is damage.
+    if not 1e-6 <= size <= 1e6:
         raise ValueError(f"The file gives its unit of length as {size:g} m, which is damaged; assign its CRS again.")
     return size
 

@@ -22,10 +22,6 @@ _WALL_COLOR = (226, 216, 196)
 _RGB = (178, 72, 54), _WALL_COLOR, (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108), _WALL_COLOR
 COLORS = dict(zip(KINDS, _RGB))
 
-# Codes of glTF 2.0: types of numbers, and what a part of the buffer is for.
-_FLOAT, _UINT = 5126, 5125
-_VERTICES, _INDICES = 34962, 34963
-
 # Value of numbers that an object has no attribute for.
 _NO_DATA = -9999
 
@@ -134,9 +130,11 @@ class _File:
         self.data += raw
         return len(self.views) - 1
 
-    def accessor(self, values: np.ndarray, code: int, target: int) -> int:
-        """Add numbers (n,) or positions (n, 2 or 3); return the number of their accessor."""
-        made = np.ascontiguousarray(values, "<f4" if code == _FLOAT else "<u4")
+    def accessor(self, values: np.ndarray, are_indices: bool = False) -> int:
+        """Add numbers (n,) or positions (n, 2 or 3), or indices of vertices; return the number of their accessor."""
+        # Codes of glTF 2.0: the type of numbers, and what a part of the buffer is for.
+        kind, code, target = ("<u4", 5125, 34963) if are_indices else ("<f4", 5126, 34962)
+        made = np.ascontiguousarray(values, kind)
         described = {"bufferView": self.view(made.tobytes(), target), "componentType": code, "count": len(made)}
         columns = made.reshape(len(made), -1)
         ends = {"min": columns.min(axis=0).tolist(), "max": columns.max(axis=0).tolist()}
@@ -184,8 +182,8 @@ def _primitives(
         counts = len(np.unique(building[first:last])), last - first
         made.append(
             {
-                "attributes": {name: file.accessor(one, _FLOAT, _VERTICES) for name, one in attributes.items()},
-                "indices": file.accessor(np.concatenate(triangles), _UINT, _INDICES),
+                "attributes": {name: file.accessor(one) for name, one in attributes.items()},
+                "indices": file.accessor(np.concatenate(triangles), are_indices=True),
                 "material": material,
                 "extensions": {
                     "EXT_mesh_features": {"featureIds": [_features(n, one) for one, n in enumerate(counts)]}

@@ -10,13 +10,14 @@ from urllib.parse import quote
 
 import numpy as np
 
+from ..criteria import EQUATORIAL_RADIUS
 from ..models3d.solids import ROOF
 from ..stage import MapFrame, Piece
 from .exported_models import ExportedModel
 from .gltf import glb
 
-# Semiaxes (m) of the ellipsoid WGS 84.
-_EQUATORIAL, _POLAR = 6_378_137.0, 6_356_752.314245
+# Semi-minor axis (m) of the ellipsoid WGS 84.
+_POLAR_RADIUS = 6_356_752.314245
 
 
 def ellipsoid_positions(degrees: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -31,7 +32,7 @@ def ellipsoid_positions(degrees: np.ndarray, height: np.ndarray) -> np.ndarray:
     """
     longitude, latitude = np.radians(degrees).T
     up = _up(longitude, latitude)
-    surface = up * np.array([_EQUATORIAL**2, _EQUATORIAL**2, _POLAR**2])
+    surface = up * np.array([EQUATORIAL_RADIUS, EQUATORIAL_RADIUS, _POLAR_RADIUS]) ** 2
     return surface / np.sqrt((surface * up).sum(axis=1))[:, None] + height[:, None] * up
 
 

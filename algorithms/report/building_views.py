@@ -6,7 +6,7 @@ import html
 
 import numpy as np
 
-from ..geometry.grid import fixed_grid_over
+from ..geometry.grid import fixed_grid_over, plan_box
 from .page import position, svg_image
 
 # Largest width and height of a view, pixels.
@@ -51,8 +51,7 @@ class Views:
 
 def boxes_around(geometries: list) -> np.ndarray:
     """Return the boxes (k, 2, 2), m, that the views of some buildings (rings of each, m) show."""
-    outer = [np.asarray(rings[0])[:, :2] for rings in geometries]
-    boxes = [(ring.min(axis=0) - _AROUND, ring.max(axis=0) + _AROUND) for ring in outer]
+    boxes = [plan_box(np.asarray(rings[0])) + [[-_AROUND], [_AROUND]] for rings in geometries]
     return np.array(boxes).reshape(-1, 2, 2)
 
 
@@ -87,7 +86,7 @@ def draw_sections(xyz: np.ndarray, kind: np.ndarray, ring: np.ndarray, colors: n
     east, north = sides[np.argmax(np.hypot(*sides.T))]
     axes = np.array([[east, -north], [north, east]]) / np.hypot(east, north)
     turned, corners = xyz[:, :2] @ axes, ring @ axes
-    ends = np.array([corners.min(axis=0), corners.max(axis=0)])
+    ends = plan_box(corners)
     lines, sections = [(ring, "#222")], []
     for axis, color in enumerate(_CUTS if len(xyz) else ()):
         cut = np.repeat([ends.mean(axis=0)], 2, axis=0)

@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..geometry.grid import plan_box
 from .hillshade import draw_hillshade
 from .page import draw_legend, position
 
@@ -31,9 +32,8 @@ def draw_polygons(
     """
     if not geometries:
         return ""
-    corners = np.concatenate([np.asarray(rings[0])[:, :2] for rings in geometries])
-    extent = corners if xyz is None else np.concatenate([corners, xyz[:, :2]])
-    low, high = extent.min(axis=0), extent.max(axis=0)
+    corners = [np.asarray(rings[0])[:, :2] for rings in geometries]
+    low, high = plan_box(np.concatenate(corners if xyz is None else [*corners, xyz[:, :2]]))
     size = np.maximum(high - low, 1e-3)
     # Width of the map and its greatest height, in units of the picture.
     scale = min(720.0 / size[0], 900.0 / size[1])
