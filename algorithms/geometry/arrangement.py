@@ -148,7 +148,7 @@ class Arrangement:
 
     def cells_at(self, sides: np.ndarray) -> np.ndarray:
         """Return the cell (n,) of points that lie on these ``sides`` (n, m) of the lines, -1 if unassigned."""
-        wanted = keys_of(sides)
+        wanted = sides @ _numbers(sides.shape[1])
         cell = np.minimum(np.searchsorted(self._keys, wanted), self.count - 1)
         # By rounding, a point may lie in a cell too small to be kept.
         return np.where(self._keys[cell] == wanted, cell, -1)
@@ -183,13 +183,8 @@ def sides_of(xy: np.ndarray, points: np.ndarray, directions: np.ndarray) -> np.n
     return xy @ normals.T > np.einsum("ij,ij->i", points, normals)
 
 
-def keys_of(sides: np.ndarray) -> np.ndarray:
-    """Return the sides of lines (n, m), bool, as one number each: a sum of random ones, which no two cells share."""
-    return sides @ _numbers(sides.shape[1])
-
-
 def _numbers(m: int) -> np.ndarray:
-    """Return a random number (m,) for each line."""
+    """Return a random number (m,) for each line: no two cells share the sum of those to whose left they lie."""
     return np.random.default_rng(0).integers(1, 2**62, m)
 
 

@@ -32,8 +32,9 @@ class RingPieces:
 
     def __init__(self, samples: np.ndarray) -> None:
         step = float(np.hypot(*(samples[1] - samples[0])))
-        #: By the length of pieces: step of the directions (n,) below each one's, share (n,) of the one above, weight.
-        self._of_length: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+        #: By the length of pieces: step of the directions (n,) below each one's, share (n,) of the one above, weight;
+        #: only lengths (samples) that the ring is long enough for.
+        self.of_length: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         for length in _LENGTHS:
             if 2 * length <= len(samples):
                 angle, across = _pieces(samples, length)
@@ -42,18 +43,14 @@ class RingPieces:
                 # Long walls count more than their length: by its power of 1.5. The weight falls where the standard
                 # deviation across is more than a quarter of a sample, as such a piece is bent.
                 weight = length**0.5 * np.exp(-((across / (0.25 * step)) ** 2) / 2)
-                self._of_length[length] = low, position - low, weight
-
-    def has(self, length: int) -> bool:
-        """Return whether the ring is long enough for pieces of a length (samples)."""
-        return length in self._of_length
+                self.of_length[length] = low, position - low, weight
 
     def counted(self, length: int, counts: Optional[np.ndarray]) -> np.ndarray:
         """Return the sums (180,) of the weights of pieces by direction, each shared between the two steps around it.
 
         ``counts`` (n,) are factors of the weights of the pieces around each sample.
         """
-        low, share, weight = self._of_length[length]
+        low, share, weight = self.of_length[length]
         if counts is not None:
             weight = weight * np.roll(counts, -(length // 2))
         numbers = np.concatenate([low % N_STEPS, (low + 1) % N_STEPS])
@@ -80,7 +77,7 @@ def weights_of_pieces(rings: list[RingPieces], counts: list[Optional[np.ndarray]
     """Return weights as :func:`direction_weights` for some rings (r, 180), each with its ``counts``."""
     weights = np.zeros((len(rings), N_STEPS))
     for length in _LENGTHS:
-        rows = [row for row, ring in enumerate(rings) if ring.has(length)]
+        rows = [row for row, ring in enumerate(rings) if length in ring.of_length]
         if rows:
             counted = np.array([rings[row].counted(length, counts[row]) for row in rows])
             # Standard deviation (°) of the direction of a piece, half a sample across: 28.6° of one sample.

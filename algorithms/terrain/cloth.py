@@ -9,7 +9,7 @@ So the next steps start in the first rows long before a step has come to the las
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -144,17 +144,7 @@ class _State:
 
     def copy(self) -> _State:
         """Return a copy, but for the floor, which doesn't change."""
-        arrays = {field.name: getattr(self, field.name) for field in fields(self)}
-        return _State(**{name: array if name == "floor" else array.copy() for name, array in arrays.items()})
-
-
-@dataclass(frozen=True)
-class _Motion:
-    """How particles move: fall (m) per step and step, and shares of a difference that both or only one of two move."""
-
-    fall: float
-    both: float
-    one: float
+        return replace(self, **{name: getattr(self, name).copy() for name in ("height", "before", "movable", "draw")})
 
 
 class Cloth:
@@ -175,9 +165,10 @@ class Cloth:
 
     def __init__(self, floor: np.ndarray, rigidness: int, time_step: float, top: float | None = None) -> None:
         self.floor = floor
-        both, one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
-        # Gravity, per square of the time step, of the authors' program.
-        self._motion = _Motion(0.2 * time_step**4, both, one)
+        # Shares of a difference that both of two particles move, or the only movable one.
+        both, self._one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
+        # The fall (m) per step and step, by the gravity of the authors' program per square of the time step.
+        self._gravity = 0.2 * time_step**4
         self._order = _Order(*floor.shape)
         self._positions = self._order.positions()
         zero = np.zeros(self._order.size)
@@ -278,7 +269,7 @@ class Cloth:
         """Begin the step of the particles stored there: those that are movable fall."""
         height, before = self._state.height[where], self._state.before[where]
         # The share of its speed that a particle keeps from step to step, of the authors' program.
-        moved = (height - before) * 0.99 - self._motion.fall
+        moved = (height - before) * 0.99 - self._gravity
         before[:] = height
         height += moved * self._state.movable[where]
 
@@ -290,5 +281,5 @@ class Cloth:
         is_below = height < floor
         np.copyto(height, floor, where=is_below)
         np.copyto(movable, 0.0, where=is_below)
-        np.copyto(state.draw[where], self._motion.one, where=is_below)
+        np.copyto(state.draw[where], self._one, where=is_below)
         return moved

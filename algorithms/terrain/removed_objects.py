@@ -124,7 +124,7 @@ class ObjectRemoval:
         sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
         for group in (objects & ~is_large, is_large):
             region, count = ndimage.label(group)
-            is_terrain = _region_edges(region, count, objects, sides).join_terrain()
+            is_terrain = _joining_terrain(region, count, objects, sides)
             objects &= ~is_terrain[region] | self.is_free_standing
         return objects
 
@@ -150,14 +150,8 @@ class ObjectRemoval:
         return filled_by_means(self.surface, objects, self.is_nearly_empty)
 
 
-@dataclass(frozen=True)
-class _Side:
-    """The cells of a surface and those next to them on one side."""
-
-    #: here, beside: Slices of the cells and of their neighbors on this side
-    here: tuple[slice, ...]
-    beside: tuple[slice, ...]
-    joins: np.ndarray  #: (of the shape selected), bool: whether a cell joins the one next to it without a step
+# Slices of the cells of a surface and of their neighbors on one side, and which cells join these without a step.
+_Side = tuple[tuple[slice, ...], tuple[slice, ...], np.ndarray]
 
 
 def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
@@ -174,32 +168,23 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
         highest_bank = np.minimum(
             np.maximum(fall, fall_beyond) + REMOVAL.join_slope * bank, REMOVAL.steepest_bank * bank
         )
-        yield _Side(here, beside, (step < allowed[here]) | (step < highest_bank))
+        yield here, beside, (step < allowed[here]) | (step < highest_bank)
 
 
-@dataclass(frozen=True)
-class _RegionEdges:
-    """The edges of regions (r,), in cells; the first are the cells of no region."""
+def _joining_terrain(region: np.ndarray, count: int, objects: np.ndarray, sides: Iterable[_Side]) -> np.ndarray:
+    """Return the mask (count + 1,) of regions, numbered from 1, that join the terrain on enough of their edge.
 
-    open: np.ndarray  #: (r,), int64: cells along its edge that have no other object next to them, one for each side
-    joined: np.ndarray  #: (r,), int64: those that join the terrain
-
-    def join_terrain(self) -> np.ndarray:
-        """Return the mask of regions that join the terrain on enough of their edge."""
-        is_terrain = self.joined >= FREE.most * np.maximum(self.open, 1)
-        is_terrain[0] = False
-        return is_terrain
-
-
-def _region_edges(region: np.ndarray, count: int, objects: np.ndarray, sides: Iterable[_Side]) -> _RegionEdges:
-    """Return the edges of regions, numbered from 1 to ``count``, among all objects."""
-    counts = np.zeros((2, count + 1), np.int64)
-    for side in sides:
-        own = region[side.here]
-        at_open_edge = (own > 0) & (region[side.beside] != own) & ~objects[side.beside]
-        kinds = (at_open_edge, at_open_edge & side.joins)
-        counts += [np.bincount(own[cells], minlength=count + 1) for cells in kinds]
-    return _RegionEdges(*counts)
+    Counted are the cells along it that have none of the ``objects`` next to them, one for each side.
+    """
+    at_edge, joined = np.zeros((2, count + 1), np.int64)
+    for here, beside, joins in sides:
+        own = region[here]
+        is_open = (own > 0) & (region[beside] != own) & ~objects[beside]
+        at_edge += np.bincount(own[is_open], minlength=count + 1)
+        joined += np.bincount(own[is_open & joins], minlength=count + 1)
+    is_terrain = joined >= FREE.most * np.maximum(at_edge, 1)
+    is_terrain[0] = False
+    return is_terrain
 
 
 def _windows(largest: float) -> list[int]:
