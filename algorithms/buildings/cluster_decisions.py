@@ -80,7 +80,8 @@ def written_to_points(
     report : Report
         Returned last.
     """
-    confidence = _supported(decisions.confidence, entropies.sizes / smallest)
+    sure = 0.5 + (decisions.confidence - 0.5) * support(entropies.sizes / smallest)
+    confidence = np.where(decisions.is_building, sure, decisions.confidence)
     rows, position = entropies.rows, entropies.position
     classes, why = _without_buildings(classification, reason)
     classes[rows[decisions.is_building[position]]] = PointClass.BUILDING
@@ -95,12 +96,8 @@ def no_clusters(classification: np.ndarray, reason: Optional[np.ndarray], monito
     monitor.none_found("There are no clusters, so no buildings were found.")
     classes, why = _without_buildings(classification, reason)
     undefined = (np.full(len(classes), np.nan, np.float32) for _ in range(3))
-    return classes, *undefined, why, np.zeros(len(classes), np.uint32), build_report(Clusters.none())
-
-
-def _supported(confidence: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Return the confidence (m,) of clusters with ``size`` times the points of the smallest building."""
-    return np.where(confidence > 0.5, 0.5 + (confidence - 0.5) * support(size), confidence)
+    report = build_report(Clusters(np.zeros(0), np.zeros(0, np.uint8), Split(np.nan, np.nan)))
+    return classes, *undefined, why, np.zeros(len(classes), np.uint32), report
 
 
 def support(size: np.ndarray) -> np.ndarray:

@@ -36,11 +36,6 @@ class Clusters:
     penetration: Optional[np.ndarray] = None
     max_penetration: Optional[float] = None
 
-    @classmethod
-    def none(cls) -> Clusters:
-        """Return the report of a cloud without clusters."""
-        return cls(np.zeros(0), np.zeros(0, np.uint8), Split(np.nan, np.nan))
-
 
 def build_report(clusters: Clusters) -> Report:
     """Return counts, means and page of a decision."""

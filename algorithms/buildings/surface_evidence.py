@@ -52,11 +52,6 @@ def decide_in_images(
     return Decisions(confidence, reasons, share, min_share)
 
 
-def are_large(evidence: ClusterEvidence) -> np.ndarray:
-    """Return the mask of clusters (m,) that are larger than most smooth parts of crowns."""
-    return evidence.areas >= _LARGE * evidence.min_area
-
-
 def without_green(decided: Decisions, is_green: np.ndarray) -> Decisions:
     """Refuse buildings (m,) that are as green as plants, where no returns distinguish leaves from roofs."""
     refused = decided.is_building & is_green
@@ -86,7 +81,8 @@ def green_clusters(
         return nothing, None
     values = greenness(red, green, blue)
     in_cluster = group >= 0
-    rough, large = (in_cluster & np.append(of, False)[group] for of in (~is_surface, is_surface & are_large(evidence)))
+    is_large = is_surface & (evidence.areas >= _LARGE * evidence.min_area)
+    rough, large = (in_cluster & np.append(of, False)[group] for of in (~is_surface, is_large))
     least = greenness_between(values[rough], values[large])
     if least is None:
         return nothing, None
