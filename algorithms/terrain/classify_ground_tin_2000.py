@@ -10,13 +10,16 @@ import numpy as np
 from ..geometry.tin import CORNERS, Tin
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
-from .classify_ground_tin import GROUND
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_lowest
 from .tin_densification import JoinRules, grow, offset_and_angle, surface_roughness, to_nearest_node
 
 # Edge length below which facets are closed: at least this, m, and the point spacing.
 _MIN_EDGE = 2.0
+
+# Share of the point spacing by which the surface may bend between points, when they join; and the roughnesses of the
+# finished surface within which the final sweep takes points. The ground filter of this project has its own.
+_BEND, _SWEEP = 0.5, 6.0
 
 
 @stage(
@@ -71,7 +74,7 @@ def classify_ground_tin_2000(
         None,
         "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
         within="[0, 100] m",
-        automatic=f"{GROUND.sweep:g} times the roughness of the finished surface.",
+        automatic=f"{_SWEEP:g} times the roughness of the finished surface.",
         advanced=True,
     ),
     sampling: CloudSampling = MEASURED,
@@ -144,7 +147,7 @@ def classify_ground_tin_2000(
     rules = JoinRules(
         max_angle=iteration_angle,
         max_distance=iteration_distance,
-        bend=GROUND.bend * spacing,
+        bend=_BEND * spacing,
         edge_length=edge_length,
         least=least,
         estimates_angle=True,
@@ -154,7 +157,7 @@ def classify_ground_tin_2000(
     )
     surface, distance, angle = grow(points, seeds, last, rules, monitor.part(0, 0.9))
     if sweep_distance is None:
-        sweep_distance = GROUND.sweep * surface_roughness(surface.nodes, least)
+        sweep_distance = _SWEEP * surface_roughness(surface.nodes, least)
     monitor.resolved(iteration_distance=distance, last_angle=angle)
     monitor.resolved(edge_length=edge_length, sweep_distance=sweep_distance)
     return with_ground(classification, usable[surface.within(sweep_distance)])

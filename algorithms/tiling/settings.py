@@ -58,8 +58,8 @@ SETTINGS = by_name(
             "BLOCK_SIDE",
             "Side of a block (m, empty = automatic)",
             "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
-            "the largest multiple of 50 m, from 100 to 1600 m, at which a block and the margin read around it hold at "
-            "most 5.3 million points. In dense clouds a multiple of 10 m, at least 1.25 times the margin.",
+            "the largest multiple of 10 m, from 100 to 1600 m, at which a block and the margin read around it hold at "
+            "most 5.3 million points. In dense clouds it is at least 1.25 times the margin, at most 100 m.",
         ),
         Setting(
             "PROCESSES",

@@ -37,8 +37,8 @@ class TilesOptions:
 
     #: Processes of this machine, by default one for each core
     workers: Workers = Workers()
-    #: Side of a block, m; None is the largest multiple of 50 m from 100 to 1600 m with room for its points, of 10 m
-    #: where none has
+    #: Side of a block, m; None is the largest multiple of 10 m with room for its points, from 100 to 1600 m, or less
+    #: where none has room
     block_side: Optional[float] = None
     #: Points of the largest file that is read as it is: of a larger one too much is read again for each of its blocks
     largest_file: int = 25_000_000

@@ -35,8 +35,8 @@ _EXPECTED = 0.6
 # Additional cost of a meter of any wall.
 _ANY = 0.05
 
-# Cost of a corner.
-_CORNER_COST = 0.6
+# Cost of a corner, and additional cost of one that is not square within 2°: few houses have such corners.
+_CORNER_COST, _SKEW_COST = 0.6, 1.5
 
 
 class OutlineCells:
@@ -56,6 +56,9 @@ class OutlineCells:
         self.edges = self.arrangement.edges
         self.cost = _edge_costs(self.arrangement, lines, self.near, scale)
         self.if_inside, self.if_outside = _cell_costs(self.arrangement, cover, overhang)
+        u, v = (directions[self.arrangement.crossing[:, i]] for i in (0, 1))
+        is_skew = np.abs(np.einsum("ij,ij->i", u, v)) > np.sin(np.deg2rad(2.0))
+        self.corner_cost = _CORNER_COST + _SKEW_COST * is_skew
 
     def is_cut(self, inside: np.ndarray) -> np.ndarray:
         """Return the mask of edges (e,) along which an outline runs."""
@@ -64,7 +67,7 @@ class OutlineCells:
     def total(self, inside: np.ndarray) -> float:
         """Return the cost of an outline."""
         area = self.if_inside[inside].sum() + self.if_outside[~inside].sum()
-        return float(self.cost[self.is_cut(inside)].sum() + area + _CORNER_COST * self.corners(inside).sum())
+        return float(self.cost[self.is_cut(inside)].sum() + area + self.corners(inside) @ self.corner_cost)
 
     def corners(self, inside: np.ndarray) -> np.ndarray:
         """Return the number of corners (crossings,) of an outline at each crossing."""

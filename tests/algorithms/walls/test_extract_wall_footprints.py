@@ -14,6 +14,7 @@ from lidar_buildings.algorithms.walls.wall_outline import _through_few
 from lidar_buildings.tests.builders import is_inside
 from lidar_buildings.tests.monitors import Listening
 from lidar_buildings.tests.polygon_validity import assert_valid
+from lidar_buildings.tests.villages import corner_distances, mapped, village
 
 OVERHANG = 0.5
 
@@ -146,6 +147,17 @@ def test_points_in_one_position_show_no_wall(rng):
     assert _through_few(expected, 5.0, bush, Scale(0.1, 0.5)) is expected
     few = np.column_stack([np.linspace(-4, 4, 5), np.full(5, 0.2)])
     assert _through_few(expected, 5.0, few, Scale(0.1, 0.5)).point[1] == pytest.approx(0.2)
+
+
+def test_corners_that_are_not_square_are_made_for_a_reason():
+    """Where walls are thin, an oblique line through noise would save a corner or two, and cost a house its shape."""
+    arrays, true, old_map = village(density=25.0, noise=0.04, seed=102, size=90.0)
+    cloud = mapped(arrays, old_map).cloud
+    names = ("xyz", "cluster_id", "wall_of", "classification")
+    made = extract_wall_footprints(**{name: cloud.get(name) for name in names})[0]
+    distances, _ = corner_distances(made, true)
+    assert len(distances) == len(true)
+    assert np.concatenate(distances).mean() < 0.09
 
 
 def test_right_angles_are_right_and_others_are_kept(rng):
