@@ -16,11 +16,34 @@ from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import split_groups
 from ..geometry.tin import node_fits
 from ..packages import spatial
+from ..rules import rule, rules
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 
 # Nodes whose plane is the level of the ground around a suspect: enough that a group is a minority of them.
 _AROUND = 32
+
+
+@rules
+class _RULES:
+    """What distinguishes a group of multipath points from a true pit."""
+
+    depth: float = rule(0.45, "m", "physics: less is grass, ruts, curbs and the scanner's own noise")
+    depth_spacings: float = rule(0.4, "point spacings", "the ground bends unseen between points")
+    depth_deviations: float = rule(6.0, "standard deviations of the ground", "rough ground has true hollows")
+    rough: float = rule(0.25, "m", "ground that deviates by more is too rough to show a pit")
+    group: int = rule(3, "points", "of them that need no more than the least depth")
+    single_depth: float = rule(1.0, "m", "physics: fewer points, less deep, are as likely a gutter or a hollow")
+    widest: float = rule(3.0, "m, and point spacings", "physics: mirrors are panes, cars and wet spots")
+    link: float = rule(0.5, "m", "points of a group lie in cells of this side that touch")
+    link_spacings: float = rule(1.5, "point spacings", "the same, where points are farther apart")
+    rim: float = rule(2.0, "m", "width of the rim around a group that must be ground")
+    rim_spacings: float = rule(3.0, "point spacings", "the same, where points are farther apart")
+    sectors: int = rule(4, "of eight around a group", "that have ground: none shows beyond a wall")
+    leads_down: float = rule(0.05, "share of the rim's ground", "more points between both show terrain that leads down")
+    floor: int = rule(6, "points", "with fewer it can't be decided whether they fill a pit")
+    mixed: float = rule(0.15, "share of a floor's pulses", "that see ground: pulses see a true floor or the ground")
+    crowded: float = rule(2.0, "standard deviations", "more points than its area has are no floor")
 
 
 def false_pits(
@@ -48,15 +71,13 @@ def false_pits(
     ndarray of shape (m,), int64
         Indices of the points, ascending.
     """
-    # Less than 0.45 m is grass, ruts, curbs and the scanner's own noise, and the ground bends unseen between points.
-    depth = max(0.45, 0.4 * spacing)
+    depth = max(_RULES.depth, _RULES.depth_spacings * spacing)
     sunk, ground = _sunk(points, is_node, above, is_last, depth)
     if not len(sunk) or len(ground) < _AROUND:
         return np.empty(0, np.int64)
     level = _levels(points[ground], points[sunk], monitor)
-    # Rough ground has true hollows, and with a deviation of 0.25 m or more it shows no pit.
-    limit = np.maximum(depth, 6.0 * level.deviation)
-    is_deep = (points[sunk, 2] < level.height - limit) & (level.deviation < 0.25)
+    limit = np.maximum(depth, _RULES.depth_deviations * level.deviation)
+    is_deep = (points[sunk, 2] < level.height - limit) & (level.deviation < _RULES.rough)
     if not is_deep.any():
         return np.empty(0, np.int64)
     near = _Near.around(points, is_last, sunk[is_deep], level.take(is_deep), limit[is_deep], spacing)
@@ -116,13 +137,13 @@ def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Lev
 
 
 def _widest(spacing: float) -> float:
-    """Return the extent in plan (m) of the widest group: mirrors are panes, cars and wet spots."""
-    return max(3.0, 3.0 * spacing)
+    """Return the extent in plan (m) of the widest group."""
+    return _RULES.widest * max(1.0, spacing)
 
 
 def _rim_width(spacing: float) -> float:
     """Return the width (m) of the rim around a group that must be ground."""
-    return max(2.0, 3.0 * spacing)
+    return max(_RULES.rim, _RULES.rim_spacings * spacing)
 
 
 @dataclass(frozen=True)
@@ -157,8 +178,7 @@ class _Near:
     def groups(self) -> list[np.ndarray]:
         """Return the groups of points under the ground, by their positions here."""
         low = np.flatnonzero(self.height < -self.limit)
-        # Points of a group lie in cells that touch.
-        grid = grid_over(self.xyz[low], max(0.5, 1.5 * self.spacing))
+        grid = grid_over(self.xyz[low], max(_RULES.link, _RULES.link_spacings * self.spacing))
         cells, which = distinct(grid.number(self.xyz[low]))
         n_groups, group = connected_cells(grid, cells)
         return [low[rows] for rows in split_groups(group[which], n_groups)]
@@ -168,19 +188,16 @@ class _Near:
         plan = self.xyz[group, :2]
         if np.ptp(plan, axis=0).max() > _widest(self.spacing):
             return False
-        # One or two points that are less than 1 m under the ground are as likely a gutter or a hollow as noise.
-        if len(group) < 3 and self.height[group].max() > -1.0:
+        if len(group) < _RULES.group and self.height[group].max() > -_RULES.single_depth:
             return False
         rim = self._rim(group)
         is_ground = np.abs(self.height[rim]) <= self.limit[rim] / 2
         is_between = self.height[rim] < -self.limit[rim] / 2
-        # More points between the heights of ground and group show terrain that leads down.
-        if is_between.sum() > 0.05 * is_ground.sum():
+        if is_between.sum() > _RULES.leads_down * is_ground.sum():
             return False
         x, y = (self.xyz[rim[is_ground], :2] - plan.mean(axis=0)).T
-        # Half of the eight sectors around it must have ground, as none shows beyond a wall.
         sectors = np.unique(np.floor(np.arctan2(y, x) / (2 * np.pi) * 8))
-        return len(sectors) >= 4 and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
+        return len(sectors) >= _RULES.sectors and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
 
     def _rim(self, group: np.ndarray) -> np.ndarray:
         """Return the positions of the points around a group's."""
@@ -189,8 +206,8 @@ class _Near:
 
     def _is_floor(self, plan: np.ndarray, ground: np.ndarray) -> bool:
         """Return whether points (m, 2) fill the pit that they make, and points of the ground (k, 2) lie around it."""
-        # With fewer than six it can't be decided, and points on a line have no hull.
-        if len(plan) < 6 or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
+        # Points on a line have no hull.
+        if len(plan) < _RULES.floor or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
             return False
         hull = spatial.ConvexHull(plan)
         inside = (ground @ hull.equations[:, :2].T + hull.equations[:, 2] <= 0).all(axis=1)
@@ -199,9 +216,8 @@ class _Near:
         # the perimeter their area.
         step = density**-0.5
         expected = density * (hull.volume + hull.area * step / 2 + np.pi * step**2 / 4)
-        # More than by two standard deviations are multipath points. Pulses see a true floor or the ground, not both.
-        is_crowded = len(plan) > expected + 2.0 * np.sqrt(expected)
-        return inside.sum() <= 0.15 * min(len(plan), density * hull.volume) and not is_crowded
+        is_crowded = len(plan) > expected + _RULES.crowded * np.sqrt(expected)
+        return inside.sum() <= _RULES.mixed * min(len(plan), density * hull.volume) and not is_crowded
 
     def _density(self, position: np.ndarray) -> float:
         """Return the density of last returns around a position (2,), points/m², at least the cloud's."""
