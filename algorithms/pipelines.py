@@ -64,7 +64,7 @@ _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
     "source": ("ground", "roofs", "buildings", "complete", "refine"),
 }
 
-# Distances of the corners of walls from those of an old map.
+# Comparison of the corners of walls with the corners of an old map.
 _COMPARISON = Step(
     "comparison", "compare_corners", layers={"footprints": "footprints.wall_footprints"}, only_with=("old_map",)
 )

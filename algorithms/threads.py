@@ -33,7 +33,7 @@ _ASSIGNED: list[int] = []
 
 
 def n_threads() -> int:
-    """Return how many threads work at once: one for each core that this process may use, at most 32."""
+    """Return the number of threads to work with: one for each core that this process may use, at most 32."""
     if _ASSIGNED:
         return _ASSIGNED[-1]
     # Where batch systems and containers give a process some of the cores, only Linux shows which.
@@ -44,7 +44,7 @@ def n_threads() -> int:
 
 
 def searchers(count: int) -> int:
-    """Return how many threads search the neighbors of ``count`` positions: no more than are worth starting."""
+    """Return the number of threads for a search of the neighbors of ``count`` positions: few positions take one."""
     # Starting a thread takes as long as the search of a few hundred positions.
     return max(1, min(n_threads(), count // 5_000))
 

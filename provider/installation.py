@@ -45,7 +45,7 @@ _OPTIONAL = ("laszip", "distributed")
 
 
 def installation_text() -> str:
-    """Return versions and folders, one a line, and what is missing."""
+    """Return versions and folders, one a line, and the missing packages."""
     lines = [
         f"{SOFTWARE} {plugin_version()}",
         f"QGIS {Qgis.version()}",

@@ -141,7 +141,7 @@ def _is_wanted(iface: Any, parameters: dict[str, Any]) -> bool:
 
 
 def _size_of_view(parameters: dict[str, Any]) -> Optional[Size]:
-    """Return how much of the cloud on the web lies in the view, None of one on this computer."""
+    """Return the size of the part of a cloud on the web that lies in the view; None for a cloud on this computer."""
     algorithm, context = QgsApplication.processingRegistry().createAlgorithmById(DETECT), QgsProcessingContext()
     context.setProject(QgsProject.instance())
     given = Given(algorithm, parameters, context)

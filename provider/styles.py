@@ -278,7 +278,7 @@ def put_below(layer: QgsMapLayer, context: QgsProcessingContext) -> None:
 
 
 def _height_of(node: QgsLayerTreeNode) -> int:
-    """Return how far up in the tree a layer belongs; groups hold the polygons of a run."""
+    """Return the rank of a layer in the tree, from the bottom; groups hold the polygons of a run."""
     layer = node.layer() if isinstance(node, QgsLayerTreeLayer) else None
     return next((i for i, kind in enumerate(_BELOW) if isinstance(layer, kind)), len(_BELOW))
 

@@ -33,7 +33,7 @@ class Layout:
     extras: tuple[ExtraField, ...] = ()
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what another process needs; it imports laspy and makes the cached objects of laspy again."""
+        """Return the state to pickle: without the cached objects of laspy, which the other process makes again."""
         return {"point_format": self.point_format, "extras": self.extras}
 
     @cached_property

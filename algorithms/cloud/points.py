@@ -222,7 +222,7 @@ def has_octree(path: Path, header: Header) -> bool:
 
 
 def size_within(path: Path, header: Header, box: Optional[np.ndarray]) -> tuple[int, int]:
-    """Return how many points and bytes of a file are read for those in a box (2, 2) in plan, None for all.
+    """Return the numbers of points and bytes of a file that are read for a box (2, 2) in plan, None for all.
 
     Of an octree, only nodes that the spacing of the header needs count.
     """

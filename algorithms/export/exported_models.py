@@ -141,7 +141,7 @@ def _model(name: str, levels: dict[str, list[Face]], rise: float) -> ExportedMod
 
 
 def kind_by_slope(ring: np.ndarray) -> str:
-    """Return whether a face with this exterior (k, 3), counterclockwise from outside, is a wall, roof or ground."""
+    """Return the kind of a face by its exterior ring (k, 3), counterclockwise from outside: wall, roof or ground."""
     normal = area_vector(ring)
     # Of the unit normal, less than this is vertical: slopes over 80° are walls.
     if abs(normal[2]) < 0.17 * np.linalg.norm(normal):

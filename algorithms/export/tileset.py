@@ -138,7 +138,7 @@ def _levels(models: Sequence[ExportedModel], boxes: np.ndarray, name: str, site:
 
 
 def _error(model: ExportedModel, level: str) -> float:
-    """Return how far (m) corners of the best roof lie above or below the nearest corner height of a level."""
+    """Return the greatest height (m) between corners of the best roof and the nearest corner of a coarser level."""
     best, coarse = (np.unique(_roof_heights(faces)) for faces in (model.best, model.at(level)))
     if not len(best) or not len(coarse):
         return 0.0

@@ -285,7 +285,7 @@ def _asked_for(
 
 
 def _has_area(plan: np.ndarray) -> bool:
-    """Return whether points (n, 2) are a millimeter wide at least."""
+    """Return whether points (n, 2) span an area: they are a millimeter wide at least."""
     return len(plan) > 2 and bool(np.linalg.eigvalsh(np.cov((plan - plan.mean(axis=0)).T))[0] > 1e-6)
 
 

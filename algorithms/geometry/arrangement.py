@@ -206,7 +206,7 @@ def _crossings(
 def _clipped(
     points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return where each line enters and leaves a rectangle, (m,) each; it leaves before it enters where it misses."""
+    """Return the parameters (m,) of lines at which they enter and leave a rectangle; entry > exit for lines outside."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ways = np.sort([(limit - points) / directions for limit in (low, high)], axis=0)
     level = directions == 0

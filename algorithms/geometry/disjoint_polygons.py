@@ -69,7 +69,7 @@ def _are_within(points: np.ndarray, rings: Rings) -> np.ndarray:
 
 
 def _counted(cells: Arrangement, piece: np.ndarray, count: int, points: np.ndarray) -> np.ndarray:
-    """Return how many points lie in each piece (count,); ``piece`` (cells,) is each cell's, -1 without one."""
+    """Count the points in each piece (count,); ``piece`` (cells,) is the piece of each cell, -1 where it has none."""
     cell = cells.cells_at(sides_of(points, cells.points, cells.directions))
     of_piece = piece[cell[cell >= 0]]
     return np.bincount(of_piece[of_piece >= 0], minlength=count)

@@ -133,7 +133,7 @@ class SparsePointsError(ValueError):
 
 
 def is_nearly_empty(xyz: np.ndarray, size: float, most_cells: int = 200_000) -> bool:
-    """Return whether a raster of cells of ``size`` (m) over points (n, 2 or 3) has many and nearly only empty cells.
+    """Return whether a raster over points (n, 2 or 3), with cells of ``size`` (m), is large and nearly all empty.
 
     Many are more than ``most_cells``; up to these a raster costs hardly any time, however empty it is. Nearly empty is
     a raster with more than twenty cells for each point, which is due to wrong coordinates.
@@ -226,7 +226,7 @@ def shared_cells(
 
 
 def find_cells(cells: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where ``wanted`` numbers are in ``cells`` (ascending), and which of them are there."""
+    """Return the positions of ``wanted`` numbers in ``cells`` (ascending), and the mask of those found."""
     position = np.searchsorted(cells, wanted)
     position[position == len(cells)] = 0
     found = cells[position] == wanted if len(cells) else np.zeros(len(wanted), bool)

@@ -126,7 +126,7 @@ class Keys:
         return self.step(cells - self.low)
 
     def step(self, offsets: np.ndarray) -> np.ndarray:
-        """Return by how much the key changes with steps (k, 3)."""
+        """Return the change of the key for steps (k, 3)."""
         return (offsets[..., 0] * self.shape[1] + offsets[..., 1]) * self.shape[2] + offsets[..., 2]
 
     def cells(self, keys: np.ndarray) -> np.ndarray:

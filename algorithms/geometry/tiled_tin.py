@@ -156,7 +156,7 @@ class TiledTin:
 
 
 def _has_area(plan: np.ndarray) -> bool:
-    """Return whether nodes in plan (m, 2) do not all lie on one line."""
+    """Return whether nodes in plan (m, 2) span an area: they are not collinear."""
     extents = np.linalg.svd(plan - plan.mean(axis=0), compute_uv=False)
     return len(plan) > 2 and bool(extents[1] > ROUNDING * extents[0])
 

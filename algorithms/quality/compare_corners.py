@@ -197,7 +197,7 @@ def _linked(old: BuildingMap, new: BuildingMap, min_overlap: float, shift: np.nd
 
 
 def _shift(old: Corners, new: Corners, same: tuple, reach: float) -> np.ndarray:
-    """Return by how much (2,), m, the new map is off the old one: the median displacement of corners."""
+    """Return the shift (2,), m, from the old map to the new one: the median displacement of corners."""
     shift = np.zeros(2)
     for _ in range(10):
         one, other, _ = nearest_corners(old, new, same, shift, reach)

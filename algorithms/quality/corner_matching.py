@@ -65,7 +65,7 @@ class MatchedCorners:
         return self.new.xy[self.other] - self.old.xy[self.one]
 
     def of_buildings(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return how many corners of each old building (n,) are matched, their mean and greatest distance (m)."""
+        """Return for old buildings (n,) the number of matched corners, and their mean and greatest distance (m)."""
         building, distance, count = self.old.building[self.one], np.hypot(*self.moved.T), self.old.count
         matched = np.bincount(building, minlength=count)
         mean = np.where(matched > 0, np.bincount(building, distance, count) / np.maximum(matched, 1), np.nan)

@@ -152,7 +152,7 @@ class _Walls:
         return fits
 
     def _apart(self, fits: np.ndarray) -> np.ndarray:
-        """Return how far (p,), m, new walls lie outside of the shifted ones, NaN where none is found."""
+        """Return the distances (p,), m, of new walls from shifted ones, positive outside; NaN where none is found."""
         moved = self.position + fits[self.group, :2]
         # Several, as some are of walls across.
         _, near = self.tree.query(moved, 8, distance_upper_bound=FARTHEST)

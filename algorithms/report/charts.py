@@ -78,7 +78,7 @@ def draw_bars(values: np.ndarray, axis: str, count: str) -> str:
 
 
 def bar_edges(values: np.ndarray) -> np.ndarray:
-    """Return where bars begin and end: round numbers, as fine as the values bear (Freedman and Diaconis)."""
+    """Return the edges of the bars of a histogram: round numbers, with the width of Freedman and Diaconis."""
     low, high = float(values.min()), float(values.max())
     extent, size = high - low, max(abs(low), abs(high))
     # Of smaller values, powers of ten of their widths are beyond what float64 holds: they are 0 in a chart.

@@ -195,7 +195,7 @@ def _patches_of_scan(
 def _patches_of_images(
     xyz: np.ndarray, used: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor
 ) -> np.ndarray:
-    """Return what :func:`_patches_of_scan` does, for the surface that matched images show."""
+    """Return the same as :func:`_patches_of_scan`, for clouds of matched images."""
     if not len(used):
         return np.zeros(0, np.int32)
     rules = IMAGE_SURFACE

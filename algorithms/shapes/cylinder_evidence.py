@@ -110,7 +110,7 @@ class CylinderEvidence:
         return float(is_seen.mean()), float(cells[is_seen].mean()) if is_seen.any() else 0.0
 
     def goes_on(self, cylinder: Cylinder, along: np.ndarray) -> bool:
-        """Return whether the surface goes on beyond both ends of the arc on which points lie: a kerb or an edge.
+        """Return whether the surface continues beyond both ends of the arc of points, as at a kerb or an edge.
 
         Parameters
         ----------
@@ -165,6 +165,6 @@ def _facing(away: np.ndarray, normals: np.ndarray) -> np.ndarray:
 
 
 def _in_slices(at: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Return how many positions ``at`` the axis lie in each of the slices from the first to the last of ``along``."""
+    """Count the positions ``at`` the axis in each slice, from the first to the last of ``along``."""
     low, high = float(along.min()), float(along.max())
     return np.histogram(at, EVIDENCE.slices, (low, max(high, low + 1e-9)))[0]

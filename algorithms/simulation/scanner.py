@@ -287,7 +287,7 @@ def _noise_echoes(world: World, pulses: Beams, height: np.ndarray) -> Echoes:
 
 
 def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
-    """Return the echoes by pulse, with those of noise pulses replaced."""
+    """Return the echoes by pulse; echoes of noise pulses are replaced."""
     merged = join([echoes.take(~np.isin(echoes.pulse, noise.pulse)), noise])
     return merged.take(np.argsort(merged.pulse, kind="stable"))
 

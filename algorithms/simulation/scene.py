@@ -50,7 +50,7 @@ class Scene:
     relief: Relief  #: Ground and water
     #: Buildings; their object ids are unique among all objects
     buildings: list[Building] = field(default_factory=list)
-    solids: list[Body] = field(default_factory=list)  #: All solids, including those of buildings
+    solids: list[Body] = field(default_factory=list)  #: All solids, of buildings as well
     #: Ellipsoids of leaves that beams penetrate. Each has x, y, z of its center, horizontal and vertical radius (m),
     #: mean path of a beam to the next leaf (m) and object id
     crowns: list[tuple] = field(default_factory=list)

@@ -94,12 +94,12 @@ class _Order:
         return _APART * _STEP_LAG * self.turns * self.breadth + 2 * _MARGIN
 
     def start(self, phase: int, diagonal: int, position: int) -> int:
-        """Return where a diagonal is stored; the one ``_STEP_LAG`` diagonals on follows it."""
+        """Return the offset of a diagonal in memory; the diagonal ``_STEP_LAG`` later follows it."""
         turn, rest = divmod(diagonal + _MARGIN, _STEP_LAG)
         return ((phase * _STEP_LAG + rest) * self.turns + turn) * self.breadth + _MARGIN + position
 
     def positions(self) -> np.ndarray:
-        """Return where the particles (rows, columns) are stored."""
+        """Return the offsets (rows, columns) of the particles in memory."""
         row, column = np.mgrid[: self.rows, : self.columns]
         block, phase = np.divmod(column, _APART)
         turn, rest = np.divmod(block + row + _MARGIN, _STEP_LAG)
@@ -107,12 +107,12 @@ class _Order:
         return ((phase * _STEP_LAG + rest) * self.turns + turn) * self.breadth + _MARGIN + position
 
     def own(self, front: _Front) -> slice:
-        """Return where the particles of a front are stored, and the margins between their diagonals."""
+        """Return the slice of memory that holds the particles of a front, and the margins between their diagonals."""
         start = self.start(front.phase, front.first_diagonal, 0)
         return slice(start, start + front.diagonals * self.breadth)
 
     def neighbors(self, phase: int, diagonal: int) -> list[int]:
-        """Return where the neighbors of particles are stored, seen from these, in the order in which they are drawn.
+        """Return the offsets of the neighbors of particles in memory, in the order in which they are drawn.
 
         It depends on the diagonal by its remainder to ``_STEP_LAG`` only.
         """

@@ -76,7 +76,7 @@ class ObjectRemoval:
         return self._without_level(objects)
 
     def rise(self, slope: np.ndarray, radius: int = 1) -> np.ndarray:
-        """Return how far (m) terrain may rise over a ``radius`` (cells), with ``slope`` on top of the flat slope."""
+        """Return the greatest rise (m) of terrain over a ``radius`` (cells); ``slope`` adds to the flat slope."""
         return REMOVAL.step + (REMOVAL.flat_slope + slope) * (radius * self.cell_size)
 
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:

@@ -46,7 +46,7 @@ class JoinRules:
     beyond: Optional[Callable[[Tin, np.ndarray, np.ndarray, float, int], np.ndarray]] = None
 
     def is_last(self, n_joining: int, n_nodes: int) -> bool:
-        """Return whether a round in which points joined ``n_nodes`` nodes is the last."""
+        """Return whether densification ends after a round in which points joined ``n_nodes`` nodes."""
         if self.is_exhaustive:
             return n_joining == 0
         return n_joining <= DENSIFICATION.least_growth * n_nodes
@@ -113,7 +113,7 @@ class Surface:
         return Surface(self.points, np.flatnonzero(stays), monitor) if (stays != self.is_node).any() else self
 
     def above(self) -> np.ndarray:
-        """Return how far (n,) the points lie above their facets, measured across these (m)."""
+        """Return the distances (n,), m, of points from their facets, positive above."""
         return (self.points[:, 2] - self.tin.elevation(self.points, self.facet)) * self.tin.slope_cosine()[self.facet]
 
     def within(self, distance: float) -> np.ndarray:

@@ -87,7 +87,7 @@ class StoppableMonitor(Monitor):
         return super().part(start, end, prefix)
 
     def seconds(self) -> dict[str, np.ndarray]:
-        """Return how long each step took, the last of them until now."""
+        """Return the duration (s) of each step; the last one has lasted until now."""
         ends = [*(began for _, began in self._begins[1:]), time.monotonic()]
         return {name: np.array(end - began) for (name, began), end in zip(self._begins, ends)}
 

@@ -27,7 +27,7 @@ noise of the cloud are measured once for all blocks. So are the roughness of the
 clusters are compared with, where steps use them. A block that cuts off a building or a facade is worked on again with
 more around it; long pipes and large planes are put together from the pieces that blocks found. Rasters have the same
 cells in all blocks, and no seams. Reviewed buildings get new numbers. Steps that read layers alone are run once, on
-those of the whole survey.
+the layers of the whole survey.
 
 A run that was stopped goes on where it was when it is started again with the same input, parameters and version. Until
 it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the

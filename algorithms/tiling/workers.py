@@ -74,7 +74,7 @@ class Workers:
             processes.shutdown(cancel_futures=True)
 
     def count(self, memory: float) -> int:
-        """Return how many processes of this machine work at once, each of which needs ``memory`` bytes."""
+        """Return the number of processes on this machine, each of which needs ``memory`` bytes."""
         have_room = self.memory(1) / memory
         count = self.processes or int(max(1, min(n_threads(), have_room)))
         # The most processes that concurrent.futures allows on Windows.
