@@ -11,6 +11,9 @@ DEVIATIONS = 3.0
 # Side of a cell (point spacings) that holds four points of a surface on average: chance leaves one of fifty empty.
 CELL_SPACINGS = 2.0
 
+# Gap (point spacings) that random sampling of a surface does not leave: of 10^12 points one has such a hole around it.
+GAP_SPACINGS = 3.0
+
 # Points of a neighborhood whose plane shows a surface: nine degrees of freedom, so that its deviation is known to a
 # quarter.
 PLANE_NEIGHBORS = 12

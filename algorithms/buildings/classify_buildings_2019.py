@@ -6,7 +6,8 @@ from typing import Optional
 
 import numpy as np
 
-from ..neighborhoods.covariance import MIN_NEIGHBORS, Nearest
+from ..geometry.tin import PLANE_POINTS
+from ..neighborhoods.covariance import Nearest
 from ..packages import cluster
 from ..params import MIN_BUILDING_AREA, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS, nearest_points
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
@@ -40,7 +41,7 @@ def classify_buildings_2019(
     thresholds: str = THRESHOLDS,
     min_area: float = MIN_BUILDING_AREA,
     n_neighbors: Optional[int] = nearest_points(
-        f"the points of the minimum building area (Ar_min d), at least {MIN_NEIGHBORS}."
+        f"the points of the minimum building area (Ar_min d), at least {PLANE_POINTS}."
     ),
     two_classes: str = tunable(
         "k-means",
@@ -118,7 +119,7 @@ def classify_buildings_2019(
     if density is None:
         density = PAPER_THRESHOLDS[thresholds].density if thresholds in PAPER_THRESHOLDS else sampling.density
     if n_neighbors is None:
-        n_neighbors = max(MIN_NEIGHBORS, round(min_area * density))
+        n_neighbors = max(PLANE_POINTS, round(min_area * density))
     monitor.resolved(density=density, n_neighbors=n_neighbors)
     if not (cluster_id > 0).any():
         return no_clusters(classification, reason, monitor)

@@ -12,13 +12,11 @@ from typing import Any, Callable, Optional, Protocol
 
 import numpy as np
 
+from ..geometry.tin import PLANE_POINTS
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import NEIGHBORS_AT_ONCE, ROWS_AT_ONCE, in_chunks
 from .nearest_blocks import PAIRS, Shapes, nearest_shapes, shapes_within
-
-# Least number of points of a covariance: fewer lie on a line or at one position.
-MIN_NEIGHBORS = 3
 
 # A neighborhood larger than this on average is a radius chosen by mistake: it would run for days.
 _MAX_MEAN_NEIGHBORS = 20_000
@@ -208,7 +206,7 @@ def neighborhood_eigenvalues(
 def defined_eigenvalues(covariances: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """Return the eigenvalues (m, 3) of covariances (m, 6), NaN where a neighborhood has no extent or under 3 points."""
     eigenvalues = symmetric_eigenvalues(covariances)
-    eigenvalues[(counts < MIN_NEIGHBORS) | (eigenvalues[:, 0] <= 0)] = np.nan
+    eigenvalues[(counts < PLANE_POINTS) | (eigenvalues[:, 0] <= 0)] = np.nan
     return eigenvalues
 
 

@@ -8,14 +8,12 @@ from typing import Any, Optional
 import numpy as np
 
 from ..criteria import ROUNDING
+from ..threads import ROWS_AT_ONCE
 from .covariance import PAIRS, Nearest, Shapes, full_matrices, nearest_offsets
 from .nearest_blocks import EQUAL_SQUARES, reach_of_ties
 
-# Most values of an array over all neighbors in one batch: a handful of such arrays fit into the second-level cache.
-_CACHED = 16_000
-
 # Replaces zero in logarithms, as 0 ln 0 is 0.
-_LEAST = 1e-300
+_LEAST = np.finfo(float).tiny
 
 # Where the largest eigenvalue is more than this share of the sum, the points are a line: the closed form leaves the two
 # other eigenvalues little but rounding.
@@ -61,7 +59,7 @@ class Optimal:
         Also return the rows (m,), bool, whose tie at the largest scale may go on beyond these.
         """
         _, offsets = nearest_offsets(tree, rows, count)
-        size = max(1, _CACHED // offsets[0].shape[1])
+        size = max(1, ROWS_AT_ONCE // offsets[0].shape[1])
         parts = [
             self._best([offset[start : start + size] for offset in offsets], extents)
             for start in range(0, len(rows), size)

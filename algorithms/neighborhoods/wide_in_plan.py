@@ -14,7 +14,8 @@ from .optimal_size import nested_covariances
 # Least width in plan, as a share of the length, of a neighborhood that is not a line.
 LEAST_WIDTH = 0.45
 
-# Most points of a neighborhood: as many are nearly always wide enough, however they are spread.
+# Most points of a neighborhood: as many are nearly always wide enough, however they are spread. Lines three times as
+# far apart as the points on them have as many within two distances of lines.
 MOST_ACROSS_LINES = 60
 
 # Factor by which a neighborhood grows until it is wide enough.

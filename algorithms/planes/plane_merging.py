@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from ..criteria import MAJORITY
 from ..geometry.boxes import Boxes, around
 from ..geometry.groups import items
+from ..geometry.tin import PLANE_POINTS
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 from .best_pairs import merge_best_pairs
@@ -15,15 +18,9 @@ from .least_squares_planes import Planes, planes_of
 # Root mean square of a uniform distribution within a tolerance, as a share of it.
 _EVEN = 1 / np.sqrt(3)
 
-# A plane grows by a voxel all around in each round: more than the widest roof needs.
-_MAX_ROUNDS = 1000
-
 # A voxel joins its neighbors' planes if they explain this share of its points. In foliage, one plane of automatic
 # tolerance explains a fifth by chance.
 _HELD = 2 / 3
-
-# Least number of points of a voxel that a plane holds which goes on into it.
-_LEAST_POINTS = 4
 
 
 def joined_planes(
@@ -207,15 +204,16 @@ def grown_planes(nearest: NearestPlanes, voxel: np.ndarray, group: np.ndarray, m
     """
     boxes, box, n_planes = nearest.boxes, nearest.box, max(len(nearest.planes), 1)
     pieces = new = np.unique(voxel * n_planes + group)
-    for step in range(_MAX_ROUNDS):
-        part = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
+    for step in itertools.count():
+        part = monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1))
         at, plane = np.divmod(new, n_planes)
         nearest.look(at, plane, part)
         on_plane = nearest.plane >= 0
         held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
         inside = on_plane & held[box]
         found, count = np.unique(box[inside] * n_planes + nearest.plane[inside], return_counts=True)
-        grown = np.union1d(pieces, found[count >= _LEAST_POINTS])
+        # Any three points lie on a plane.
+        grown = np.union1d(pieces, found[count > PLANE_POINTS])
         new = np.setdiff1d(grown, pieces, assume_unique=True)
         if not len(new):
             break

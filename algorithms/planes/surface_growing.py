@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import partial
 from typing import Callable, Optional
 
@@ -17,9 +18,6 @@ from .local_planes import LEAST_POINTS, Criteria, LocalPlanes, fit_planes, store
 
 # Connect seeds by this many neighbors first: most of the others then belong to the same surface already.
 _FIRST_NEIGHBORS = 3
-
-# Most rounds of growth, each by one neighborhood: more than the widest gap between seeds takes.
-_MAX_ROUNDS = 1000
 
 # Whether the surfaces at some points (m,) hold other points (m,), by their numbers.
 Hold = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -52,7 +50,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     """
     surface = connected_seeds(planes, is_seed, criteria, monitor.part(0, 0.6))
     unassigned = np.flatnonzero(surface < 0).astype(np.int32)
-    for step in range(_MAX_ROUNDS):
+    for step in itertools.count():
         part = monitor.part(1 - 0.4 * 0.8**step, 1 - 0.4 * 0.8 ** (step + 1))
         parent = _nearest_that_holds(planes, unassigned, surface, partial(planes.hold, criteria), part)
         joins = parent >= 0
@@ -268,7 +266,7 @@ def _take_points(
         return criteria.hold(planes.xyz[point] - fitted.center[plane], fitted.normal[plane], planes.normal[point])
 
     unassigned = np.flatnonzero(surface < 0).astype(np.int32)
-    for step in range(_MAX_ROUNDS):
+    for step in itertools.count():
         part = monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1))
         rows = _join(planes, unassigned, surface, hold, part)
         if not len(rows):

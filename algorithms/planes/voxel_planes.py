@@ -9,9 +9,7 @@ from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenval
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
 from ..threads import PAIRS_AT_ONCE, in_chunks
-
-# Fits to the points of a trial plane, each to those that lie on the fit before.
-_REFINEMENTS = 2
+from .local_planes import REFITS
 
 # Of this many voxels with scattered points, one may have a plane by chance.
 _VOXELS_PER_CHANCE = 1000
@@ -104,7 +102,7 @@ class VoxelPlanes:
 
     def _refined(self, points: np.ndarray, is_left: np.ndarray, on_plane: np.ndarray) -> np.ndarray:
         """Return the points on the plane fitted to those ``on_plane`` (v, k), where they are no fewer."""
-        for _ in range(_REFINEMENTS):
+        for _ in range(REFITS):
             weight = on_plane / np.maximum(on_plane.sum(axis=1, keepdims=True), 1)
             center = np.einsum("vk,vki->vi", weight, points)
             offset = points - center[:, None].astype(np.float32)

@@ -8,6 +8,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..criteria import MILLIMETER
 from ..geometry.grid import plan_box
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
@@ -34,9 +35,6 @@ _MOST_SEEN_THROUGH = 0.02
 
 # Least density (points/m²) at which the share seen through alone distinguishes them, as it does for few crowns, too.
 _LEAST_DENSITY = 8.0
-
-# Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
-_LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
 
 # Name of the noise of the ground among what parts of a cloud take of the whole.
 GROUND_NOISE = "ground_noise"
@@ -194,7 +192,9 @@ class CloudSampling:
 
         It is bounded by the rounding of heights only, where ``noise`` is at least a centimeter.
         """
-        return self._surfaces.noise(max(rounding_deviation(self._points()[:, 2]), _LEAST_SCAN_NOISE))
+        # Files keep coordinates to a millimeter, which leaves an error of rounding, too.
+        of_files = MILLIMETER / float(np.sqrt(12))
+        return self._surfaces.noise(max(rounding_deviation(self._points()[:, 2]), of_files))
 
     @property
     def roughness(self) -> float:

@@ -6,14 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..neighborhoods.wide_in_plan import MOST_ACROSS_LINES
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import NEIGHBORS_AT_ONCE, in_chunks
 from .straight_pieces import Pieces
-
-# Neighbors that each point looks through for adjacent lines, at most: lines three times as far apart as the points on
-# them have 60 points within two distances of lines.
-_MOST_NEIGHBORS = 64
 
 
 @dataclass(frozen=True)
@@ -83,7 +80,7 @@ def adjacent_pieces(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, distance
     Lines need no numbers. Of the points to the side of a point, more across its piece than along it, the nearest one is
     on an adjacent line. The nearest one on the opposite side is on the other.
     """
-    n, count = len(xyz), min(_MOST_NEIGHBORS, len(xyz))
+    n, count = len(xyz), min(MOST_ACROSS_LINES, len(xyz))
     tree = spatial.cKDTree(xyz)
     nearest = np.full((n, 2), -1, np.int64)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 from functools import partial
-from itertools import count
 from typing import Callable
 
 import numpy as np
@@ -14,9 +13,6 @@ from ..planes.least_squares_planes import Planes
 from ..stage import Monitor
 from .adjacent_pieces import Adjacency
 from .straight_pieces import Pieces
-
-# Seeds, and pieces that are looked at for one region, between two reports of progress.
-_STRETCH = 200
 
 
 @dataclass(frozen=True)
@@ -67,8 +63,6 @@ class Regions:
         triples = triples[np.lexsort((triples[:, 1], -size[triples].sum(axis=1)))]
         number = 0
         for i, seed in enumerate(triples.tolist()):
-            if i % _STRETCH == 0:
-                monitor.progress(i / len(triples))
             if all(self.region[piece] < 0 for piece in seed):
                 self._grow(seed, number, partial(monitor.progress, i / len(triples)))
                 number += 1
@@ -101,11 +95,8 @@ class Regions:
         waiting = deque(self._free(seed))
         rejected: list[int] = []
         n_before = 0
-        for step in count():
-            if not waiting:
-                break
-            if step % _STRETCH == 0:
-                report()
+        while waiting:
+            report()
             piece = waiting.popleft()
             if self.region[piece] >= 0:
                 continue
@@ -131,11 +122,8 @@ class Regions:
         for piece in seed:
             self.plane[piece] = self._local_plane(piece, number)
         waiting = deque((piece, beside) for beside in seed for piece in self._free([beside]))
-        for step in count():
-            if not waiting:
-                break
-            if step % _STRETCH == 0:
-                report()
+        while waiting:
+            report()
             piece, beside = waiting.popleft()
             if self.region[piece] >= 0 or not self._continues(piece, beside):
                 continue

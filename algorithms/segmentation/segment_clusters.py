@@ -6,15 +6,13 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import GAP_SPACINGS
 from ..geometry.groups import placed
 from ..neighborhoods.dbscan import dbscan, points_at_corner
 from ..params import MIN_CLUSTER_HEIGHT, POINT_DENSITY
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
 from .candidate_points import candidates
-
-# A gap of three spacings is no chance on a surface: one point in 10^12 has such a hole around it.
-_RADIUS_SPACINGS = 3.0
 
 
 @stage(
@@ -33,7 +31,7 @@ def segment_clusters(
         None,
         "Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.",
         within="(0, 100] m",
-        automatic=f"{_RADIUS_SPACINGS:g} times the point spacing.",
+        automatic=f"{GAP_SPACINGS:g} times the point spacing.",
     ),
     min_points: Optional[int] = tunable(
         None,
@@ -105,7 +103,7 @@ def segment_clusters(
             raise ValueError("'Segments only' needs SegmentID; run 'Segment planes (RANSAC)' first or switch it off.")
         used = used[segment_id[used] > 0]
     density = sampling.density if density is None else density
-    radius = _RADIUS_SPACINGS / float(np.sqrt(density)) if radius is None else radius
+    radius = GAP_SPACINGS / float(np.sqrt(density)) if radius is None else radius
     min_points = points_at_corner(radius, density) if min_points is None else min_points
     monitor.resolved(density=density, radius=radius, min_points=min_points)
     return placed(dbscan(xyz[used], radius, min_points, monitor) + 1, used, len(xyz))

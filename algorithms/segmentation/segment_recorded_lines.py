@@ -28,12 +28,9 @@ _WITHIN = 4.5
 # freedom 1 % of the planes have more (chi-square).
 _SMOOTH = 1.5
 
-# Largest distance of adjacent lines, in mean distances of lines: where strips do not overlap lines are twice as far
-# apart as on the average, and pulses do not fall side by side.
+# Largest distance of adjacent lines, and largest step between points of a line, in mean distances of lines. Where
+# strips do not overlap lines are twice as far apart as on the average, and pulses do not fall side by side.
 _LINES = 3.0
-
-# Largest step between points of a line, in mean distances of lines.
-_LINE_GAPS = 3.0
 
 # Largest step between points of a line in median steps of the lines, if that is more.
 _STEP_GAPS = 10.0
@@ -82,8 +79,7 @@ def segment_recorded_lines(
         "Scan lines end where two points in a row are farther apart.",
         label="Widest gap",
         within="(0, 1000] m",
-        automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINE_GAPS:g} distances of scan "
-        "lines.",
+        automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINES:g} distances of scan lines.",
     ),
     min_overlap: float = tunable(
         0.5, "Share of the shorter of two pieces of a seed that lies next to the other.", within="[0, 1]"
@@ -167,7 +163,7 @@ def segment_recorded_lines(
     row = last[recording.take(last).order(points[last])]
     line_spacing = _distance_of_lines(points[row], density)
     line_distance = _LINES * line_spacing if line_distance is None else line_distance
-    max_gap = max(_LINE_GAPS * line_spacing, _STEP_GAPS * _median_step(points[row])) if max_gap is None else max_gap
+    max_gap = max(_LINES * line_spacing, _STEP_GAPS * _median_step(points[row])) if max_gap is None else max_gap
     monitor.resolved(density=density, noise=noise, tolerance=tolerance, line_distance=line_distance, max_gap=max_gap)
     line = recorded_lines(points[row], recording.take(row), max_gap)
     piece = split_lines(points[row], line, tolerance, min_piece, monitor.part(0, 0.3))

@@ -6,7 +6,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..criteria import DEVIATIONS, PLANE_NEIGHBORS
+from ..criteria import DEVIATIONS, GAP_SPACINGS, PLANE_NEIGHBORS
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items, number_large, placed
 from ..params import POINT_DENSITY
@@ -14,10 +14,6 @@ from ..planes.local_planes import Criteria, LocalPlanes, local_planes
 from ..planes.surface_growing import grow_planes, grow_surfaces
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, stage, tunable
-
-# Reach of a neighborhood in point spacings on surfaces: it holds 28 points, of which the nearest are taken, and crosses
-# gaps between scan lines three times as wide as points lie apart on the average.
-_RADIUS_SPACINGS = 3.0
 
 # Roughness of a surface beyond noise, in point spacings: its curvature between points.
 _BENDS = 0.05
@@ -74,7 +70,7 @@ def segment_surfaces(
         None,
         "Reach of the neighborhood in which planes are fitted, and of growth.",
         within="(0, 1000] m",
-        automatic=f"{_RADIUS_SPACINGS:g} times the point spacing on surfaces.",
+        automatic=f"{GAP_SPACINGS:g} times the point spacing on surfaces.",
     ),
     neighbors: int = tunable(
         PLANE_NEIGHBORS, "Nearest points within the radius that are used, the point included.", within="[6, 200]"
@@ -158,7 +154,7 @@ def segment_surfaces(
     """
     density = sampling.surface_density if density is None else density
     spacing = 1 / float(np.sqrt(density))
-    radius = _RADIUS_SPACINGS * spacing if radius is None else radius
+    radius = GAP_SPACINGS * spacing if radius is None else radius
     noise = _noise(sampling, radius) if noise is None else noise
     tolerance = DEVIATIONS * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
     monitor.resolved(density=density, noise=noise, radius=radius, tolerance=tolerance)

@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import CELL_SPACINGS
 from ..geometry.boxes import by_first_point
 from ..geometry.groups import number_large, placed
 from ..geometry.sparse_voxels import (
@@ -22,10 +23,6 @@ from ..geometry.voxel_filters import FILTERS, filter_counts
 from ..geometry.voxel_skeleton import skeleton
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
-
-# Side of an automatic voxel in point spacings on surfaces: it holds four points on average, so that fewer than 2 % of
-# the voxels of an evenly sampled surface are empty (Poisson).
-_VOXEL_SPACINGS = 2.0
 
 _OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "closing": close_voxels}
 
@@ -56,7 +53,7 @@ def segment_voxels(
         None,
         "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
         within="[0.001, 1000] m",
-        automatic=f"{_VOXEL_SPACINGS:g} times the point spacing on surfaces.",
+        automatic=f"{CELL_SPACINGS:g} times the point spacing on surfaces.",
     ),
     neighbors: str = tunable(
         "26",
@@ -162,7 +159,7 @@ def segment_voxels(
         density = sampling.surface_density
         if not np.isfinite(density):
             raise ValueError("All points lie at one position, so they have no spacing; set the voxel size.")
-        voxel_size = _VOXEL_SPACINGS / float(np.sqrt(density))
+        voxel_size = CELL_SPACINGS / float(np.sqrt(density))
     monitor.resolved(voxel_size=voxel_size)
     low = xyz[used].min(axis=0)
     occupied, voxel, count = voxelize(xyz[used] - low, voxel_size)

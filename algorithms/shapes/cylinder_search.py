@@ -16,6 +16,7 @@ from ..stage import Monitor
 from .cylinder_evidence import FACING, MOST_LOOKED_AT, CylinderEvidence, Points
 from .cylinder_fits import Cylinder, fit_cylinder, upward
 from .hough_planes import PlaneDirections
+from .search_settings import ARC_DEVIATIONS
 from .searched_points import MeasuredPoints
 from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, RADII_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
 
@@ -64,9 +65,6 @@ _GAP_RADII = 2.0
 
 # Widest gap along a cylinder (spacings of the thinned points): more than chance leaves.
 _GAP_SPACINGS = 6.0
-
-# Least height of the arc that is seen above its chord (standard deviations of the noise): a flatter one is a plane.
-_LEAST_SAGITTA = 6.0
 
 
 @lru_cache(maxsize=64)
@@ -313,7 +311,7 @@ class CylinderSearch:
         seen, filled = self.evidence.coverage(along, cylinder.angle(away), cylinder)
         sagitta = cylinder.radius * (1 - np.cos(np.pi * min(seen, 0.5)))
         # Half of the cells of its surface hold points at least, and a flatter arc is a plane.
-        if seen < self.min_seen or filled < MAJORITY or sagitta < _LEAST_SAGITTA * self.noise:
+        if seen < self.min_seen or filled < MAJORITY or sagitta < ARC_DEVIATIONS * self.noise:
             return None
         rms = float(np.sqrt(((distance - cylinder.radius) ** 2).mean()))
         one = Found(cylinder, float(along.min()), float(along.max()), points, rms, seen)

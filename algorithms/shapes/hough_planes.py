@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Optional
 
 import numpy as np
 
+from ..criteria import DEVIATIONS
 from ..geometry.boxes import Boxes
 from ..geometry.principal_axes import principal_axes
 from ..planes.local_planes import LEAST_POINTS, REFITS
 from ..planes.voxel_planes import more_than_chance
 from ..stage import Monitor
 from ..threads import PAIRS_AT_ONCE, in_chunks
+from .surface_normals import NORMAL_ERROR
 
 # Counters of the largest parameter space: of 8 bytes each, for each thread.
 _MOST_BINS = 20_000_000
-
-# Most planes of one window: more than it has surfaces.
-_MOST_PLANES = 20
-
-# Windows that one thread works on between two reports.
-_WINDOWS = 64
-
-# Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
-_MOST_ANGLE = 10.0
 
 
 class PlaneDirections:
@@ -114,14 +108,14 @@ class HoughPlanes:
         # The largest section of a cube is the root of two times a face.
         self.by_chance = min(0.99, 2 * np.sqrt(2) * tolerance / side)
         self.trials = int(n_bins)
-        self.cosine = np.cos(np.radians(_MOST_ANGLE))
+        self.cosine = np.cos(DEVIATIONS * NORMAL_ERROR)
 
     def find(self, monitor: Monitor, normals: Optional[np.ndarray] = None) -> np.ndarray:
-        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each window, or 0.
+        """Return the plane (n,), int32, of each point in the order of the boxes: from 1 in each window, or 0.
 
         With the normals (n, 3) of the points in this order the transform is in two steps.
         """
-        plane = np.zeros(len(self.boxes.order), np.int16)
+        plane = np.zeros(len(self.boxes.order), np.int32)
 
         def work(windows: np.ndarray) -> None:
             for window in windows:
@@ -134,14 +128,14 @@ class HoughPlanes:
                 else:
                     plane[inside] = self._by_normals(centered, normals[inside])
 
-        in_chunks(work, np.flatnonzero(self.boxes.size >= LEAST_POINTS), _WINDOWS, monitor)
+        in_chunks(work, np.flatnonzero(self.boxes.size >= LEAST_POINTS), 1, monitor)
         return plane
 
     def _by_points(self, xyz: np.ndarray) -> np.ndarray:
         """Return the plane (k,) of each point of a window: every point votes for all planes through it."""
-        plane, free = np.zeros(len(xyz), np.int16), np.arange(len(xyz))
+        plane, free = np.zeros(len(xyz), np.int32), np.arange(len(xyz))
         votes = self._votes(xyz)
-        for number in range(1, _MOST_PLANES + 1):
+        for number in itertools.count(1):
             # Planes at the border between two bins share their points among these.
             best = int(np.argmax(votes[:, :-1] + votes[:, 1:]))
             direction, level = np.divmod(best, self.levels - 1)
@@ -167,10 +161,10 @@ class HoughPlanes:
 
     def _by_normals(self, xyz: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """Return the plane (k,) of each point of a window: its normal votes for a direction, then it for a distance."""
-        plane = np.zeros(len(xyz), np.int16)
+        plane = np.zeros(len(xyz), np.int32)
         free = np.flatnonzero(normals.any(axis=1))
         bins = self.directions.bin_of(normals[free]) if len(free) else free
-        for number in range(1, _MOST_PLANES + 1):
+        for number in itertools.count(1):
             if len(free) < LEAST_POINTS:
                 return plane
             direction = self._direction(bins)

@@ -13,8 +13,9 @@ from ..stage import tunable
 # Least radius (point spacings): half a circumference has four points across it.
 _RADIUS_SPACINGS = 1.2
 
-# Least radius (standard deviations of the noise across surfaces), so that the visible arc rises above the noise.
-_RADIUS_DEVIATIONS = 6.0
+# Least height of a visible arc above its chord (standard deviations of the noise): a flatter one is a plane. Half a
+# circle is as high as its radius.
+ARC_DEVIATIONS = 6.0
 
 # Largest radius (m) that is searched for with nothing set: tanks have up to 20 m, and larger ones take more time.
 _LARGEST_RADIUS = 20.0
@@ -25,14 +26,11 @@ _REACH = 0.5
 # Least ratio of the largest radius to the least, with nothing set.
 _LEAST_RANGE = 2.0
 
-# Largest radius as a share of the longest side of the cloud: larger shapes do not lie in the cloud as a whole.
-_SHARE_OF_EXTENT = 0.5
-
 MIN_RADIUS = tunable(
     None,
     "Least radius that is looked for.",
     within="[0.001, 1000] m",
-    automatic=f"the larger of {_RADIUS_SPACINGS:g} times the point spacing and {_RADIUS_DEVIATIONS:g} times the "
+    automatic=f"the larger of {_RADIUS_SPACINGS:g} times the point spacing and {ARC_DEVIATIONS:g} times the "
     "roughness of surfaces.",
 )
 
@@ -90,12 +88,11 @@ def check_radii(
     ValueError
         If the range is empty.
     """
-    low = max(_RADIUS_SPACINGS * spacing, _RADIUS_DEVIATIONS * noise) if min_radius is None else min_radius
+    low = max(_RADIUS_SPACINGS * spacing, ARC_DEVIATIONS * noise) if min_radius is None else min_radius
+    # No shape in the cloud as a whole has a larger diameter.
     extent = float(np.ptp(xyz, axis=0).max())
     # The extent of a part of a cloud may be tiny: an automatic range is never empty, so that no error is raised.
-    high = (
-        max(min(_LARGEST_RADIUS, _SHARE_OF_EXTENT * extent), _LEAST_RANGE * low) if max_radius is None else max_radius
-    )
+    high = max(min(_LARGEST_RADIUS, extent / 2), _LEAST_RANGE * low) if max_radius is None else max_radius
     if low >= high:
         raise ValueError(
             f"The range of radii is empty: the minimum radius is {low:.3g} m and the maximum radius {high:.3g} m; "

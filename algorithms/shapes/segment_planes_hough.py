@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import GAP_SPACINGS
 from ..geometry.boxes import Boxes, by_first_point
 from ..geometry.groups import split_groups
 from ..neighborhoods.dbscan import dbscan
@@ -28,12 +29,6 @@ _POINTS_IN_WINDOW = 40.0
 
 # Least side of a window (tolerances): noise around a surface must not fill it.
 _TOLERANCES_IN_WINDOW = 20.0
-
-# Coarsest bin of slopes (ratio): coarser ones would merge planes of different directions.
-_MOST_SLOPE_BIN = 0.2
-
-# Gap in spacings: random sampling of a surface leaves no gap of three spacings.
-_GAP_SPACINGS = 3.0
 
 # Window (m) assumed for the reach if it is automatic: as in clouds with 40 points per m² and noise of 2 cm.
 _WIDE_WINDOW = 1.0
@@ -185,7 +180,7 @@ def segment_planes_hough(
     window_size = float(wide) if window_size is None else window_size
     distance_bin = tolerance if distance_bin is None else distance_bin
     slope_bin = _slope_bin(distance_bin, window_size) if slope_bin is None else slope_bin
-    max_gap = _GAP_SPACINGS * spacing if max_gap is None else max_gap
+    max_gap = GAP_SPACINGS * spacing if max_gap is None else max_gap
     min_area = (window_size / 2) ** 2 if min_area is None else min_area
     monitor.resolved(
         tolerance=tolerance,
@@ -244,7 +239,8 @@ class _Search:
 
 def _slope_bin(distance_bin: float, window_size: float) -> float:
     """Return the width of a bin of slopes (°) that suits the width of a bin of distances (m)."""
-    return float(np.degrees(np.arctan(min(4 * distance_bin / window_size, _MOST_SLOPE_BIN))))
+    # In a smaller window than an automatic one bins get no coarser: they would merge planes of different directions.
+    return float(np.degrees(np.arctan(4 * min(distance_bin / window_size, 1 / _TOLERANCES_IN_WINDOW))))
 
 
 def _surfaces(xyz: np.ndarray, plane: np.ndarray, max_gap: float, min_points: float, monitor: Monitor) -> np.ndarray:

@@ -14,7 +14,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, tunable
 
 # Standard deviation (radians) that normals may have from the noise: 3°, so that directions distinguish surfaces.
-_NORMAL_ERROR = 0.05
+NORMAL_ERROR = 0.05
 
 # Points of the largest neighborhood of a normal: more cost time.
 _MOST_POINTS = 80
@@ -39,7 +39,7 @@ def normal_points(sampling: CloudSampling) -> int:
     The slope of a plane fitted to k points with the deviation s that fill a disk of radius r is off by 2 s / (r
     sqrt(k)), and r is sqrt(k / (pi density)).
     """
-    needed = 2 * sampling.scan_noise * float(np.sqrt(np.pi * sampling.surface_density)) / _NORMAL_ERROR
+    needed = 2 * sampling.scan_noise * float(np.sqrt(np.pi * sampling.surface_density)) / NORMAL_ERROR
     return int(np.clip(np.ceil(min(needed, _MOST_POINTS)), PLANE_NEIGHBORS, _MOST_POINTS))
 
 

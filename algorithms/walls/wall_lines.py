@@ -9,7 +9,8 @@ import numpy as np
 
 from ..criteria import DEVIATIONS, MAJORITY
 from ..geometry.principal_axes import principal_axes
-from ..neighborhoods.covariance import MIN_NEIGHBORS, Shapes, Within, reduce_neighborhoods
+from ..geometry.tin import PLANE_POINTS
+from ..neighborhoods.covariance import Shapes, Within, reduce_neighborhoods
 from ..stage import Monitor
 
 # RANSAC samples for each line: of a wall with a tenth of the points, one pair in a hundred lies on it.
@@ -189,7 +190,7 @@ def _ways(xy: np.ndarray, monitor: Monitor) -> np.ndarray:
         x, y, _, xy_, _, _ = shapes.covariances.T
         # Half the angle of (x - y, 2 xy) is the direction of the larger eigenvector.
         angle, apart = np.arctan2(2 * xy_, x - y) / 2, np.hypot(x - y, 2 * xy_)
-        is_line = (shapes.counts >= MIN_NEIGHBORS) & (x + y + apart >= _LONGER**2 * (x + y - apart))
+        is_line = (shapes.counts >= PLANE_POINTS) & (x + y + apart >= _LONGER**2 * (x + y - apart))
         ways[rows] = np.column_stack([np.cos(angle), np.sin(angle)]) * is_line[:, None]
 
     reduce_neighborhoods(np.column_stack([xy, np.zeros(len(xy))]), Within(_AROUND), keep, monitor=monitor)
