@@ -33,6 +33,9 @@ class PointClass(IntEnum):
     TEMPORAL_EXCLUSION = 22
 
 
+# Numbers that a class can have.
+CODES = 256
+
 NOISE = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
 VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
 

@@ -26,9 +26,6 @@ _PAUSE = 20.0
 # A pause of this share of a turn is the sky: 45°.
 _SKY = 1 / 8
 
-# If no sky is seen, a line is at most this much longer than a turn.
-_BEYOND = 0.1
-
 # Slope (°) up to which a segment is level enough for ground: ramps and gutters are less steep.
 _LEVEL = 20.0
 
@@ -194,7 +191,7 @@ def _lines(gps_time: np.ndarray, source: np.ndarray, duration: float) -> np.ndar
     is_start[1:] = (np.diff(gps_time) > _SKY * duration) | (np.diff(source) != 0)
     run = np.cumsum(is_start) - 1
     since = gps_time - gps_time[is_start][run]
-    turn = np.floor(since / duration - _BEYOND * (since > duration)).astype(np.int64)
+    turn = np.floor(since / duration).astype(np.int64)
     is_start[1:] |= np.diff(turn) > 0
     return np.cumsum(is_start) - 1
 

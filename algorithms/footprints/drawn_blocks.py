@@ -100,7 +100,12 @@ def draw_block(
         return []
     lattice, share = _shares_of(pieces, numbers, shares, edges, how)
     cells = _cut([*edges, *walls], lattice)
-    label = _without_scraps(cells, _labels(cells, _costs(cells, share, lattice), edges, how), how)
+    # Cost (cells, labels) of each label in each cell: the area (m²) of the cell with another label.
+    mean = np.array(
+        [share.reshape(len(share), -1)[:, nodes].mean(axis=1) for nodes in _nodes_of(cells, lattice)], float
+    )
+    cost = cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)
+    label = _without_scraps(cells, _labels(cells, cost, edges, how), how)
     building = np.array([0, *numbers])
     if walls:
         label, building = _by_house(cells, label, building, houses, shares, lattice)
@@ -198,13 +203,6 @@ def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
     for number in np.argsort(length, kind="stable"):
         cells.cut(edges[number].start, edges[number].end)
     return cells
-
-
-def _costs(cells: Subdivision, share: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Return the cost of each label in each cell (cells, labels): the area (m²) of the cell with another label."""
-    flat = share.reshape(len(share), -1)
-    mean = np.array([flat[:, nodes].mean(axis=1) for nodes in _nodes_of(cells, lattice)], float)
-    return cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)
 
 
 def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: BlockDrawing) -> np.ndarray:

@@ -11,6 +11,7 @@ import numpy as np
 from ..buildings.reviewed_buildings import REVIEWED, ReviewedBuildings
 from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED, Reason
+from ..criteria import MILLIMETER
 from ..geometry.grid import connected_cells, distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import split_groups
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes, overlaps
@@ -169,7 +170,8 @@ def extract_footprints(
     if not len(building) or not np.ptp(plan_box(xyz.take(building, axis=0)), axis=0).any():
         return with_reviewed(_features([], min_area), review)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
-    spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
+    spacing = sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building]))
+    spacing = max(LEAST_SPACING, 2.0 ** (round(np.log2(spacing) * _STEPS_PER_OCTAVE) / _STEPS_PER_OCTAVE))
     if not merge_touching and spacing > ROWS.max_spacing:
         monitor.inform(
             f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they stay in one."
@@ -187,8 +189,10 @@ def extract_footprints(
     )
     searching = monitor.part(0.0, 0.4)
     evidence = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), searching))
-    unknown = [dict.fromkeys(one.shares, np.zeros(0)) for one in evidence]
-    directions = _directions(evidence) if regularize else unknown
+    directions = [dict.fromkeys(one.shares, np.zeros(0)) for one in evidence]
+    if regularize:
+        known = iter(shared_directions([own for one in evidence for own in one.rings.values()]))
+        directions = [{number: next(known) for number in one.rings} for one in evidence]
     # Threads work on the arrays of houses and attributes; drawing is many small calls, which hold the interpreter.
     houses_of_parts = made_ahead(
         lambda number, _: _houses(parts[number], evidence[number], directions[number], measures, how),
@@ -235,11 +239,6 @@ class _Evidence:
     rings: dict[int, list[np.ndarray]]
 
 
-def _rounded(spacing: float) -> float:
-    """Return the spacing (m) rounded to a step, at least the least one: small changes of the points keep the step."""
-    return max(LEAST_SPACING, 2.0 ** (round(np.log2(spacing) * _STEPS_PER_OCTAVE) / _STEPS_PER_OCTAVE))
-
-
 def _building_points(classification: np.ndarray, cluster_id: Optional[np.ndarray], monitor: Monitor) -> np.ndarray:
     """Return the points (b,) to be outlined; without any, warn."""
     is_building = classification == PointClass.BUILDING
@@ -267,7 +266,8 @@ def _parts(
     parts = []
     for rows, others in _apart(measures.plan(building), measures.plan(beside), APART * spacing):
         roof = rows[is_roof[rows]]
-        if len(roof) and _has_area(xyz[building[roof], :2]):
+        # Roof points that span an area are a millimeter wide at least.
+        if len(roof) > 2 and np.linalg.eigvalsh(np.cov(measures.plan(building[roof]).T))[0] > MILLIMETER**2:
             parts.append(_Part(building[rows], building[roof], beside[others], cluster[roof]))
     return parts
 
@@ -282,11 +282,6 @@ def _asked_for(
     asked = np.flatnonzero([sampling.asks_for(box, APART * spacing) for box in boxes])
     near = meeting_boxes(boxes[asked] + np.array([[-1], [1]]) * NEIGHBORS, boxes)[1]
     return [parts[row] for row in (*asked, *np.setdiff1d(near, asked))], len(asked)
-
-
-def _has_area(plan: np.ndarray) -> bool:
-    """Return whether points (n, 2) span an area: they are a millimeter wide at least."""
-    return len(plan) > 2 and bool(np.linalg.eigvalsh(np.cov((plan - plan.mean(axis=0)).T))[0] > 1e-6)
 
 
 def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -327,12 +322,6 @@ def _evidence_of(part: _Part, measures: PointMeasures, how: BlockDrawing) -> _Ev
     for piece in pieces:
         rings.setdefault(piece.building, []).extend(piece.rings)
     return _Evidence({number: shares[number] for number in rings}, pieces, rings)
-
-
-def _directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]:
-    """Return the main directions, °, of the buildings of each part."""
-    found = iter(shared_directions([own for one in evidence for own in one.rings.values()]))
-    return [{number: next(found) for number in one.rings} for one in evidence]
 
 
 def _houses(

@@ -183,14 +183,10 @@ class _Owners:
         order = np.argsort(number)
         self.occupied, self.face = number[order], np.append(face[order], -1)
         # The nearest node of a position without a node of its own has a neighbor without an outline.
-        is_inner = np.logical_and.reduce([find_cells(self.occupied, number + by)[1] for by in self._beside])
+        beside = (-self.columns, -1, 1, self.columns)
+        is_inner = np.logical_and.reduce([find_cells(self.occupied, number + by)[1] for by in beside])
         self.rim_face = np.append(face[~is_inner], -1)
         self.rim = spatial.cKDTree(nodes[~is_inner], balanced_tree=False)
-
-    @property
-    def _beside(self) -> tuple[int, ...]:
-        """Differences in number to the four nodes next to a node."""
-        return -self.columns, -1, 1, self.columns
 
     def _number(self, column: np.ndarray, row: np.ndarray) -> np.ndarray:
         return (row - self.first[1]) * self.columns + column - self.first[0]

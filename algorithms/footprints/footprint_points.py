@@ -11,6 +11,7 @@ from ..criteria import DEVIATIONS
 from ..geometry.polygon_overlap import are_within
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import polygon_area, sampled_rings, sides_of_rings, signed_area
+from ..geometry.tin import PLANE_POINTS
 from ..stage import Monitor
 
 # Rings with less area (m²) are no footprints.
@@ -19,6 +20,9 @@ NO_AREA = 0.5
 # The ground of a building is this percentile of the elevations of ground points nearest to positions along its outline.
 # It is low, so that walls reach the ground on slopes, but not the least, which may be an error.
 GROUND_PERCENTILE = 5.0
+
+# Least share of the area of a footprint with points that shows a roof: fewer may be of trees, masts and wires over it.
+_COVERED = 0.1
 
 # Least and greatest tolerance (m): above the courses of tiles, below the steps between parts of a roof.
 _TOLERANCES = 0.08, 0.35
@@ -81,8 +85,8 @@ def sound_rings(rings: list) -> list:
 
 def shows_roof(count: int, spacing: float, rings: list) -> bool:
     """Return whether ``count`` points over a footprint, ``spacing`` m apart, show its roof."""
-    # Six points, and points on a tenth of its area.
-    return count >= 6 and count * spacing**2 >= 0.1 * polygon_area(rings)
+    # Twice as many points as a plane has.
+    return count >= 2 * PLANE_POINTS and count * spacing**2 >= _COVERED * polygon_area(rings)
 
 
 def ground_beside(ground: np.ndarray, tree: Any, rings: list) -> np.ndarray:

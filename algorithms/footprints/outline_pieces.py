@@ -125,14 +125,10 @@ def _directions_near(rings: list[list[np.ndarray]], boxes: np.ndarray) -> list[n
     for number, rows in enumerate(split_groups(one, len(rings))):
         neighbors = [(each, row) for each in other[rows].tolist() if each != number for row in range(len(rings[each]))]
         # Ignore walls farther away, even of the same neighbor: a block's window may lack them.
-        off = (_off_box(rings[each][row], boxes[number]) for each, row in neighbors)
-        counts = [np.maximum(1 - distance / NEIGHBORS, 0.0) for distance in off]
+        low, high = boxes[number]
+        off = (np.maximum(low - rings[each][row], rings[each][row] - high).clip(0.0) for each, row in neighbors)
+        counts = [np.maximum(1 - np.hypot(*distance.T) / NEIGHBORS, 0.0) for distance in off]
         around.append(sum(weights_of_pieces([pieces[each][row] for each, row in neighbors], counts), np.zeros(N_STEPS)))
     together = [own + _INFLUENCE * own.sum() * other / (other.sum() or 1.0) for own, other in zip(weights, around)]
     counts = [sum(map(len, own)) for own in rings]
     return [main_directions(*each) for each in zip(together, weights, counts)]
-
-
-def _off_box(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return the distances (m) of positions (n, 2) from a box (2, 2), 0 inside."""
-    return np.hypot(*np.maximum(box[0] - positions, positions - box[1]).clip(0.0).T)

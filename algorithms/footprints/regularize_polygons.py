@@ -12,28 +12,28 @@ from ..geometry.kept_areas import welded, with_areas
 from ..geometry.polygon_overlap import are_within, as_polygons, overlaps
 from ..geometry.ring_directions import deviations
 from ..geometry.rings import distances_to_rings, perimeter, polygon_area, sampled_rings, sides_of_rings
+from ..rules import rule, rules
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage, tunable
 from .drawn_blocks import BlockDrawing, draw_block
 from .outline_pieces import OutlinePiece, blocks_of, sampled, shared_directions
 from .soft_shares import LEAST_SPACING, TOLERANCE_SPACINGS, Lattice, Shares
 
-# Distance (scales) of samples: stairs of a raster are as high as its cells, and each sample is of more than one of
-# them. With samples one scale apart outlines of rasters have a fifth more corners, no closer.
-_SAMPLE_SCALES = 1.5
 
-# Largest number of rings that are measured: the rings of a country would take hours and gigabytes.
-_MEASURED = 20_000
+@rules
+class _RULES:
+    """How the scale of outlines is measured, and how much polygons may change."""
 
-# Step (m) of the samples along which they are measured.
-_FINE = 0.1
+    sample: float = rule(1.5, "scales", "distance of samples: one scale apart, rasters have a fifth more corners")
+    measured: int = rule(20_000, "rings", "most that are measured: all of a country would take hours and gigabytes")
+    fine: float = rule(0.1, "m", "step of the samples along which they are measured")
+    piece: float = rule(4.0, "edges", "length of the pieces measured: of several edges, since one edge is straight")
+    straight: float = rule(2.0, "m", "least length of these; twice as long at most, as longer ones go around corners")
+    deviations: float = rule(2.5, "standard deviations", "scale across straight pieces: stairs of 1 m have 0.25 m")
+    moved: float = rule(0.5, "scales", "greatest shift of all walls to restore the area: more makes another polygon")
+    overlapping: float = rule(0.2, "share", "of the smaller polygon: more is a part or a storey, not a neighbor")
+    finer: float = rule(0.6, "share", "of the scale at which a polygon is drawn again: half of it gives more corners")
+    trials: int = rule(8, "trials", "most for a block: the last one has a thirtieth of the scale, no step of a wall")
 
-# Largest shift (scales) of all walls of a drawn polygon to restore its area; a larger one would make another polygon.
-# Where it is drawn finer more is allowed, as neighbors take or leave the strip between.
-_MOST_MOVED = 0.5
-
-# Two polygons are drawn separately if this share of the smaller one overlaps the other: it is a part or a storey, not a
-# neighbor.
-_OVERLAPPING = 0.2
 
 _FIELDS = (
     Field("regularized", int, "1 drawn anew; 0 as it was, since it could not be drawn without losing area or a hole"),
@@ -98,9 +98,9 @@ def regularize_polygons(
     polygons do not overlap. Then whole walls are moved along their normals, by little in the sum of squares, until
     every polygon has its area again.
 
-    A polygon that would lose a hole, cross itself, or need walls moved by more than ``_MOST_MOVED`` of the scale, is
+    A polygon that would lose a hole, cross itself, or need walls moved by more than ``_RULES.moved`` of the scale, is
     drawn again with a finer tolerance. Where that does not help either, its block stays as it is. Polygons that overlap
-    by ``_OVERLAPPING`` of the smaller one are drawn apart from each other.
+    by ``_RULES.overlapping`` of the smaller one are drawn apart from each other.
 
     References
     ----------
@@ -127,7 +127,8 @@ def regularize_polygons(
         tolerance = TOLERANCE_SPACINGS * _scale([ring for rings in local for ring in rings])
         monitor.resolved(tolerance=tolerance)
     made = _drawn(local, tolerance / TOLERANCE_SPACINGS, monitor)
-    moved = [_farthest(new, old) for new, old in zip(made, local)]
+    off = (distances_to_rings(sampled_rings(new, LEAST_SPACING), old) for new, old in zip(made, local))
+    moved = [float(distance.max()) for distance in off]
     n_same = sum(new is old for new, old in zip(made, local))
     n_corners = [sum(len(ring) - 1 for rings in one for ring in rings) for one in (local, made)]
     monitor.inform(f"{len(local)} polygons had {n_corners[0]:,} corners and have {n_corners[1]:,} now.")
@@ -142,19 +143,18 @@ def _scale(rings: list) -> float:
     """Return the scale (m) of the detail along rings that is no wall: stairs of cells, noise of points."""
     length = np.sort(np.concatenate([np.hypot(*np.diff(ring, axis=0).T) for ring in rings]))
     step = float(length[np.searchsorted(np.cumsum(length), length.sum() / 2)])
-    # Pieces of four edges are measured, of 2 to 4 m: longer ones go around corners.
-    count = round(float(np.clip(4.0 * step, 2.0, 4.0)) / _FINE)
-    long = [ring for ring in rings if perimeter(ring) >= 2 * count * _FINE]
-    long = long[:: 1 + len(long) // _MEASURED]
-    across = np.concatenate([np.zeros(0), *(deviations(sampled(ring, _FINE), count) for ring in long)])
-    # Stairs of 1 m deviate by 0.25 m.
-    noise = 2.5 * float(np.median(across)) if len(across) else 0.0
+    piece = float(np.clip(_RULES.piece * step, _RULES.straight, 2 * _RULES.straight))
+    count = round(piece / _RULES.fine)
+    long = [ring for ring in rings if perimeter(ring) >= 2 * count * _RULES.fine]
+    long = long[:: 1 + len(long) // _RULES.measured]
+    across = np.concatenate([np.zeros(0), *(deviations(sampled(ring, _RULES.fine), count) for ring in long)])
+    noise = _RULES.deviations * float(np.median(across)) if len(across) else 0.0
     return max(LEAST_SPACING, min(step, noise))
 
 
 def _drawn(polygons: list, scale: float, monitor: Monitor) -> list:
     """Redraw polygons at a scale (m); return those that can't be redrawn unchanged, as the same objects."""
-    made, done, step = list(polygons), 0, _SAMPLE_SCALES * scale
+    made, done, step = list(polygons), 0, _RULES.sample * scale
     samples = [[sampled(ring, step) for ring in rings] for rings in polygons]
     for layer in _layers(samples):
         directions = dict(zip(layer, shared_directions([samples[row] for row in layer])))
@@ -171,7 +171,7 @@ def _layers(samples: list) -> list[list[int]]:
     """Sort polygons, given by samples along them, into layers without clear overlaps; return their indices."""
     edges = as_polygons([[np.concatenate([ring, ring[:1]]) for ring in rings] for rings in samples])
     one, other, shared = overlaps(edges, edges, Monitor())
-    is_over = (one != other) & (shared > _OVERLAPPING * np.minimum(edges.area[one], edges.area[other]))
+    is_over = (one != other) & (shared > _RULES.overlapping * np.minimum(edges.area[one], edges.area[other]))
     over: list[set[int]] = [set() for _ in samples]
     for row, neighbor in zip(one[is_over].tolist(), other[is_over].tolist()):
         over[row].add(neighbor)
@@ -189,12 +189,12 @@ def _block(polygons: dict[int, list], directions: dict[int, np.ndarray], scale: 
     Polygons and main directions, °, go by their numbers.
     """
     finer = dict.fromkeys(polygons, 1.0)
-    for trial in range(8):
-        monitor.progress(trial / 8)
+    for trial in range(_RULES.trials):
+        monitor.progress(trial / _RULES.trials)
         drawn, bad = _tried(polygons, directions, scale, finer)
         if not bad:
             return drawn
-        finer.update({number: 0.6 * finer[number] for number in bad})
+        finer.update({number: _RULES.finer * finer[number] for number in bad})
     return list(polygons.values())
 
 
@@ -202,7 +202,7 @@ def _tried(
     polygons: dict[int, list], directions: dict[int, np.ndarray], scale: float, finer: dict[int, float]
 ) -> tuple[list, list[int]]:
     """Return polygons of a block drawn at shares of a scale (m), and the numbers of those that are not sound."""
-    spacing, own = _SAMPLE_SCALES * scale, list(polygons.items())
+    spacing, own = _RULES.sample * scale, list(polygons.items())
     pieces = [OutlinePiece(number, [sampled(ring, spacing * finer[number]) for ring in rings]) for number, rings in own]
     shares = {number: _shares(rings, spacing) for number, rings in own}
     how = BlockDrawing(spacing, scale, scale**2, scale**2, finer=finer)
@@ -217,6 +217,7 @@ def _tried(
     turned = np.zeros(1)
     # Walls that end side by side leave short edges, which may turn around where walls are moved.
     while (turned < scale).all():
+        # A little more than the longest of these edges, so that rounding spares none.
         drawn = welded(drawn, 1.01 * turned.max())
         # A closed ring has four vertices at least.
         lost = [number for (number, _), new in zip(own, drawn) if min(map(len, new)) < 4]
@@ -228,6 +229,7 @@ def _tried(
             break
     edges = as_polygons(moved)
     one, other, shared = overlaps(edges, edges, Monitor())
+    # Areas are restored to rounding wherever they can be.
     is_bad = (turned > 0) | (np.abs(edges.area - wanted) > 0.01 * wanted)
     is_bad[one[np.abs(shared - np.where(one == other, edges.area[one], 0.0)) > MICROMETER]] = True
     return moved, [own[row][0] for row in np.flatnonzero(is_bad)]
@@ -241,8 +243,11 @@ def _turned(new: np.ndarray, old: np.ndarray) -> float:
 
 
 def _is_other(new: list, old: list, scale: float) -> bool:
-    """Return whether a polygon or a hole was lost, or its walls would have to move too far to keep its area."""
-    far = _MOST_MOVED * scale * sum(map(perimeter, old))
+    """Return whether a polygon or a hole was lost, or its walls would have to move too far to keep its area.
+
+    Where it is drawn finer they may move farther, as neighbors take or leave the strip between.
+    """
+    far = _RULES.moved * scale * sum(map(perimeter, old))
     return len(new) != len(old) or abs(polygon_area(new) - polygon_area(old)) > far
 
 
@@ -251,8 +256,3 @@ def _shares(rings: list, spacing: float) -> Shares:
     lattice = Lattice.around(rings[0], spacing)
     share = are_within(lattice.positions, sides_of_rings(rings)).reshape(lattice.shape).astype(np.float32)
     return Shares(lattice, share, 1 - share)
-
-
-def _farthest(new: list, old: list) -> float:
-    """Return the greatest distance (m) of a new outline from the old one."""
-    return float(distances_to_rings(sampled_rings(new, LEAST_SPACING), old).max())

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, grid_over
+from ..geometry.grid import distinct, find_cells, fixed_grid_over, grid_over
 from ..geometry.groups import topmost
 from ..packages import spatial
 from ..stage import Monitor
@@ -63,7 +63,8 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
         is compared.
     """
     grid = fixed_grid_over(xyz, spacing)
-    cell = _numbers(grid, xyz, cluster)
+    # The keys of two clusters differ by at least the size of the grid.
+    cell = grid.number(xyz) + distinct(cluster)[1].astype(np.int64) * (grid.rows * grid.columns)
     highest = topmost(xyz[:, 2], cell)
     cells, top = cell[highest], xyz[highest]
     is_roof = np.ones(len(xyz), bool)
@@ -79,11 +80,6 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
 
     in_chunks(work, np.arange(len(xyz)), ROWS_AT_ONCE, Monitor())
     return is_roof
-
-
-def _numbers(grid: Grid, xyz: np.ndarray, cluster: np.ndarray) -> np.ndarray:
-    """Return one key (n,) per cell and cluster; the keys of two clusters differ by at least the size of the grid."""
-    return grid.number(xyz) + distinct(cluster)[1].astype(np.int64) * (grid.rows * grid.columns)
 
 
 def edge_weights(roof: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarray:

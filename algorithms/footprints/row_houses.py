@@ -68,10 +68,6 @@ ROWS = RowRules()
 #: of Delft move by 0.19 instead of 0.08 m (median) when points move by 2 mm.
 _FIXED = 16.0
 
-# Number of mean-shift steps that move a wall to the middle of the evidence around it; it hardly moves after half of
-# them.
-_SHIFTS = 10
-
 # Widths (m) of the houses of a row that are tried, a fifth apart.
 _WIDTHS = 4.0 * 1.2 ** np.arange(7)
 
@@ -249,7 +245,8 @@ class _View:
     def _places(self, seen: np.ndarray, walls: np.ndarray) -> np.ndarray:
         """Move walls (columns of the chain) to the middle of the evidence around them, by mean shift."""
         column, place = np.arange(len(seen)), walls.astype(float)
-        for _ in range(_SHIFTS):
+        # Mean shifts move a wall to the middle of the evidence around it; it hardly moves after half of these.
+        for _ in range(10):
             near = seen * np.clip(1 - ((column - place[:, None]) * self.step / ROWS.far) ** 2, 0.0, None)
             total = near.sum(axis=1)
             place = np.where(total > 0, near @ column / np.where(total > 0, total, 1.0), place)

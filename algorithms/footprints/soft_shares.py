@@ -10,6 +10,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import DEVIATIONS
 from ..geometry.raster_filling import nearest_known
 from ..packages import ndimage
 
@@ -27,11 +28,8 @@ _WIDE = 3.0
 # are as near to maps and as stable.
 _EVEN = 1.0
 
-# Weights end at this many standard deviations, where a hundredth of the greatest is left.
-_TRUNCATE = 3.0
-
-# Distance (spacings) from a point up to which it has a weight.
-REACH = _NEAR * _TRUNCATE
+# Distance (spacings) from a point up to which it has a weight: a hundredth of the greatest.
+REACH = _NEAR * DEVIATIONS
 
 # Distance (spacings) beyond which buildings affect only the directions of each other's outlines, and points do not
 # affect the attributes of an outline.
@@ -227,7 +225,7 @@ def _density(lattice: Lattice, plan: np.ndarray, width: float, weight: Optional[
 
 def smoothed(field: np.ndarray, width: float) -> np.ndarray:
     """Smooth a field on a lattice by a Gaussian of standard deviation ``width`` (spacings)."""
-    return ndimage.gaussian_filter(field, width * NODES, mode="constant", truncate=_TRUNCATE)
+    return ndimage.gaussian_filter(field, width * NODES, mode="constant", truncate=DEVIATIONS)
 
 
 def spread_out(label: np.ndarray) -> np.ndarray:

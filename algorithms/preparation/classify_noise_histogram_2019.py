@@ -23,17 +23,15 @@ from .height_histograms import (
 # Average number of points of a cell: enough that the highest and lowest meter of a scene hold some at any density.
 _POINTS_PER_CELL = 4000
 
-# Width (m) of the surroundings that decide on a point: its cell, at 1 point/m². It is narrower in denser clouds. A
-# cell without a full bin borrows from cells around it, which may lie beyond that where a survey is run in tiles.
-_REACH = 64.0
-
 
 @stage(
     "Preparation",
     title="Classify noise by height histogram (as published 2019)",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,CH filter,Carrilho",
     writes=("classification",),
-    reach=lambda tunables: tunables["cell_size"] or _REACH,
+    # The width of a cell at 1 point/m²; it is narrower in denser clouds. A cell without a full bin borrows from cells
+    # around it, which may lie beyond that where a survey is run in tiles.
+    reach=lambda tunables: tunables["cell_size"] or _POINTS_PER_CELL**0.5,
     cost=0.3,
 )
 def classify_noise_histogram_2019(

@@ -9,6 +9,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..cloud.asprs import CODES
 from ..geometry.groups import items, run_starts
 from ..geometry.sparse_voxels import MOST_KEYS, TOUCH, refuse_fine, voxel_index
 from ..stage import Monitor, stage, tunable
@@ -16,9 +17,6 @@ from ..threads import ROWS_AT_ONCE, in_chunks
 
 # Steps on the side of a voxel: positions in it are whole numbers of steps, so that sums don't depend on the order.
 _STEPS = 2.0**32
-
-# Numbers that a class can have in LAS.
-_CODES = 256
 
 
 @dataclass(frozen=True)
@@ -241,8 +239,8 @@ def _majority(classes: np.ndarray, which: np.ndarray) -> np.ndarray:
     made = np.minimum.reduceat(classes, firsts).astype(np.uint8)
     is_mixed = made != np.maximum.reduceat(classes, firsts)
     among = is_mixed[which]
-    pair, count = np.unique(which[among] * _CODES + classes[among], return_counts=True)
-    voxel, kind = np.divmod(pair, _CODES)
+    pair, count = np.unique(which[among] * CODES + classes[among], return_counts=True)
+    voxel, kind = np.divmod(pair, CODES)
     order = np.lexsort((kind, -count, voxel))
     first = order[run_starts(voxel[order])]
     made[voxel[first]] = kind[first]

@@ -9,14 +9,12 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import MILLIMETER
 from ..stage import Monitor, stage, tunable
 
 # Largest deviation of a matrix times its transpose from the identity: a rotation with four decimals has it. The
 # nearest rotation is taken.
 _RIGID = 2e-4
-
-# The user is warned of points that the nearest rotation puts farther (m) from where the matrix itself would.
-_LEAST_WARNED = 0.001
 
 # Clouds whose boxes are farther apart than this (m) are likely not of one site, or one is misplaced.
 _APART = 1.0
@@ -236,7 +234,7 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
     monitor.resolved(**measures)
     farthest = np.abs(xyz).max(axis=0)
     off = float(np.linalg.norm(np.abs(transform.rotation - transform.given) @ farthest))
-    if off > _LEAST_WARNED:
+    if off > MILLIMETER:
         monitor.warn(
             f"The matrix of cloud {number} has too few decimals for its coordinates: the nearest rotation puts points "
             f"up to {off:.3g} m elsewhere."

@@ -14,7 +14,7 @@ from ..geometry.grid import distinct, find_cells, fixed_grid_over, plan_box
 from ..geometry.groups import components, least_of, mask_of
 from ..packages import spatial
 from ..stage import Monitor
-from .points_under_ground import near_cells
+from .points_under_ground import UNDER_GROUND, near_cells
 
 # Largest distance (m) between points of one object: chimneys and structures on roofs are lower, points along masts and
 # wires closer.
@@ -28,12 +28,6 @@ _SOLID_SHARE = 0.3
 
 # Side (point spacings) of the columns in which the share of stopped pulses is measured: 16 points of the scene in each.
 _SHARE_SPACINGS = 4.0
-
-# Least number of points assumed in a column: columns cut by the edge of the cloud count as half full.
-_LEAST_IN_COLUMN = 8
-
-# Fewest points of a component whose form is examined: one or two have none.
-_FORM_POINTS = 3
 
 # A component up to this size (m) is the head of a lamp; the points of birds are farther apart.
 _COMPACT = 1.0
@@ -67,9 +61,6 @@ _TUBE_LENGTH = 12.0
 
 # Lines are tried from each point through as many of the nearest ones.
 _TUBE_NEIGHBORS = 24
-
-# Least distance (m) between the two points that give a line: between nearer ones its direction is random.
-_TUBE_NEAREST = 1.0
 
 # Largest distance (m) between the two points that give a line.
 _TUBE_REACH = 16.0
@@ -117,14 +108,15 @@ def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Moni
     cells, which = distinct(cell)
     in_cell = np.bincount(which)
     pairs = np.unique(component[in_smaller].astype(np.int64) * len(cells) + which[in_smaller])
-    in_columns = np.bincount(
-        pairs // len(cells), np.maximum(in_cell[pairs % len(cells)], _LEAST_IN_COLUMN), len(n_points)
-    )
+    # Columns that the edge of the cloud cuts count as half full.
+    full = np.maximum(in_cell[pairs % len(cells)], _SHARE_SPACINGS**2 / 2)
+    in_columns = np.bincount(pairs // len(cells), full, len(n_points))
     is_loose = (in_columns > 0) & (n_points < _SOLID_SHARE * in_columns)
 
     order = in_smaller[np.argsort(component[in_smaller], kind="stable")]
     ends = np.searchsorted(component[order], np.arange(len(n_points) + 1))
-    for number in np.flatnonzero(is_loose & (n_points >= _FORM_POINTS)).tolist():
+    # Fewer points have no form.
+    for number in np.flatnonzero(is_loose & (n_points >= UNDER_GROUND.few)).tolist():
         points = xyz[order[ends[number] : ends[number + 1]]]
         is_loose[number] = not _has_form(points, max(_COMPACT, _COMPACT_SPACINGS * spacing))
         monitor.progress(0.5)
@@ -132,11 +124,11 @@ def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Moni
 
 
 def _is_cut(xyz: np.ndarray, component: np.ndarray, link: float) -> np.ndarray:
-    """Return the mask of components of ``_FORM_POINTS`` and more at the cloud's border: they may be parts of others."""
+    """Return the mask of components with a form at the cloud's border: they may be parts of others."""
     low, high = plan_box(xyz)
     x, y = xyz[:, 0], xyz[:, 1]
     is_outer = (x < low[0] + link) | (x > high[0] - link) | (y < low[1] + link) | (y > high[1] - link)
-    return (np.bincount(component, is_outer) > 0) & (np.bincount(component) >= _FORM_POINTS)
+    return (np.bincount(component, is_outer) > 0) & (np.bincount(component) >= UNDER_GROUND.few)
 
 
 def _has_form(points: np.ndarray, compact: float) -> bool:
@@ -186,7 +178,8 @@ def _on_wires(points: np.ndarray) -> np.ndarray:
         off = points[others] - points[row]
         along = off[1:, :2]
         length = np.linalg.norm(along, axis=1)
-        usable = length > _TUBE_NEAREST
+        # Between nearer points, which may be of one compact object, the direction of a line is random.
+        usable = length > _COMPACT
         along, rise = along[usable] / length[usable, None], off[1:, 2][usable] / length[usable]
         at = along @ off[:, :2].T
         across = np.abs(along[:, :1] * off[:, 1] - along[:, 1:] * off[:, 0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes
+from ..cloud.asprs import CODES, NOISE, VEGETATION, PointClass, parse_classes
 from ..geometry.groups import mask_of
 from ..params import IGNORED_CLASSES
 from ..report.charts import draw_matrix
@@ -28,12 +28,6 @@ _KINDS = {
     "bridges": (PointClass.BRIDGE_DECK,),
     "noise": NOISE,
 }
-
-# Classes of points that nobody has classified.
-_UNCLASSIFIED = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
-
-# Numbers that a class can have in LAS.
-_CODES = 256
 
 # Names of the colors of the map.
 _LEGEND = ("right", "another class called ground", "ground called another class", "other classes confused")
@@ -121,9 +115,9 @@ def assess_classes(
     true_classes = reference_classification[match_points(xyz, reference_xyz)]
     xyz, called, true = counted_points(xyz, classification, true_classes, parse_classes(ignored_classes))
     monitor.progress(0.5)
-    every = confusion(true, called, _CODES)
+    every = confusion(true, called, CODES)
     parts = merged(np.flatnonzero(every.any(axis=0) | every.any(axis=1)), groups)
-    number = np.zeros(_CODES, np.int64)
+    number = np.zeros(CODES, np.int64)
     for i, part in enumerate(parts):
         number[part] = i
     matrix = confusion(number[true], number[called], len(parts))
@@ -137,7 +131,8 @@ def assess_classes(
     }
     monitor.progress(0.7)
     names = [_called(part) for part in parts]
-    outcome = _outcome(called, true, number[called] == number[true])
+    kinds = [number[called] == number[true], called == PointClass.GROUND, true == PointClass.GROUND]
+    outcome = np.select(kinds, [REST, HIT, MISS], FALSE).astype(np.uint8)
     return Report(values, _page(matrix, names, values, _table(matrix, names, rates), draw_map(xyz, outcome, _LEGEND)))
 
 
@@ -170,7 +165,7 @@ def merged(occurring: np.ndarray, groups: list[np.ndarray]) -> list[np.ndarray]:
 def _called(numbers: np.ndarray) -> str:
     """Return the names of classes for users: their numbers, and the name of their kind or of the class."""
     classes = {int(number) for number in numbers}
-    kinds = {"unclassified": _UNCLASSIFIED, **_KINDS}
+    kinds = {"unclassified": (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED), **_KINDS}
     kind = next((name for name, members in kinds.items() if len(classes) > 1 and classes <= set(members)), "")
     standard = {int(one): one.name.replace("_", " ").lower() for one in PointClass}
     names = [kind] if kind else [standard[number] for number in sorted(classes) if number in standard]
@@ -196,12 +191,6 @@ def _table(matrix: np.ndarray, names: list[str], rates: dict[str, np.ndarray]) -
     counts = zip(names, matrix.sum(axis=1), matrix.sum(axis=0), figures)
     rows = [[name, f"{true:,}", f"{called:,}", *map(percent, of_class)] for name, true, called, of_class in counts]
     return draw_table("Classes", head, rows)
-
-
-def _outcome(called: np.ndarray, true: np.ndarray, is_right: np.ndarray) -> np.ndarray:
-    """Return the outcome of each point (n,), as the map shows it."""
-    taken, lost = called == PointClass.GROUND, true == PointClass.GROUND
-    return np.select([is_right, taken, lost], [REST, HIT, MISS], FALSE).astype(np.uint8)
 
 
 def _page(matrix: np.ndarray, names: list[str], values: dict, table: str, picture: str) -> str:

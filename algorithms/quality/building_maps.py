@@ -18,8 +18,9 @@ from ..stage import LayerFeatures, Monitor, feature_names
 # Footprints and a map farther apart than this (m) show different areas, even if both are incomplete.
 _ELSEWHERE = 1000.0
 
-# A map covers an area within this distance (m) of its buildings: a wide street or a small park.
-_AROUND = 50.0
+# Surroundings (m) of a building: a wide street or a small park. A map covers the area within them, and what lies in
+# them decides on the building; no part that is added to it reaches farther.
+AROUND = 50.0
 
 
 @dataclass(frozen=True)
@@ -202,7 +203,7 @@ def amid(first: BuildingMap, second: BuildingMap, overlap: Overlap) -> np.ndarra
     # Positions every 2 m, which no building is narrower than.
     outlines = sampled_rings([ring for rings in first.rings for ring in rings[:1]], 2.0)
     middles = np.array([plan_box(second.rings[row][0]).sum(axis=0) / 2 for row in rest])
-    for row, middle, near in zip(rest, middles, spatial.cKDTree(outlines).query_ball_point(middles, _AROUND)):
+    for row, middle, near in zip(rest, middles, spatial.cKDTree(outlines).query_ball_point(middles, AROUND)):
         angles = np.sort(np.arctan2(*(outlines[near] - middle).T))
         gaps = np.diff(angles, append=angles[:1] + 2 * np.pi)
         inside[row] = len(near) > 0 and gaps.max() < np.pi

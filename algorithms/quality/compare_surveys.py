@@ -31,9 +31,6 @@ NEW, GONE = "new", "gone"
 
 COLORS = {UNCHANGED: BLUE, HEIGHT: CYAN, OUTLINE: GREEN, BOTH: PURPLE, NEW: RED, GONE: YELLOW}
 
-# Attributes of heights (m); the first one that both layers have is compared.
-_HEIGHTS = ("ridge_height", "height")
-
 
 @rules
 class RULES:
@@ -212,7 +209,7 @@ def _height_changes(
     layers: tuple, maps: tuple[BuildingMap, BuildingMap], groups: _Groups, monitor: Monitor
 ) -> np.ndarray:
     """Return the rise (m) of each group from the earlier to the new survey, the new one first; NaN where unknown."""
-    for name in _HEIGHTS:
+    for name in ("ridge_height", "height"):
         found = (_numbers(layer.columns.get(name)) for layer in layers)
         columns = [column for column in found if column is not None]
         if len(columns) == len(layers):

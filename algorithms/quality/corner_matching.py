@@ -15,8 +15,8 @@ from ..stage import Monitor
 # A vertex at which the outline turns by less is no corner but a point on a straight or round wall, degrees.
 _LEAST_TURN = 20.0
 
-# Largest difference in direction between corners that can be the same, degrees.
-_FACING = 60.0
+# Largest difference in direction between corners, or walls, that can be the same, degrees.
+FACING = 60.0
 
 # Search radius (m) for walls, and for corners before the tolerance is known; most walls are longer.
 FARTHEST = 3.0
@@ -166,7 +166,7 @@ def nearest_corners(
     one, other, distance = near["i"], near["j"], near["v"]
     count = int(max(same[1].max(), new.building.max())) + 1
     linked = find_cells(same[0] * count + same[1], old.building[one] * count + new.building[other])[1]
-    facing = (old.facing[one] * new.facing[other]).sum(axis=1) >= np.cos(np.deg2rad(_FACING))
+    facing = (old.facing[one] * new.facing[other]).sum(axis=1) >= np.cos(np.deg2rad(FACING))
     alike = linked & facing
     one, other, distance = one[alike], other[alike], distance[alike]
     order = np.lexsort((other, one, distance))

@@ -10,17 +10,20 @@ from ..geometry.polygon_overlap import are_within, as_polygons, overlaps
 from ..geometry.rings import is_valid, perimeter, polygon_area, sides_of_rings
 from ..geometry.subdivision import Subdivision
 from ..packages import spatial
+from ..rules import rule, rules
 from ..stage import Monitor
 
-# Cuts along old walls pass vertices this closely (m). Maps have details of a centimeter; where lines nearly coincide,
-# coarser cuts are sound.
-_OLD_SNAPS = 0.002, 0.01, 0.05
 
-# Area of a cell as a share (m) of the length around it below which it is a seam: a strip 5 cm wide.
-_THIN = 0.025
+@rules
+class _RULES:
+    """Cuts along walls, the cells between them, and sound polygons."""
 
-# Sine of the greatest angle between a new wall and the old one that it is part of, 10°.
-_PARALLEL = 0.17
+    # Maps have details of a centimeter; where lines nearly coincide, coarser cuts are sound.
+    old_snaps: tuple[float, ...] = rule((0.002, 0.01, 0.05), "m", "at which cuts along old walls pass vertices")
+    new_snap: float = rule(0.3, "widths of a change", "at which cuts along new walls pass vertices")
+    thin: float = rule(0.025, "m", "area of a cell per length around it, below which it is a seam: a strip 5 cm wide")
+    parallel: float = rule(0.17, "sine", "of the greatest angle between a new wall and the old one it continues, 10°")
+    overlap: float = rule(0.01, "m²", "that a polygon shares with what stays; with more, a wall was not cut")
 
 
 def draw_labels(
@@ -50,8 +53,8 @@ def draw_labels(
     )
     built = _along_old(built, np.concatenate([there, stays]), width)
     best: dict[int, list] = {}
-    for snap in _OLD_SNAPS:
-        drawn = _drawn(lattice, wanted, there, stays, built, (snap, 0.3 * width))
+    for snap in _RULES.old_snaps:
+        drawn = _drawn(lattice, wanted, there, stays, built, (snap, _RULES.new_snap * width))
         sound = {one: own for one, own in drawn.items() if _is_sound(own, (wanted == one).sum(), lattice, fixed, width)}
         if len(sound) == len(drawn):
             return drawn
@@ -63,10 +66,10 @@ def _is_sound(polygons: list, count: int, lattice: Lattice, fixed: list, width: 
     """Return whether polygons are valid, about as large as that many nodes, and overlap nothing that stays."""
     edges = as_polygons(polygons)
     around = sum(perimeter(ring) for rings in polygons for ring in rings)
-    # More than half the width of a change along the outline, or an overlap of 0.01 m², is a wall that was not cut.
+    # More than half the width of a change along the outline is a wall that was not cut.
     is_sized = abs(edges.area.sum() - count * lattice.step**2) <= 0.5 * width * around
     shared = overlaps(edges, as_polygons(fixed), Monitor())[2]
-    return is_sized and bool((shared <= 0.01).all()) and all(map(is_valid, polygons))
+    return is_sized and bool((shared <= _RULES.overlap).all()) and all(map(is_valid, polygons))
 
 
 def _drawn(
@@ -93,7 +96,7 @@ def _labels(cells: Subdivision, lattice: Lattice, wanted: np.ndarray) -> np.ndar
     pairs, sides = cells.edges()
     length = np.hypot(*np.diff(np.array(cells.vertices)[pairs], axis=1)[:, 0].T)
     around = np.bincount(sides.ravel(), np.repeat(length, 2), len(cells))
-    is_seam = (cells.areas() < _THIN * around) | np.array([len(nodes) == 0 for nodes in cells.members])
+    is_seam = (cells.areas() < _RULES.thin * around) | np.array([len(nodes) == 0 for nodes in cells.members])
     label, flat = np.full(len(cells), -1), wanted.ravel() + 1
     for cell in np.flatnonzero(~is_seam):
         label[cell] = np.bincount(flat[cells.members[cell]]).argmax() - 1
@@ -116,7 +119,7 @@ def _along_old(new: np.ndarray, old: np.ndarray, width: float) -> np.ndarray:
         across = own[..., 1] * along[:, 0] - own[..., 0] * along[:, 1]
         gap = np.maximum(reach.min(axis=0) - length, -reach.max(axis=0))
         off = np.abs(across).max(axis=0)
-        is_near = (np.abs(along[:, 0] * y - along[:, 1] * x) < _PARALLEL) & (off < width) & (gap < width)
+        is_near = (np.abs(along[:, 0] * y - along[:, 1] * x) < _RULES.parallel) & (off < width) & (gap < width)
         if is_near.any():
             best = np.where(is_near, off + np.maximum(gap, 0.0), np.inf).argmin()
             moved[number] = start[best] + reach[:, best, None] * along[best]

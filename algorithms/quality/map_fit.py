@@ -12,33 +12,26 @@ from ..geometry.groups import components, split_groups
 from ..geometry.polygon_overlap import Polygons, are_in_polygons
 from ..geometry.rings import along_sides, is_valid
 from ..packages import spatial
+from ..rules import rule, rules
 from ..stage import Monitor
 from .building_maps import BuildingMap
-from .corner_matching import FARTHEST, MEDIANS
+from .corner_matching import FACING, FARTHEST, MEDIANS
 
-# Distance (m) of positions along walls: several on the shortest wall.
-_STEP = 0.25
 
-# Walls with another building within this distance (m) beyond are not seen from above.
-_BEYOND = 0.3
+@rules
+class _RULES:
+    """Which walls of both maps are counterparts, and which buildings are displaced."""
 
-# Cosine of the greatest angle between the normals of a wall and its counterpart, 45°.
-_SAME_WAY = 0.7
-
-# Weight of the usual shift and overhang, as a share of the weight of the walls: it holds rows along their street.
-_USUAL = np.array([0.005, 0.005, 0.05])
-
-# Share of the length of its walls that must have a counterpart for a building to be moved.
-_FOUND = 0.6
-
-# A building that is moved lies this much nearer to its counterpart afterwards: least ratio of the deviations.
-_NEARER = 0.35
-
-# Shifts are of a building if they are greater than the usual one by this tolerance (m), at least and at most.
-_LEAST_SHIFT, _MOST_SHIFT = 0.75, 2.0
-
-# Greatest overhang (m) that is taken off new outlines.
-_MOST_OVERHANG = 1.0
+    step: float = rule(0.25, "m", "distance of positions along walls: several on the shortest wall")
+    beyond: float = rule(0.3, "m", "outside of a wall: another building within it hides the wall from above")
+    full_weight: float = rule(0.1, "m", "off its counterpart, as an outline usually is; walls farther off weigh less")
+    usual_shift: float = rule(0.005, "share", "of the walls' weight, of the usual shift: it holds rows along a street")
+    usual_overhang: float = rule(0.05, "share", "of the walls' weight, of the usual overhang: it is alike on all sides")
+    found: float = rule(0.6, "share", "of its walls that have a counterpart, of a building that is moved")
+    nearer: float = rule(0.35, "ratio", "of the distances to the counterpart after a building is moved and before")
+    least_shift: float = rule(0.75, "m", "by which the shift of a building that is moved differs from the usual one")
+    most_shift: float = rule(2.0, "m", "by which a shift differs that is a building's own in any map")
+    most_overhang: float = rule(1.0, "m", "physics: that is taken off new outlines; wider roofs are porches")
 
 
 @dataclass(frozen=True)
@@ -67,10 +60,10 @@ def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
     off, found = walls.deviations(fits)
     before, _ = walls.deviations(np.tile(usual, (count, 1)))
     apart = np.hypot(*(fits - usual)[:, :2].T)
-    tolerance = np.clip(MEDIANS * np.median(apart), _LEAST_SHIFT, _MOST_SHIFT)
-    is_moved = (apart > tolerance) & (found >= _FOUND) & (off < _NEARER * before)
+    tolerance = np.clip(MEDIANS * np.median(apart), _RULES.least_shift, _RULES.most_shift)
+    is_moved = (apart > tolerance) & (found >= _RULES.found) & (off < _RULES.nearer * before)
     shift = np.where(is_moved[:, None], fits[:, :2] - usual[:2], 0.0)
-    overhang = float(np.clip(usual[2], -_MOST_OVERHANG, _MOST_OVERHANG))
+    overhang = float(np.clip(usual[2], -_RULES.most_overhang, _RULES.most_overhang))
     return MapFit(usual[:2], overhang, float(np.nanmedian(np.append(off[~is_moved], 0.0))), shift[group])
 
 
@@ -79,7 +72,7 @@ def in_frame(new: BuildingMap, fit: MapFit) -> list:
     sides = new.polygons.edges
     way = sides[:, 1] - sides[:, 0]
     outward = np.column_stack([way[:, 1], -way[:, 0]]) / np.hypot(*way.T)[:, None]
-    is_outer = ~are_in_polygons(sides.mean(axis=1) + _BEYOND * outward, new.polygons, Monitor())
+    is_outer = ~are_in_polygons(sides.mean(axis=1) + _RULES.beyond * outward, new.polygons, Monitor())
     made, at = [], 0
     for rings in new.rings:
         own = []
@@ -97,16 +90,16 @@ def in_frame(new: BuildingMap, fit: MapFit) -> list:
 
 def _touching(polygons: Polygons) -> tuple[int, np.ndarray]:
     """Return the number of groups of polygons that touch, and the group of each (n,)."""
-    position, side, _ = along_sides(polygons.edges, _STEP)
+    position, side, _ = along_sides(polygons.edges, _RULES.step)
     building = _polygon_of(side, polygons)
-    pairs = building[spatial.cKDTree(position).query_pairs(_BEYOND, output_type="ndarray")]
+    pairs = building[spatial.cKDTree(position).query_pairs(_RULES.beyond, output_type="ndarray")]
     return components(pairs[:, 0], pairs[:, 1], len(polygons.box))
 
 
 def _outer(polygons: Polygons) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return positions (p, 2) along outer walls, m, unit vectors out of these, and the polygon of each."""
-    position, side, outward = along_sides(polygons.edges, _STEP)
-    is_outer = ~are_in_polygons(position + _BEYOND * outward, polygons, Monitor())
+    position, side, outward = along_sides(polygons.edges, _RULES.step)
+    is_outer = ~are_in_polygons(position + _RULES.beyond * outward, polygons, Monitor())
     return position[is_outer], outward[is_outer], _polygon_of(side[is_outer], polygons)
 
 
@@ -133,21 +126,22 @@ class _Walls:
         """
         fits = np.tile(usual, (self.count, 1))
         factors = np.column_stack([self.outward, np.ones(len(self.outward))])
+        held = np.array([_RULES.usual_shift, _RULES.usual_shift, _RULES.usual_overhang])
         # A shift of 3 m is found in five rounds.
         for _ in range(8):
             apart = self._apart(fits)
             found = np.flatnonzero(np.isfinite(apart))
             own, one = self.group[found], factors[found]
             off = apart[found] - fits[own, 2]
-            # Deviations of more than 0.1 m get less weight, as in a fit of least absolute deviations.
-            weight = 1 / np.maximum(np.abs(off), 0.1)
+            # As in a fit of least absolute deviations.
+            weight = 1 / np.maximum(np.abs(off), _RULES.full_weight)
             total = np.bincount(own, weight, self.count) + 1e-9
             matrix = np.zeros((self.count, 3, 3))
             np.add.at(matrix, own, weight[:, None, None] * one[:, :, None] * one[:, None, :])
             right = np.zeros((self.count, 3))
             np.add.at(right, own, (weight * off)[:, None] * one)
-            right += total[:, None] * _USUAL * (usual - fits)
-            matrix += total[:, None, None] * np.diag(_USUAL)
+            right += total[:, None] * held * (usual - fits)
+            matrix += total[:, None, None] * np.diag(held)
             fits = fits + np.linalg.solve(matrix, right[..., None])[..., 0]
         return fits
 
@@ -158,7 +152,7 @@ class _Walls:
         _, near = self.tree.query(moved, 8, distance_upper_bound=FARTHEST)
         near = np.minimum(near, len(self.there))
         normal = np.vstack([self.normal, [0.0, 0.0]])[near]
-        is_same = (normal * self.outward[:, None]).sum(axis=2) > _SAME_WAY
+        is_same = (normal * self.outward[:, None]).sum(axis=2) > np.cos(np.radians(FACING))
         first = near[np.arange(len(near)), is_same.argmax(axis=1)]
         apart = np.vstack([self.there, [np.nan, np.nan]])[first] - moved
         return np.where(is_same.any(axis=1), (apart * self.outward).sum(axis=1), np.nan)

@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..criteria import MAJORITY
 from ..geometry.rings import signed_area
 from ..report.building_views import Views, boxes_around, draw_views
 from ..report.charts import BLUE, GRAY, RED, YELLOW, draw_bars
@@ -20,20 +21,11 @@ from ..stage import InputLayer, LayerFeatures, Measure, Report, feature_names, s
 # Of 514 buildings of seven real clouds, 45 had less than this confidence, 15 of the 16 false ones among them.
 SURE = 0.7
 
-# Confidence below which a building is as likely as not.
-_EVEN = 0.5
-
 # Colors of the map by confidence.
-_COLORS = {"unknown": GRAY, f"{SURE} and more": BLUE, f"{_EVEN} to {SURE}": YELLOW, f"below {_EVEN}": RED}
+_COLORS = {"unknown": GRAY, f"{SURE} and more": BLUE, f"{MAJORITY} to {SURE}": YELLOW, f"below {MAJORITY}": RED}
 
 # Doubtful buildings that the page shows one by one: as many as fit two printed pages.
 _SHOWN = 10
-
-# Attributes of footprints that are numbers.
-_NUMBERS = ("height", "volume", "confidence")
-
-# Those that say why it is called building.
-_TEXTS = ("reason", "evidence")
 
 
 def _shown(footprints: LayerFeatures) -> np.ndarray:
@@ -115,7 +107,8 @@ def report_buildings(
     # Birds would be the highest points. Without other points there is no hillshade.
     is_shown = np.zeros(0, bool) if xyz is None else ~np.isin(classification, NOISE)
     surface = xyz[is_shown] if is_shown.any() else None
-    parts = [_map(footprints, facts, surface), _charts(facts)]
+    picture = draw_polygons(footprints.geometries, facts.kinds(), _COLORS, surface, "Confidence:")
+    parts = [picture or "<h2>Map</h2>\n<p>There are no footprints to show.</p>", _charts(facts)]
     monitor.progress(0.5)
     if xyz is not None and len(shown):
         views = Views(xyz, classification == PointClass.BUILDING)
@@ -151,12 +144,12 @@ class _Facts:
     def of(cls, footprints: LayerFeatures) -> _Facts:
         count = len(footprints)
         columns = {name.lower(): values for name, values in footprints.columns.items()}
-        numbers = {name: _numbers(columns.get(name), count) for name in _NUMBERS}
+        numbers = {name: _numbers(columns.get(name), count) for name in ("height", "volume", "confidence")}
         # Holes are clockwise: their areas are negative.
         area = np.array(
             [sum(signed_area(np.asarray(ring)[:, :2]) for ring in rings) for rings in footprints.geometries]
         )
-        texts = zip(*(columns.get(name, [None] * count) for name in _TEXTS))
+        texts = zip(*(columns.get(name, [None] * count) for name in ("reason", "evidence")))
         why = ["; ".join(str(one) for one in of_one if one) for of_one in texts]
         return cls(feature_names(footprints), area.reshape(count), why=why, **numbers)
 
@@ -167,7 +160,7 @@ class _Facts:
 
     def kinds(self) -> list[str]:
         """Return the kind of each building on the map."""
-        bounds = [np.isnan(self.confidence), self.confidence >= SURE, self.confidence >= _EVEN]
+        bounds = [np.isnan(self.confidence), self.confidence >= SURE, self.confidence >= MAJORITY]
         return np.select(bounds, list(_COLORS)[:3], list(_COLORS)[3]).tolist()
 
     def captions(self, rows: np.ndarray) -> list[str]:
@@ -202,12 +195,6 @@ def _totals(facts: _Facts, values: dict) -> list[Row]:
         meaning = f"Buildings of a confidence below {SURE}: look at these first."
         rows.append(Row("Doubtful", f"{values['doubtful']:,}", meaning))
     return rows
-
-
-def _map(footprints: LayerFeatures, facts: _Facts, xyz: Optional[np.ndarray]) -> str:
-    """Return the map of the footprints by confidence."""
-    drawn = draw_polygons(footprints.geometries, facts.kinds(), _COLORS, xyz, "Confidence:")
-    return drawn or "<h2>Map</h2>\n<p>There are no footprints to show.</p>"
 
 
 def _charts(facts: _Facts) -> str:

@@ -16,7 +16,7 @@ from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, feature_names, stage, tunable
-from .building_maps import clean_map, refuse_elsewhere
+from .building_maps import AROUND, clean_map, refuse_elsewhere
 from .changed_block import ChangedBlock
 from .corner_matching import LEAST_TOLERANCE, MEDIANS, MOST_TOLERANCE
 
@@ -36,9 +36,6 @@ _FIELDS = (
 
 # Side (m) of the squares in which buildings are decided on, which bounds the memory of their lattices.
 _SIDE = 400.0
-
-# How far (m) around its buildings others and points are seen: farther than a part that is added to one reaches.
-_REACH = 50.0
 
 # Coordinates (n, 3), m, and classes (n,) of some points of a survey.
 Points = tuple[np.ndarray, np.ndarray]
@@ -81,7 +78,7 @@ def _update_in_windows(
         monitor.resolved(least_width=least_width)
     start = MapUpdate.of(old, new, fit)
     update, part, done, kinds = start.copied(), start.copied(), 0, np.zeros(0, np.uint8)
-    for own, near, box in in_squares(start.boxes, _REACH, min(side, _SIDE)):
+    for own, near, box in in_squares(start.boxes, AROUND, min(side, _SIDE)):
         clouds = read(box + fit.shift)
         kinds = np.union1d(kinds, clouds[0][1])
         points, roofs = SeenPoints.of(*clouds[0], fit, sampling), [roof_points(*one, fit) for one in clouds]
@@ -128,7 +125,7 @@ def _update_in_windows(
     reference_title="Earlier point cloud",
     reference="A survey before this one, to find roofs that have risen or fallen since.",
     cost=20.0,
-    reach=_REACH,
+    reach=AROUND,
     windowed=_update_in_windows,
 )
 def update_map(
@@ -201,7 +198,7 @@ def update_map(
     The usual shift between the map and the new outlines, and how far these lie outside of its walls, are measured on
     all buildings and taken off the new outlines: new parts are drawn as the map draws its own. Buildings that touch
     are shifted together where all their walls lie elsewhere, by more than the others'. Then points are read by squares
-    of ``_SIDE`` m or less, and seen ``_REACH`` m around the buildings of each: each building is decided on in one.
+    of ``_SIDE`` m or less, and seen ``AROUND`` m around the buildings of each: each building is decided on in one.
 
     A part was added where the new outlines cover what the map does not, and removed where they don't and points show
     the ground on at least half of it. Both are at least ``least_width`` wide and have ``min_area``. A building is gone

@@ -24,23 +24,21 @@ _COLORS = np.array([[255, 255, 255], [187, 187, 187], [187, 85, 102]])
 # Pixels of the dot of a point, from its middle: right, up.
 _DOT = ((0, 0), (1, 0), (0, 1), (-1, 0), (0, -1))
 
-# Side of the cells by which the points around a building are found, m.
-_CELL = 25.0
-
 
 class Views:
     """The points of a cloud (n, 3), m, and which are of buildings (n,), by cells in plan."""
 
     def __init__(self, xyz: np.ndarray, is_building: np.ndarray) -> None:
         self.xyz, self.is_building = xyz, is_building
-        self._grid = fixed_grid_over(xyz, _CELL)
+        # Cells by which the points around a building are found; any size gives the same points.
+        self._grid = fixed_grid_over(xyz, _AROUND)
         number = self._grid.number(xyz)
         self._order = np.argsort(number, kind="stable")
         self._number = number[self._order]
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return the rows of the points in a box in plan."""
-        steps = [np.arange(start, end + _CELL, _CELL) for start, end in zip(low, high)]
+        steps = [np.arange(start, end + _AROUND, _AROUND) for start, end in zip(low, high)]
         corners = np.stack(np.meshgrid(*(np.append(one[:-1], end) for one, end in zip(steps, high))), axis=-1)
         cells = np.unique(self._grid.number(corners.reshape(-1, 2)))
         starts, ends = (np.searchsorted(self._number, cells, side=side) for side in ("left", "right"))

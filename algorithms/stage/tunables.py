@@ -31,6 +31,10 @@ class Param:
         """Return the same tunable with another default, for a stage that shares it."""
         return replace(self, default=default)
 
+    def with_automatic(self, automatic: str) -> Any:
+        """Return the same tunable with another automatic value, for a stage that shares it."""
+        return replace(self, automatic=automatic)
+
     @cached_property
     def _interval(self) -> re.Match:
         found = _INTERVAL.fullmatch(self.within)

@@ -10,19 +10,24 @@ import numpy as np
 from ..geometry.grid import refuse_sparse
 from ..geometry.groups import components
 from ..packages import ndimage
+from ..rules import rule, rules
 from ..stage import stage, tunable
 from .cloth import NEIGHBORS, Cloth
 from .ground_points import usable_points, with_ground
 
-# Particles of the cloth beyond the points on each side.
-_BORDER = 2
-
 # A cloth of up to this many particles is simulated however few points there are: all steps take about a minute.
 _MOST_PARTICLES = 500_000
 
-# Grid cells up to which particles take over the floor of one with a point as the authors' program does, link by link.
-# The search grows with the square of the distance, and no point lies near particles farther away.
-_FARTHEST_BY_LINKS = 20
+
+@rules
+class _RULES:
+    """The rim of the cloth, particles without a point, and parts that hang over slopes."""
+
+    border: int = rule(2, "particles", "beyond the points on each side, as in the authors' program")
+    # The search grows with the square of the distance, and no point lies near particles farther away.
+    by_links: int = rule(20, "cells", "up to which the floor of particles without a point is the authors', by links")
+    part: int = rule(50, "particles", "of the largest part that hangs freely and stays, as in the authors' program")
+    step: float = rule(0.3, "m", "of the floor between particles from which a part isn't let down: an object's side")
 
 
 @stage(
@@ -49,7 +54,8 @@ def classify_ground_cloth(
     ),
     slope_processing: bool = tunable(
         True,
-        "Let the cloth down where it hangs over slopes without a step of 0.3 m from one particle to the next.",
+        f"Let the cloth down where it hangs over slopes without a step of {_RULES.step:g} m from one particle to the "
+        "next.",
         label="Slope post-processing",
     ),
     time_step: float = tunable(
@@ -92,7 +98,7 @@ def classify_ground_cloth(
     authors published, with three differences. Of two points equally near to a particle the lower is taken, where the
     program takes the first in the file, so that the order of points has no influence. Particles at the corners of the
     cloud are let down as all others are, where the program leaves some of them out. Particles more than
-    ``_FARTHEST_BY_LINKS`` grid cells from any point, with none in their row and column, take the height of the nearest
+    ``_RULES.by_links`` grid cells from any point, with none in their row and column, take the height of the nearest
     point, where the program searches on over the links.
 
     References
@@ -114,7 +120,9 @@ def classify_ground_cloth(
     usable = usable_points(xyz, classification)
     points = xyz[usable]
     refuse_sparse(points, cell_size, _MOST_PARTICLES)
-    grid = _particles(points, cell_size)
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    columns, rows = (np.floor((high - low) / cell_size).astype(np.int64) + 2 * _RULES.border).tolist()
+    grid = _Particles(low, cell_size, rows, columns)
     cloth = Cloth(grid.floor(points), rigidness, time_step, top=-points[:, 2].min())
     cloth.settle(iterations, monitor.part(0, 0.95))
     height = _let_down(cloth) if slope_processing else cloth.height
@@ -124,7 +132,7 @@ def classify_ground_cloth(
 
 @dataclass(frozen=True)
 class _Particles:
-    """Where particles are in plan: ``size`` apart (m), the first ``_BORDER`` of these before ``corner``."""
+    """Where particles are in plan: ``size`` apart (m), the first ``_RULES.border`` of these before ``corner``."""
 
     corner: np.ndarray
     size: float
@@ -137,7 +145,7 @@ class _Particles:
         Many coordinates are multiples of a centimeter and lie just between two particles. The order of addition decides
         where rounding takes them, so that it is done as in the authors' program on coordinates from the corner.
         """
-        return (points[:, :2] - self.corner + _BORDER * self.size) / self.size
+        return (points[:, :2] - self.corner + _RULES.border * self.size) / self.size
 
     def floor(self, points: np.ndarray) -> np.ndarray:
         """Return the height (rows, columns) of the point nearest to each particle, upside down, m."""
@@ -162,13 +170,6 @@ class _Particles:
         return south_side * (1 - north) + north_side * north
 
 
-def _particles(points: np.ndarray, size: float) -> _Particles:
-    """Return the particles of a cloth with links of a ``size`` (m) over points (n, 3), m."""
-    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-    columns, rows = (np.floor((high - low) / size).astype(np.int64) + 2 * _BORDER).tolist()
-    return _Particles(low, size, rows, columns)
-
-
 def _filled(floor: np.ndarray) -> np.ndarray:
     """Give particles without a point the floor of the next that has one: eastward, westward, southward, northward.
 
@@ -180,7 +181,7 @@ def _filled(floor: np.ndarray) -> np.ndarray:
         filled = np.where(np.isnan(filled), _carried(floor, axis, backward), filled)
     empty = np.isnan(floor)
     distance, nearest = ndimage.distance_transform_edt(empty, return_indices=True)
-    filled = np.where(np.isnan(filled) & (distance > _FARTHEST_BY_LINKS), floor[tuple(nearest)], filled)
+    filled = np.where(np.isnan(filled) & (distance > _RULES.by_links), floor[tuple(nearest)], filled)
     missing = np.argwhere(np.isnan(filled))
     for hops in _hops():
         if not len(missing):
@@ -224,12 +225,11 @@ def _let_down(cloth: Cloth) -> np.ndarray:
     A particle comes down if small steps of the floor lead from it to one that lies on the floor.
     """
     part, n_parts = ndimage.label(cloth.is_movable)
-    # Parts of more than 50 particles are large.
-    hangs = (np.bincount(part.ravel(), minlength=n_parts + 1) > 50)[part] & cloth.is_movable
+    hangs = (np.bincount(part.ravel(), minlength=n_parts + 1) > _RULES.part)[part] & cloth.is_movable
     number = np.arange(part.size).reshape(part.shape)
     links, is_held = [], np.zeros(part.size, bool)
     for first, second in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
-        smooth = np.abs(cloth.floor[first] - cloth.floor[second]) < 0.3
+        smooth = np.abs(cloth.floor[first] - cloth.floor[second]) < _RULES.step
         both = smooth & hangs[first] & hangs[second]
         links.append((number[first][both], number[second][both]))
         for one, other in ((first, second), (second, first)):

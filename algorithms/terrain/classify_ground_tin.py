@@ -54,35 +54,26 @@ _GRANULARITIES = {"coarse": 2.0, "medium": 1.0, "fine": 1.0, "extra fine": 0.5}
 _REACH = 40.0
 
 
-_MAX_BUILDING_SIZE = tunable(
+ITERATION_DISTANCE = tunable(
     None,
-    "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
-    within="[1, 1000] m",
-    automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
-    "as the kind of terrain has it.",
-)
-
-
-_CELL_SIZE = tunable(
-    None,
-    "Cell in which the lowest point is looked for.",
-    label="Grid cell size",
-    within="[0.1, 100] m",
-    automatic="half the point spacing (coarse and medium: the whole), at least the granularity's.",
+    "Largest distance from its facet at which a point joins the surface.",
+    within="(0, 100] m",
+    automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
+    f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
     advanced=True,
 )
 
 
-_ITERATION_ANGLE = tunable(
+EDGE_LENGTH = tunable(
     None,
-    "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
-    "larger follows steeper breaks and lets more low objects in.",
-    within="(0, 90]°",
-    automatic=f"{GROUND.angle:g}°, in nature {GROUND.angle_in_nature:g}°.",
+    "Facets whose edges are all shorter are not refined.",
+    within="[0, 1000] m",
+    automatic="twice the grid cell size.",
+    advanced=True,
 )
 
 
-_SWEEP_DISTANCE = tunable(
+SWEEP_DISTANCE = tunable(
     None,
     "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
     within="[0, 100] m",
@@ -122,25 +113,31 @@ def classify_ground_tin(
         choices=tuple(_GRANULARITIES),
         automatic="fine where points are farther apart than 1 m, else medium.",
     ),
-    max_building_size: Optional[float] = _MAX_BUILDING_SIZE,
-    cell_size: Optional[float] = _CELL_SIZE,
-    iteration_angle: Optional[float] = _ITERATION_ANGLE,
-    iteration_distance: Optional[float] = tunable(
+    max_building_size: Optional[float] = tunable(
         None,
-        "Largest distance from its facet at which a point joins the surface.",
-        within="(0, 100] m",
-        automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
-        f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
+        "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
+        within="[1, 1000] m",
+        automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
+        "as the kind of terrain has it.",
+    ),
+    cell_size: Optional[float] = tunable(
+        None,
+        "Cell in which the lowest point is looked for.",
+        label="Grid cell size",
+        within="[0.1, 100] m",
+        automatic="half the point spacing (coarse and medium: the whole), at least the granularity's.",
         advanced=True,
     ),
-    edge_length: Optional[float] = tunable(
+    iteration_angle: Optional[float] = tunable(
         None,
-        "Facets whose edges are all shorter are not refined.",
-        within="[0, 1000] m",
-        automatic="twice the grid cell size.",
-        advanced=True,
+        "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
+        "larger follows steeper breaks and lets more low objects in.",
+        within="(0, 90]°",
+        automatic=f"{GROUND.angle:g}°, in nature {GROUND.angle_in_nature:g}°.",
     ),
-    sweep_distance: Optional[float] = _SWEEP_DISTANCE,
+    iteration_distance: Optional[float] = ITERATION_DISTANCE,
+    edge_length: Optional[float] = EDGE_LENGTH,
+    sweep_distance: Optional[float] = SWEEP_DISTANCE,
     keep_ground: bool = tunable(
         False,
         "Where the cloud has ground (2) already, it stays as it is and no other is looked for.",
@@ -230,7 +227,9 @@ def classify_ground_tin(
     )
     may_join = is_last.copy()
     may_join[is_last] = ~stands_free
-    terrain = _terrain(size) if terrain is None else terrain
+    if terrain is None:
+        kinds = _TERRAINS[_TERRAINS.index("town") :]
+        terrain = next((kind for kind in kinds if size <= _largest_building(kind)), kinds[-1])
     monitor.resolved(terrain=terrain, granularity=granularity, max_building_size=size, cell_size=cell_size)
 
     # 2. The surface grows from them.
@@ -254,12 +253,6 @@ def _cell(granularity: Optional[str], cell_size: Optional[float], spacing: float
         granularity = "fine" if spacing > 1 else "medium"
     least, cells = _GRANULARITIES[granularity], 0.5 if granularity.endswith("fine") else 1.0
     return granularity, max(least, cells * spacing) if cell_size is None else cell_size
-
-
-def _terrain(size: float) -> str:
-    """Return the kind of terrain whose largest building has room for ``size`` (m), from town on."""
-    kinds = _TERRAINS[_TERRAINS.index("town") :]
-    return next((kind for kind in kinds if size <= _largest_building(kind)), kinds[-1])
 
 
 def sweep(

@@ -8,18 +8,24 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.tin import CORNERS, Tin
+from ..rules import rule, rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
+from .classify_ground_tin import EDGE_LENGTH, ITERATION_DISTANCE, SWEEP_DISTANCE
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_lowest
-from .tin_densification import JoinRules, grow, offset_and_angle, surface_roughness, to_nearest_node
+from .tin_densification import DENSIFICATION, JoinRules, grow, offset_and_angle, surface_roughness, to_nearest_node
 
-# Edge length below which facets are closed: at least this, m, and the point spacing.
-_MIN_EDGE = 2.0
 
-# Share of the point spacing by which the surface may bend between points, when they join; and the roughnesses of the
-# finished surface within which the final sweep takes points. The ground filter of this project has its own.
-_BEND, _SWEEP = 0.5, 6.0
+@rules
+class _RULES:
+    """How points join the surface; the ground filter of this project has its own."""
+
+    edge: float = rule(2.0, "m", "least automatic edge length of facets; points are mirrored over half of it")
+    bend: float = rule(0.5, "point spacings", "by which the surface may bend between points, when they join")
+    sweep: float = rule(6.0, "deviations", "roughness of the finished surface within which points are ground")
+    level: float = rule(20.0, "°", "slope beyond a breakline up to which the surface carries a mirrored point on")
+    share: float = rule(0.25, "share", "of the distance at which others join, within which a mirrored point joins")
 
 
 @stage(
@@ -55,27 +61,13 @@ def classify_ground_tin_2000(
         "surface, which is estimated in each round. Larger follows steeper breaks and lets more low objects in.",
         within="(0, 90]°",
     ),
-    iteration_distance: Optional[float] = tunable(
-        None,
-        "Largest distance from its facet at which a point joins the surface.",
-        within="(0, 100] m",
-        automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
-        "point spacing, if that is more.",
-        advanced=True,
+    iteration_distance: Optional[float] = ITERATION_DISTANCE.with_automatic(
+        f"{DENSIFICATION.deviations:g} times the roughness of the surface, estimated in each round; or half of that "
+        f"and {_RULES.bend:g} point spacings, if that is more."
     ),
-    edge_length: Optional[float] = tunable(
-        None,
-        "Facets whose edges are all shorter are not refined.",
-        within="[0, 1000] m",
-        automatic=f"the point spacing, at least {_MIN_EDGE:g} m.",
-        advanced=True,
-    ),
-    sweep_distance: Optional[float] = tunable(
-        None,
-        "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
-        within="[0, 100] m",
-        automatic=f"{_SWEEP:g} times the roughness of the finished surface.",
-        advanced=True,
+    edge_length: Optional[float] = EDGE_LENGTH.with_automatic(f"the point spacing, at least {_RULES.edge:g} m."),
+    sweep_distance: Optional[float] = SWEEP_DISTANCE.with_automatic(
+        f"{_RULES.sweep:g} times the roughness of the finished surface."
     ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -140,24 +132,24 @@ def classify_ground_tin_2000(
     usable, spacing = usable_points(xyz, classification), sampling.spacing
     usable = in_plan_order(xyz, usable, spacing)
     points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
-    edge_length = max(_MIN_EDGE, spacing) if edge_length is None else edge_length
+    edge_length = max(_RULES.edge, spacing) if edge_length is None else edge_length
     least = sampling.height_resolution
 
     seeds = np.flatnonzero(last)[seeds_by_lowest(points[last], max_building_size)]
     rules = JoinRules(
         max_angle=iteration_angle,
         max_distance=iteration_distance,
-        bend=_BEND * spacing,
+        bend=_RULES.bend * spacing,
         edge_length=edge_length,
         least=least,
         estimates_angle=True,
         terrain_angle=terrain_angle,
         is_exhaustive=True,
-        beyond=partial(mirrored_angle, longest=max(1.0, spacing)),
+        beyond=partial(mirrored_angle, longest=max(_RULES.edge / 2, spacing)),
     )
     surface, distance, angle = grow(points, seeds, last, rules, monitor.part(0, 0.9))
     if sweep_distance is None:
-        sweep_distance = _SWEEP * surface_roughness(surface.nodes, least)
+        sweep_distance = _RULES.sweep * surface_roughness(surface.nodes, least)
     monitor.resolved(iteration_distance=distance, last_angle=angle)
     monitor.resolved(edge_length=edge_length, sweep_distance=sweep_distance)
     return with_ground(classification, usable[surface.within(sweep_distance)])
@@ -197,8 +189,7 @@ def mirrored_angle(
     image = image[rows]
     other_facet = tin.locate_near(image, highest[rows])
     offset, image_angle = offset_and_angle(tin, other_facet, image, to_nearest_node(tin, other_facet, image))
-    # Nearly level is less steep than 20°. A mirrored point joins within a quarter of the distance at which others join.
-    level = (tin.slope_cosine() > np.cos(np.radians(20.0))) & ~tin.is_extrapolated()
-    fits = (offset <= 0.25 * distance) & level[other_facet]
+    level = (tin.slope_cosine() > np.cos(np.radians(_RULES.level))) & ~tin.is_extrapolated()
+    fits = (offset <= _RULES.share * distance) & level[other_facet]
     angle[rows[fits]] = image_angle[fits]
     return angle

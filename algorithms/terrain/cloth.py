@@ -15,31 +15,40 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..rules import rule, rules
 from ..stage import Monitor
 
-# Share of its height difference to a neighbor that a particle moves in one pass; rigidness is the number of passes.
-_SHARE = 0.3
+
+@rules
+class _PROGRAM:
+    """Constants of the program that the authors of the method published; the paper leaves them open."""
+
+    share: float = rule(0.3, "share of its height difference", "to a neighbor that a particle moves in one pass")
+    gravity: float = rule(0.2, "m", "fall in a step of a particle at rest, with a time step of 1")
+    kept_speed: float = rule(0.99, "share of its speed", "that a particle keeps from step to step")
+    at_rest: float = rule(0.005, "m", "greatest motion in the step that ends the fall")
+
 
 # Neighbors (row, column) in the order in which a particle draws them: first those next to it, then those two away.
 _BESIDE = ((-1, -1), (0, -1), (1, -1), (-1, 0), (-1, 1), (0, 1), (1, 0), (1, 1))
 NEIGHBORS = tuple((reach * row, reach * column) for reach in (1, 2) for row, column in _BESIDE)
 
-# Lag (columns) of a row behind the row before it, as neighborhoods of particles are five columns wide.
-_APART = 5
+# Lag (columns) of a row behind the row before it: neighborhoods of particles are as many columns wide.
+_APART = len({column for _, column in NEIGHBORS})
 
-# Wavefronts (of _APART phases each) by which a step is behind the one before. A particle is drawn by others up to two
-# rows and columns away, whose values are up to 12 less or more than its own. So a step has to be more than 24 behind.
-_STEP_LAG = 6
+# Lag (wavefronts of _APART phases each) of the landing of a particle behind its own motion: after the last time that
+# others draw it, whose values are up to 12 more than its own.
+_LANDING_LAG = -(-max(column + _APART * row for row, column in NEIGHBORS) // _APART)
 
-# Lag (wavefronts) of the landing of a particle behind its own motion: after the last time that others draw it.
-_LANDING_LAG = 3
+# Wavefronts by which a step is behind the one before: neighbors that are drawn late have landed before, too.
+_STEP_LAG = 2 * _LANDING_LAG
 
 # Number of steps made together: with more a wavefront is fuller, but more steps are repeated when the cloth comes to
 # rest.
 _STEPS_AT_ONCE = 32
 
 # Positions and diagonals around the stored particles: neighbors of those at the rim.
-_MARGIN = 3
+_MARGIN = max(abs(row + column // _APART) for row, column in NEIGHBORS)
 
 _EVERYTHING = slice(None)
 
@@ -166,9 +175,9 @@ class Cloth:
     def __init__(self, floor: np.ndarray, rigidness: int, time_step: float, top: float | None = None) -> None:
         self.floor = floor
         # Shares of a difference that both of two particles move, or the only movable one.
-        both, self._one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
-        # The fall (m) per step and step, by the gravity of the authors' program per square of the time step.
-        self._gravity = 0.2 * time_step**4
+        both, self._one = (1 - (1 - 2 * _PROGRAM.share) ** rigidness) / 2, 1 - (1 - _PROGRAM.share) ** rigidness
+        # The fall (m) per step and step.
+        self._gravity = _PROGRAM.gravity * time_step**4
         self._order = _Order(*floor.shape)
         self._positions = self._order.positions()
         zero = np.zeros(self._order.size)
@@ -201,8 +210,7 @@ class Cloth:
             before = self._state.copy() if count > 1 else None
             part = monitor.part(done / steps, (done + count) / steps)
             motion = self._fall_level() if is_level else self._make(count, part)
-            # The greatest motion (m) in the step that ends the fall, of the authors' program.
-            resting = np.flatnonzero(motion < 0.005)
+            resting = np.flatnonzero(motion < _PROGRAM.at_rest)
             if len(resting):
                 count = int(resting[0]) + 1
                 if before is not None and count < len(motion):
@@ -268,8 +276,7 @@ class Cloth:
     def _fall(self, where: slice) -> None:
         """Begin the step of the particles stored there: those that are movable fall."""
         height, before = self._state.height[where], self._state.before[where]
-        # The share of its speed that a particle keeps from step to step, of the authors' program.
-        moved = (height - before) * 0.99 - self._gravity
+        moved = (height - before) * _PROGRAM.kept_speed - self._gravity
         before[:] = height
         height += moved * self._state.movable[where]
 

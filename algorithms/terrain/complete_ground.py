@@ -7,9 +7,6 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..stage import stage, tunable
 
-# Points of these classes may become ground.
-_OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
-
 
 @stage(
     "Terrain",
@@ -67,7 +64,8 @@ def complete_ground(
     array([2, 2, 1], dtype=uint8)
     """
     classes = classification.astype(np.uint8)
-    is_near = np.isin(classification, _OPEN) & (np.abs(height_above_ground) <= max_distance)
+    is_open = np.isin(classification, (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED))
+    is_near = is_open & (np.abs(height_above_ground) <= max_distance)
     if max_distance:
         classes[is_near] = PointClass.GROUND
     return classes

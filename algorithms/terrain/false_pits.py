@@ -12,34 +12,31 @@ from functools import cached_property
 
 import numpy as np
 
+from ..criteria import MAJORITY
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import split_groups
 from ..geometry.tin import node_fits
 from ..packages import spatial
+from ..preparation.points_under_ground import UNDER_GROUND
 from ..rules import rule, rules
+from ..sampling.density import DENSITY
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
-
-# Nodes whose plane is the level of the ground around a suspect: enough that a group is a minority of them.
-_AROUND = 32
 
 
 @rules
 class _RULES:
     """What distinguishes a group of multipath points from a true pit."""
 
-    depth: float = rule(0.45, "m", "physics: less is grass, ruts, curbs and the scanner's own noise")
+    around: int = rule(32, "nodes", "whose plane is the level of the ground: enough that a group is a minority of them")
     depth_spacings: float = rule(0.4, "point spacings", "the ground bends unseen between points")
     depth_deviations: float = rule(6.0, "standard deviations of the ground", "rough ground has true hollows")
     rough: float = rule(0.25, "m", "ground that deviates by more is too rough to show a pit")
     group: int = rule(3, "points", "of them that need no more than the least depth")
     single_depth: float = rule(1.0, "m", "physics: fewer points, less deep, are as likely a gutter or a hollow")
     widest: float = rule(3.0, "m, and point spacings", "physics: mirrors are panes, cars and wet spots")
-    link: float = rule(0.5, "m", "points of a group lie in cells of this side that touch")
-    link_spacings: float = rule(1.5, "point spacings", "the same, where points are farther apart")
-    rim: float = rule(2.0, "m", "width of the rim around a group that must be ground")
-    rim_spacings: float = rule(3.0, "point spacings", "the same, where points are farther apart")
-    sectors: int = rule(4, "of eight around a group", "that have ground: none shows beyond a wall")
+    link_spacings: float = rule(1.5, "point spacings", "side of the touching cells of a group, in sparse clouds")
+    rim: float = rule(2.0, "m", "width of the rim around a group that must be ground, or as many spacings as a group")
     leads_down: float = rule(0.05, "share of the rim's ground", "more points between both show terrain that leads down")
     floor: int = rule(6, "points", "with fewer it can't be decided whether they fill a pit")
     mixed: float = rule(0.15, "share of a floor's pulses", "that see ground: pulses see a true floor or the ground")
@@ -71,9 +68,9 @@ def false_pits(
     ndarray of shape (m,), int64
         Indices of the points, ascending.
     """
-    depth = max(_RULES.depth, _RULES.depth_spacings * spacing)
+    depth = max(UNDER_GROUND.depth, _RULES.depth_spacings * spacing)
     sunk, ground = _sunk(points, is_node, above, is_last, depth)
-    if not len(sunk) or len(ground) < _AROUND:
+    if not len(sunk) or len(ground) < _RULES.around:
         return np.empty(0, np.int64)
     level = _levels(points[ground], points[sunk], monitor)
     limit = np.maximum(depth, _RULES.depth_deviations * level.deviation)
@@ -115,7 +112,7 @@ def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Lev
     made = _Levels(np.empty(len(positions)), np.empty((len(positions), 2)), np.empty(len(positions)))
 
     def fit(rows: np.ndarray) -> None:
-        off = ground[tree.query(positions[rows, :2], _AROUND)[1]] - positions[rows, None]
+        off = ground[tree.query(positions[rows, :2], _RULES.around)[1]] - positions[rows, None]
         design = np.concatenate([off[..., :2], np.ones((*off.shape[:2], 1))], axis=2)
         weight = np.ones(off.shape[:2])
         # After eight rounds, in which nodes far off their plane lose weight, planes change by millimeters.
@@ -143,7 +140,7 @@ def _widest(spacing: float) -> float:
 
 def _rim_width(spacing: float) -> float:
     """Return the width (m) of the rim around a group that must be ground."""
-    return max(_RULES.rim, _RULES.rim_spacings * spacing)
+    return max(_RULES.rim, _RULES.widest * spacing)
 
 
 @dataclass(frozen=True)
@@ -178,7 +175,7 @@ class _Near:
     def groups(self) -> list[np.ndarray]:
         """Return the groups of points under the ground, by their positions here."""
         low = np.flatnonzero(self.height < -self.limit)
-        grid = grid_over(self.xyz[low], max(_RULES.link, _RULES.link_spacings * self.spacing))
+        grid = grid_over(self.xyz[low], max(DENSITY.least_link, _RULES.link_spacings * self.spacing))
         cells, which = distinct(grid.number(self.xyz[low]))
         n_groups, group = connected_cells(grid, cells)
         return [low[rows] for rows in split_groups(group[which], n_groups)]
@@ -190,19 +187,16 @@ class _Near:
             return False
         if len(group) < _RULES.group and self.height[group].max() > -_RULES.single_depth:
             return False
-        rim = self._rim(group)
+        around = self._tree.query_ball_point(self.xyz[group, :2], _rim_width(self.spacing))
+        rim = np.setdiff1d(np.concatenate(around).astype(np.int64), group)
         is_ground = np.abs(self.height[rim]) <= self.limit[rim] / 2
         is_between = self.height[rim] < -self.limit[rim] / 2
         if is_between.sum() > _RULES.leads_down * is_ground.sum():
             return False
         x, y = (self.xyz[rim[is_ground], :2] - plan.mean(axis=0)).T
         sectors = np.unique(np.floor(np.arctan2(y, x) / (2 * np.pi) * 8))
-        return len(sectors) >= _RULES.sectors and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
-
-    def _rim(self, group: np.ndarray) -> np.ndarray:
-        """Return the positions of the points around a group's."""
-        found = self._tree.query_ball_point(self.xyz[group, :2], _rim_width(self.spacing))
-        return np.setdiff1d(np.concatenate(found).astype(np.int64), group)
+        # No ground shows beyond a wall.
+        return len(sectors) >= MAJORITY * 8 and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
 
     def _is_floor(self, plan: np.ndarray, ground: np.ndarray) -> bool:
         """Return whether points (m, 2) fill the pit that they make, and points of the ground (k, 2) lie around it."""

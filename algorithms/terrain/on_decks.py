@@ -51,7 +51,9 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -ON_DECK.rough
     around &= (points[:, :2] <= deck[:, :2].max(axis=0) + ON_DECK.hidden).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
-    near = link_distance(_spacing(deck, tree))
+    # The point spacing of decks in plan, by how far around their points the neighbors lie.
+    radius = float(np.median(tree.query(deck[:, :2], k=[LEAST_NEIGHBORS + 1])[0]))
+    near = link_distance(radius * float(np.sqrt(np.pi / LEAST_NEIGHBORS)))
     distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, ON_DECK.hidden))
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]
@@ -71,12 +73,6 @@ def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
         rows, level = on_decks(xyz[others], xyz[is_deck])
         result[others[rows]] = xyz[others[rows], 2] <= level + ON_DECK.traffic
     return result
-
-
-def _spacing(deck: np.ndarray, tree: Any) -> float:
-    """Return the point spacing (m) of decks in plan, by how far around its points the neighbors lie."""
-    radius = float(np.median(tree.query(deck[:, :2], k=[LEAST_NEIGHBORS + 1])[0]))
-    return radius * float(np.sqrt(np.pi / LEAST_NEIGHBORS))
 
 
 def _has_deck_behind(positions: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:

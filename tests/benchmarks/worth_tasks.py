@@ -32,12 +32,25 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
+from lidar_buildings.algorithms.facades.plan_segments import (  # noqa: E402
+    PlanSegments,
+    facade_segments,
+    outline_segments,
+)
+from lidar_buildings.algorithms.facades.registration import register  # noqa: E402
+from lidar_buildings.algorithms.facades.segment_facade_lines import segment_facade_lines  # noqa: E402
+from lidar_buildings.algorithms.facades.street_walls import fitted_to_walls  # noqa: E402
+from lidar_buildings.algorithms.footprints.regularize_polygons import regularize_polygons  # noqa: E402
 from lidar_buildings.algorithms.geometry.polygon_overlap import are_within  # noqa: E402
-from lidar_buildings.algorithms.geometry.rings import sides_of_rings  # noqa: E402
+from lidar_buildings.algorithms.geometry.rings import distances_to_rings, sides_of_rings  # noqa: E402
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.quality import map_changes as changes  # noqa: E402
+from lidar_buildings.algorithms.quality.assess_footprints import assess_footprints  # noqa: E402
+from lidar_buildings.algorithms.quality.assess_models import assess_models  # noqa: E402
 from lidar_buildings.algorithms.quality.compare_corners import compare_corners  # noqa: E402
+from lidar_buildings.algorithms.quality.compare_surveys import compare_surveys  # noqa: E402
+from lidar_buildings.algorithms.quality.report_buildings import report_buildings  # noqa: E402
 from lidar_buildings.algorithms.quality.update_map import update_map  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline, run_stage, sampling_of  # noqa: E402
 from lidar_buildings.algorithms.shapes.segment_planes_hough import segment_planes_hough  # noqa: E402
@@ -48,16 +61,21 @@ from lidar_buildings.algorithms.simulation.simulate_tree import simulate_tree  #
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor, StageResults  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.algorithms.walls.extract_wall_footprints import extract_wall_footprints  # noqa: E402
+from lidar_buildings.tests import blocks  # noqa: E402
 from lidar_buildings.tests.aged_maps import aged, with_plain_corners  # noqa: E402
 from lidar_buildings.tests.benchmarks.models import MAP, _outlines  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import ROOT, Table  # noqa: E402
 from lidar_buildings.tests.benchmarks.worth import PACKAGE, Rule, _assigned, _numbers, _with  # noqa: E402
 from lidar_buildings.tests.changed_towns import changed_town, house  # noqa: E402
 from lidar_buildings.tests.changed_towns import cloud as cloud_of  # noqa: E402
+from lidar_buildings.tests.hill_towns import hill, open_edges, town  # noqa: E402
 from lidar_buildings.tests.industry import compared  # noqa: E402
+from lidar_buildings.tests.overhanging_roofs import overhanging  # noqa: E402
 from lidar_buildings.tests.polygon_matches import match_polygons  # noqa: E402
 from lidar_buildings.tests.real.clouds import DELFT, detected  # noqa: E402
 from lidar_buildings.tests.roof_shapes import SHAPES, moved  # noqa: E402
+from lidar_buildings.tests.solid_validity import assert_valid_solid  # noqa: E402
+from lidar_buildings.tests.traced_polygons import box, traced  # noqa: E402
 from lidar_buildings.tests.villages import corner_distances, mapped, village  # noqa: E402
 
 # A measurement is ended after this multiple of its usual time, and these seconds.
@@ -360,6 +378,249 @@ def _cut(part: int, keep: float) -> tuple[np.ndarray, np.ndarray, LayerFeatures]
     )
 
 
+def _surveys(scene: tuple[float, float, int]) -> tuple[Figures, list[np.ndarray]]:
+    """Return how many buildings of two surveys have the right status."""
+    earlier, later, wanted = _two_surveys(*scene)
+    made = compare_surveys.stage.unpack(compare_surveys(later, earlier))
+    columns = made.layers["buildings"].columns
+    right = sum(wanted.get(key) == status for key, status in zip(columns["building"], columns["status"]))
+    return {"of": len(columns["status"]), "right": right}, _made(made)
+
+
+@cache
+def _two_surveys(noise: float, rise: float, seed: int) -> tuple[LayerFeatures, LayerFeatures, dict[str, str]]:
+    """Return the footprints of a town at two times, and what has happened to each building since.
+
+    Corners and heights have noise (m), and all heights rise by ``rise`` m, as of another ground. Of every other row the
+    two houses are one building in the later survey.
+    """
+    old, kinds, true = changed_town(8, 5)
+    rng, now = np.random.default_rng(seed), iter(true)
+    layers: tuple[dict, dict] = ({}, {})
+    wanted, height = {}, {}
+    for number, kind in enumerate(kinds):
+        rings = None if kind == changes.GONE else next(now)
+        for layer, own in zip(layers, (old.get(number), rings)):
+            if own is not None:
+                off = rng.normal(0, noise, own[0][:-1].shape)
+                layer[number] = [own[0] + np.append(off, off[:1], axis=0)]
+        is_higher = kind == "same" and number % 2 == 0
+        height[number] = (4.0, 4.0 + rise + (2.5 if is_higher else 0.0)) + rng.normal(0, noise, 2)
+        named = {"annex": "outline changed", "cut": "outline changed", changes.MOVED: "outline changed"}
+        unchanged = "height changed" if is_higher else "unchanged"
+        wanted[str(number)] = named.get(kind, kind if kind in (changes.NEW, changes.GONE) else unchanged)
+    rows = [number for number, kind in enumerate(kinds) if kind == "row"]
+    for one, other in list(zip(rows[::2], rows[1::2]))[::2]:
+        corners = np.concatenate([layers[1][one][0][:2], layers[1].pop(other)[0][1:3], layers[1][one][0][2:4]])
+        layers[1][one] = [np.append(corners[[0, 2, 3, 5]], corners[:1], axis=0)]
+    earlier, later = (
+        LayerFeatures([*layer.values()], {"id": [*layer], "height": [height[key][time] for key in layer]})
+        for time, layer in enumerate(layers)
+    )
+    return earlier, later, wanted
+
+
+def _assessed(scene: tuple[Any, ...]) -> tuple[Figures, list[np.ndarray]]:
+    """Return what an assessment of models or of footprints counts, whose errors are known."""
+    return _assessed_models(*scene[1:]) if scene[0] == "models" else _assessed_footprints(*scene[1:])
+
+
+def _assessed_models(name: str, noise: float, rise: float) -> tuple[Figures, list[np.ndarray]]:
+    """Return how many planes of a roof are missing in a gable ``rise`` m too high, and how many faces are invented.
+
+    The model has its walls too, and the cloud points of one of these.
+    """
+    points, _ = SHAPES[name].scanned(noise=noise)
+    rng = np.random.default_rng(0)
+    ground = np.column_stack([rng.uniform(-2, 14, (800, 2)), np.zeros(800)])
+    wall = np.column_stack([rng.uniform(0, 12, 600), rng.normal(0.05, 0.01, 600), rng.uniform(3.05, 3.8, 600)])
+    corners = np.array([[0, 0, 4], [12, 0, 4], [12, 4, 7.2], [0, 4, 7.2], [12, 8, 4], [0, 8, 4]])
+    faces = [[(corners + [0, 0, rise])[[*ring, ring[0]]]] for ring in ([0, 1, 2, 3], [3, 2, 4, 5])]
+    foot = np.array([[0, 0, 0], [12, 0, 0], [12, 0, 4], [0, 0, 4], [0, 0, 0.0]])
+    roofs = LayerFeatures([*faces, [foot]], {"building": ["a"] * 3})
+    classes = np.repeat([6, 2], [len(points) + len(wall), len(ground)]).astype(np.uint8)
+    made = assess_models.stage.unpack(assess_models(np.concatenate([points, wall, ground]), classes, roofs))
+    return {name: float(made.report.values[name]) for name in ("missing", "invented", "rms")}, _made(made)
+
+
+def _assessed_footprints(noise: float, seed: int) -> tuple[Figures, list[np.ndarray]]:
+    """Return how many buildings of an aged map are found in footprints, of how many, and how far corners are off."""
+    before = aged(_footprints_of_village(), shift=(0.0, 0.0), noise=noise, missing=3, gone=2, annexes=3, seed=seed)
+    made = assess_footprints.stage.unpack(assess_footprints(_footprints_of_village(), before.layer))
+    values = {name: float(made.report.values[name]) for name in ("found", "missed", "invented")}
+    wanted = (before.counts["found"], before.counts["missed"], before.counts["new"])
+    return {**values, **{f"true {name}": float(count) for name, count in zip(values, wanted)}}, _made(made)
+
+
+def _report(scene: tuple[int, bool]) -> tuple[Figures, list[np.ndarray]]:
+    """Return how many buildings of a village the page calls doubtful, and how many are."""
+    seed, has_points = scene
+    rng, layer = np.random.default_rng(seed), _footprints_of_village()
+    confidence = rng.uniform(0.3, 1.0, len(layer))
+    height = rng.uniform(3, 9, len(layer))
+    features = LayerFeatures(layer.geometries, {**layer.columns, "confidence": confidence, "height": height})
+    middle = np.concatenate([rings[0] for rings in layer.geometries]).mean(axis=0)
+    plan = middle + rng.uniform(-60, 60, (20000, 2))
+    is_roof = are_within(plan, sides_of_rings([ring for rings in layer.geometries for ring in rings]))
+    xyz, classes = np.column_stack([plan, 5.0 * is_roof]), np.where(is_roof, 6, 2).astype(np.uint8)
+    report = report_buildings(*((xyz, classes) if has_points else (None, None)), features)
+    figures = {"doubtful": float(report.values["doubtful"]), "true": float((confidence < 0.7).sum())}
+    return figures, [np.frombuffer(report.html.encode(), np.uint8)]
+
+
+def _regularized(scene: tuple[str, float, float, int]) -> tuple[Figures, list[np.ndarray]]:
+    """Return the corners of houses drawn anew from noisy cells, of how many, and how far outlines are off (cm)."""
+    true, given = _traced_houses(*scene)
+    made = regularize_polygons.stage.unpack(regularize_polygons(given))
+    drawn = made.layers["regularized"]
+    off = [
+        np.concatenate([distances_to_rings(ring, rings) for ring in own]) for own, rings in zip(drawn.geometries, true)
+    ]
+    corners, wanted = (
+        float(sum(len(ring) - 1 for rings in some for ring in rings)) for some in (drawn.geometries, true)
+    )
+    figures = {"corners": corners, "true corners": wanted, "off, cm": 100 * float(np.mean(np.concatenate(off)))}
+    return {**figures, "redrawn": float(sum(drawn.columns["regularized"]))}, _made(made)
+
+
+@cache
+def _traced_houses(kind: str, cell: float, noise: float, seed: int) -> tuple[list, LayerFeatures]:
+    """Return houses and their outlines traced from cells whose middles have noise (m)."""
+    rng = np.random.default_rng(seed)
+    if kind == "rows":
+        deep = rng.uniform(8, 12, 12).round(1)
+        houses = [[box(6.0 * k, 30.0 * j, 6, deep[4 * j + k])] for j in range(3) for k in range(4)]
+    elif kind == "village":
+        houses = _footprints_of_village().geometries
+    else:
+        court = [box(0, 0, 20, 16), box(6, 5, 7, 6)[::-1]]
+        round_ = 8.0 * np.column_stack([np.cos(turn := np.linspace(0, 2 * np.pi, 91)), np.sin(turn)]) + [40, 10]
+        stepped = np.array([[0, 0], [12, 0], [12, 5], [13.2, 5], [13.2, 8], [12, 8], [12, 12], [0, 12], [0, 0.0]])
+        thin = [box(-20, 30, 9, 1.1), box(-5, 38, 3.5, 3.0)]
+        houses = [court, [round_], [stepped + [25, 30]], *([ring] for ring in thin), [box(5, 30, 14, 9)]]
+    made = traced(houses, noise, seed, cell)
+    if kind == "mixed":  # A part that was drawn over its house.
+        houses, made = [*houses, [box(7, 32, 6, 5)]], [*made, traced([[box(7, 32, 6, 5)]], noise, seed, cell)[0]]
+    return houses, LayerFeatures(made, {"id": list(range(len(made)))})
+
+
+def _registered(scene: tuple[tuple[float, float, float], float, float, int]) -> tuple[Figures, list[np.ndarray]]:
+    """Return how far (cm) the shift of a street scan is off whose walls have noise (m), in plan and in height."""
+    off, overhang, noise, seed = scene
+    rng = np.random.default_rng(seed)
+    air, street = (blocks.seen_from(view)[0] for view in ("airplane", "vehicle"))
+    walls = facade_segments(blocks.seen_from("vehicle")[1]["facades"]).moved(-np.array(off[:2]))
+    ends = (one + rng.normal(0, noise, one.shape) for one in (walls.start, walls.end))
+    walls = PlanSegments(*ends, walls.owner)
+    outlines = outline_segments(blocks.outlines(overhang))
+    ground = air["xyz"][air["classification"] == 2]
+    found = register(walls, outlines, street["xyz"] - off, ground, 3.0)
+    if found is None:
+        return {"walls": 0.0}, []
+    plan, height = 100 * np.hypot(*(found.shift - off)[:2]), 100 * abs(found.shift[2] - off[2])
+    return {"plan": float(plan), "height": float(height), "walls": float(found.walls)}, [
+        found.shift,
+        np.array([found.residual, found.overhang, found.walls, found.ends, found.ground]),
+    ]
+
+
+def _walled(scene: tuple[float, float, float, int]) -> tuple[Figures, list[np.ndarray]]:
+    """Return how far (cm) front corners are off of footprints that take over the walls seen from the street.
+
+    Footprints overhang these and have noise (m), some walls were not seen, and balconies stand before some.
+    """
+    overhang, noise, hidden, seed = scene
+    rng = np.random.default_rng(seed)
+    walls = facade_segments(blocks.seen_from("vehicle")[1]["facades"])
+    fronts = np.concatenate([walls.start, walls.end])
+    kept = np.flatnonzero(rng.random(len(walls)) >= hidden)
+    ends = [one[kept] + rng.normal(0, noise / 3, (len(kept), 2)) for one in (walls.start, walls.end)]
+    if hidden:
+        # A balcony of 2 m, 1.2 m before the middle of each long wall, and the wall of a yard 5 m before another.
+        long = [k for k in kept if walls.length[k] > 4.0]
+        middle = ((walls.start + walls.end) / 2 + 1.2 * walls.normal)[long]
+        more = [middle - walls.way[long], middle + walls.way[long]]
+        ends = [np.concatenate([one, other]) for one, other in zip(ends, more)]
+    seen = PlanSegments(*ends, np.arange(len(ends[0])))
+    layer = blocks.outlines(overhang)
+    rings = [[rings[0] + np.append(off := rng.normal(0, noise, (4, 2)), off[:1], axis=0)] for rings in layer.geometries]
+    made, share = fitted_to_walls(LayerFeatures(rings, layer.columns), seen)
+    corners = np.concatenate([ring[:-1] for (ring,) in made.geometries])
+    off = np.linalg.norm(fronts[:, None] - corners, axis=2).min(axis=1)
+    figures = {"corners": 100 * float(off.mean()), "median": 100 * float(np.median(off)), "seen": float(share.mean())}
+    return figures, [share, *(ring for rings in made.geometries for ring in rings)]
+
+
+def _facade_lines(scene: dict[str, Any]) -> tuple[Figures, list[np.ndarray]]:
+    """Return F (%) of ground and facades among the segments of a vehicle's scan lines."""
+    points = _scan_lines(**scene)
+    made = segment_facade_lines.stage.unpack(
+        segment_facade_lines(points["xyz"], points["gps_time"], points["point_source_id"])
+    )
+    layer = made.layers["lines"]
+    kind = np.array(["none", *layer.columns["kind"]])[made.dimensions["segment_id"]]
+    figures = {
+        name: _f_score(kind == name, points["classification"] == code) for name, code in (("ground", 2), ("facade", 6))
+    }
+    return {**figures, "segments": float(len(layer))}, [
+        made.dimensions["segment_id"],
+        kind == "ground",
+        kind == "facade",
+    ]
+
+
+@cache
+def _scan_lines(**scene: Any) -> dict[str, np.ndarray]:
+    return simulate_street.stage.unpack(simulate_street(**scene)).dimensions
+
+
+def _terrain(scene: tuple[str, float, int]) -> tuple[Figures, list[np.ndarray]]:
+    """Return how far the terrain around models is off (cm), its triangles, gaps along walls, and faulty solids."""
+    kind, tolerance, seed = scene
+    xyz, classes, footprints, true = _hillside(kind, seed)
+    level = "2.3" if kind == "eaves" else "2.2"
+    made = reconstruct_roofs.stage.unpack(
+        reconstruct_roofs(xyz, classes, footprints, terrain_tolerance=tolerance, level_of_detail=level)
+    )
+    layer, items = made.layers["terrain"], made.files["cityjson"].items
+    middle = np.array([ring[:3].mean(axis=0) for (ring,) in layer.geometries])
+    lower, gaps = open_edges(items, layer)
+    solids = [solid for one in items if not one.is_terrain for solid in one.model.best]
+    figures = {
+        "off": 100 * float(np.abs(middle[:, 2] - true(*middle[:, :2].T)).mean()),
+        "triangles": float(len(layer)),
+        "edges": float(len(lower)),
+        "gaps": float(len(gaps)),
+        "faults": float(sum(not _is_valid(solid) for solid in solids)),
+        "level ground": float(sum(solid.kinds.count("ground") == 1 for solid in solids)),
+    }
+    return figures, _made(made)
+
+
+def _is_valid(solid: Any) -> bool:
+    try:
+        assert_valid_solid(solid.vertices, solid.faces)
+    except AssertionError:
+        return False
+    return True
+
+
+@cache
+def _hillside(kind: str, seed: int) -> tuple[np.ndarray, np.ndarray, LayerFeatures, Callable]:
+    """Return points, classes, footprints and the height of the terrain: a town, or a house whose eaves overhang."""
+    if kind == "eaves":
+        xyz, classes, footprints = overhanging(SHAPES["L"], turn=20.0 + 30 * seed)
+        xyz[:, 2] += 0.1 * xyz[:, 0]
+        return xyz, classes, footprints, lambda x, _: 0.1 * x
+    xyz, classes, footprints = town(3, seed=seed)
+    rng = np.random.default_rng(seed)
+    # Maps have the wall of two houses twice, a millimeter apart.
+    rings = [
+        [ring + np.append(off := rng.normal(0, 0.001, (4, 2)), off[:1], axis=0)] for (ring,) in footprints.geometries
+    ]
+    return xyz, classes, LayerFeatures(rings, footprints.columns), hill
+
+
 _MODELS = tuple(
     f"models3d.{name}"
     for name in (
@@ -511,6 +772,66 @@ TASKS = {
         _roof,
     ),
     "models": Task(_MODELS, ((0, 1.0), (-1, 0.2)), _models),
+    "surveys": Task(
+        (
+            "quality.building_maps",
+            "quality.compare_surveys",
+            "quality.corner_matching",
+            "quality.polygon_comparison",
+        ),
+        ((0.1, 0.0, 1), (0.3, 0.2, 2), (0.0, 0.0, 3), (0.2, 1.0, 4)),
+        _surveys,
+    ),
+    "assess": Task(
+        ("quality.assess_footprints", "quality.assess_models", "quality.building_maps", "quality.corner_matching"),
+        (
+            ("models", "dormer", 0.03, 0.0),
+            ("models", "gable", 0.05, 0.5),
+            ("models", "hip", 0.1, 0.0),
+            ("footprints", 0.05, 1),
+            ("footprints", 0.3, 2),
+        ),
+        _assessed,
+    ),
+    "reports": Task(("quality.report_buildings", "report"), ((1, True), (2, False)), _report),
+    "regularize": Task(
+        (
+            "footprints.drawn_blocks",
+            "footprints.outline_pieces",
+            "footprints.regularize_polygons",
+            "footprints.soft_shares",
+        ),
+        (("rows", 0.5, 0.15, 1), ("mixed", 0.5, 0.2, 2), ("mixed", 1.0, 0.0, 3), ("village", 0.3, 0.2, 4)),
+        _regularized,
+    ),
+    "register": Task(
+        ("facades.plan_segments", "facades.registration"),
+        (
+            ((1.4, -0.9, 0.6), 0.4, 0.05, 1),
+            ((-2.2, 2.6, -1.1), 0.2, 0.1, 2),
+            ((0.3, 0.2, 0.0), 0.8, 0.02, 3),
+            ((1.4, -0.9, 0.6), 1.0, 0.0, 4),
+        ),
+        _registered,
+    ),
+    "street_walls": Task(
+        ("facades.facade_outline", "facades.plan_segments", "facades.street_walls"),
+        ((0.2, 0.1, 0.0, 1), (0.4, 0.2, 0.25, 2), (0.4, 0.3, 0.5, 3)),
+        _walled,
+    ),
+    "facade_lines": Task(
+        ("facades.segment_facade_lines",),
+        (
+            {"length": 16.0, "line_rate": 10.0, "angular_step": 0.5, "seed": 2},
+            {"length": 16.0, "line_rate": 20.0, "angular_step": 0.3, "stoops": 1.0, "unevenness": 0.15, "seed": 3},
+        ),
+        _facade_lines,
+    ),
+    "terrain": Task(
+        ("models3d.joined_terrain", "models3d.overhangs"),
+        (("town", 0.15, 0), ("town", 0.1, 5), ("eaves", 0.1, 0), ("eaves", 0.05, 1)),
+        _terrain,
+    ),
 }
 
 

@@ -36,6 +36,28 @@ def test_the_shift_of_true_walls_is_found_also_under_eaves(scans, off):
         assert found.residual < 0.15
 
 
+def test_eaves_as_wide_as_a_meter_are_no_shift(scans):
+    """Taken for narrower ones, they move the scan by 0.6 m toward one side of the street."""
+    xyz, classes, street, layers = scans
+    off = (1.4, -0.9, 0.6)
+    ground = xyz[classes == PointClass.GROUND]
+    walls = walls_of(layers).moved(-np.array(off[:2]))
+    found = register(walls, outline_segments(outlines(1.0)), street - off, ground, 3.0)
+    np.testing.assert_allclose(found.shift[:2], off[:2], atol=0.04)
+    assert found.overhang == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.parametrize(("side", "shift"), [(1.99, 0.0), (2.49, 0.25)])
+def test_a_few_cells_of_ground_do_not_give_a_height(side, shift):
+    """16 and 25 cells of 0.5 m: a car hides as much of the ground, and its roof is the lowest that is seen."""
+    wall = PlanSegments(np.array([[10.0, 0.3]]), np.array([[20.0, 0.3]]), np.array([0]))
+    outline = PlanSegments(np.array([[0.0, 0.0]]), np.array([[40.0, 0.0]]), np.array([0]))
+    plan = np.stack(np.meshgrid(*2 * [np.arange(0.01, side, 0.1)]), axis=-1).reshape(-1, 2)
+    level = np.column_stack([plan + [12.0, -4.0], np.zeros(len(plan))])
+    found = register(wall, outline, level, level + [0, 0, 0.25], 3.0)
+    assert found.shift[2] == pytest.approx(shift)
+
+
 def test_facades_and_openings_of_a_scan_are_moved_onto_the_block(scans):
     xyz, classes, street, layers = scans
     off = np.array([1.2, -0.7, 0.5])

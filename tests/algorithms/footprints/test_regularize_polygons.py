@@ -1,45 +1,19 @@
 """Footprints drawn anew: houses traced from cells, whose walls are known."""
 
+import dataclasses
+
 import numpy as np
 import pytest
-from scipy import ndimage
 
 from lidar_buildings.algorithms.footprints import regularize_polygons as regularize_module
 from lidar_buildings.algorithms.footprints.outline_pieces import sampled, shared_directions
 from lidar_buildings.algorithms.footprints.regularize_polygons import regularize_polygons
-from lidar_buildings.algorithms.geometry.cell_outlines import outline_cells
-from lidar_buildings.algorithms.geometry.grid import Grid
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps
 from lidar_buildings.algorithms.geometry.rings import polygon_area
-from lidar_buildings.algorithms.models3d.roof_partition import inside_rings
 from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, polis, squareness
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 from lidar_buildings.tests.polygon_validity import assert_valid
-
-CELL = 0.5
-
-
-def box(west, south, width, depth, turn=25.0):
-    """Return a closed ring around a house, turned about the zero (°)."""
-    corners = np.array([[0, 0], [width, 0], [width, depth], [0, depth], [0, 0.0]]) + [west, south]
-    cosine, sine = np.cos(np.radians(turn)), np.sin(np.radians(turn))
-    return corners @ np.array([[cosine, sine], [-sine, cosine]])
-
-
-def traced(polygons, noise=0.0, seed=0):
-    """Return the outlines of the cells that polygons hold, of their largest parts; the first that holds one has it."""
-    places = np.concatenate([ring for rings in polygons for ring in rings])
-    low, shape = places.min(axis=0) - 2, np.ceil((np.ptp(places, axis=0)[::-1] + 4) / CELL).astype(int)
-    row, column = np.indices(shape).reshape(2, -1)
-    middles = low + (np.column_stack([column, row]) - 0.5) * CELL
-    middles = middles + np.random.default_rng(seed).normal(0, noise, middles.shape)
-    free, made = np.ones(len(middles), bool), []
-    for rings in polygons:
-        part = ndimage.label((inside_rings(middles, rings) & free).reshape(shape))[0].ravel()
-        own = np.flatnonzero(part == 1 + np.bincount(part)[1:].argmax())
-        free[own] = False
-        made.append(outline_cells(Grid(low, CELL, *shape), own, np.zeros(len(own), int))[0])
-    return [rings if len(before) > 1 else rings[:1] for rings, before in zip(made, polygons)]
+from lidar_buildings.tests.traced_polygons import CELL, box, traced
 
 
 def drawn(polygons, columns=None, **tunables):
@@ -117,7 +91,7 @@ def test_directions_are_found_square_by_square_as_at_once():
 def test_the_scale_of_many_outlines_is_measured_on_some(monkeypatch):
     houses = [[box(0, 0, 9, 7, turn) + [16 * turn, 0]] for turn in range(0, 60, 2)]
     whole = drawn(traced(houses))[2].values["tolerance"]
-    monkeypatch.setattr(regularize_module, "_MEASURED", 5)
+    monkeypatch.setattr(regularize_module, "_RULES", dataclasses.replace(regularize_module._RULES, measured=5))
     measured = []
     deviations = regularize_module.deviations
     monkeypatch.setattr(regularize_module, "deviations", lambda *of: measured.append(1) or deviations(*of))

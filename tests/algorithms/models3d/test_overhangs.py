@@ -8,44 +8,14 @@ import pytest
 from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
 from lidar_buildings.algorithms.export.export_models import export_models
 from lidar_buildings.algorithms.export.gltf import glb
-from lidar_buildings.algorithms.geometry.polygon_overlap import are_within
-from lidar_buildings.algorithms.geometry.rings import distances_to_rings, polygon_area, sides_of_rings
+from lidar_buildings.algorithms.geometry.rings import distances_to_rings, polygon_area
 from lidar_buildings.algorithms.models3d.building_facts import NamedModel
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
-from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, Monitor
+from lidar_buildings.algorithms.stage import MapFrame, Monitor
+from lidar_buildings.tests.overhanging_roofs import OVERHANG, THICKNESS, inset, overhanging
 from lidar_buildings.tests.roof_shapes import SHAPES
 from lidar_buildings.tests.solid_validity import assert_valid_cityjson, newell
-
-# How far roofs overhang, and how thick they are over their eaves (m).
-OVERHANG, THICKNESS = 0.5, 0.25
-
-
-def along(start, end, step=0.1):
-    """Return positions on a line, a step apart."""
-    return start + np.arange(step / 2, np.hypot(*(end - start)), step)[:, None] * (end - start) / np.hypot(
-        *(end - start)
-    )
-
-
-def inset(start, end):
-    """Return positions on the line to the left of a side that is as far inside as the roof overhangs."""
-    way = (end - start) / np.hypot(*(end - start))
-    return along(start, end) + OVERHANG * np.array([-way[1], way[0]])
-
-
-def scene(shape, turn=0.0, seen=(0, 1, 2, 3, 4, 5, 6, 7)):
-    """Return points, classes and footprint of a roof, with points of the walls below some of its sides."""
-    roof, ring = shape.scanned(15.0, turn=turn)
-    rng, sides = np.random.default_rng(0), sides_of_rings([ring])
-    positions = np.concatenate([np.zeros((0, 2)), *(inset(*sides[k]) for k in seen if k < len(sides))])
-    positions = positions[are_within(positions, sides) & (distances_to_rings(positions, [ring]) > OVERHANG - 0.01)]
-    walls = np.column_stack([positions + rng.normal(0, 0.02, positions.shape), rng.uniform(0.2, 3.2, len(positions))])
-    ground = np.column_stack([rng.uniform(-25, 35, (9000, 2)), rng.normal(0, 0.02, 9000)])
-    ground = ground[~are_within(ground[:, :2], sides)]
-    xyz = np.concatenate([roof, walls, ground])
-    classes = np.repeat([6, 6, 2], [len(roof), len(walls), len(ground)]).astype(np.uint8)
-    return xyz, classes, LayerFeatures([[ring]], {"id": [7]})
 
 
 def modelled(xyz, classes, footprints, level="2.3", **tunables):
@@ -60,7 +30,7 @@ def modelled(xyz, classes, footprints, level="2.3", **tunables):
 @pytest.mark.parametrize("turn", [0.0, 33.0])
 @pytest.mark.parametrize("name", ["flat", "shed", "gable", "hip", "steps", "L", "dormer"])
 def test_walls_are_where_they_were_seen_under_the_roof_of_level_2_2(name, turn):
-    scanned = scene(SHAPES[name], turn)
+    scanned = overhanging(SHAPES[name], turn)
     plain, (fine,), _ = modelled(*scanned, level="2.2")
     layers, (one,), _ = modelled(*scanned)
     assert one.model.level == "2.3", one.model.reason
@@ -85,7 +55,7 @@ def test_walls_are_where_they_were_seen_under_the_roof_of_level_2_2(name, turn):
 
 
 def test_what_is_below_the_eaves_is_cut_out_of_the_solid():
-    scanned = scene(SHAPES["gable"])
+    scanned = overhanging(SHAPES["gable"])
     _, (one,), _ = modelled(*scanned)
     (fine,), (solid,) = one.model.solids["2.2"], one.model.solids["2.3"]
     x, y = (np.mgrid[0:12:0.01, 0:8:0.01] + 0.005).reshape(2, -1)
@@ -102,7 +72,7 @@ def test_what_is_below_the_eaves_is_cut_out_of_the_solid():
 
 
 def test_sides_without_a_wall_and_sides_with_a_neighbor_do_not_overhang():
-    xyz, classes, footprints = scene(SHAPES["flat"], seen=(0, 1))
+    xyz, classes, footprints = overhanging(SHAPES["flat"], seen=(0, 1))
     rng = np.random.default_rng(1)
     # The house next door, beyond the easting of 12 m, is as high.
     neighbor = np.column_stack([rng.uniform((12.05, 0), (18, 8), (700, 2)), rng.normal(6, 0.03, 700)])
@@ -117,7 +87,7 @@ def test_sides_without_a_wall_and_sides_with_a_neighbor_do_not_overhang():
 
 @pytest.mark.parametrize("seen", ["nothing", "points at all distances", "less than half", "a wall close to the eave"])
 def test_without_a_wall_a_building_stays_at_level_2_2_and_is_sound(seen):
-    xyz, classes, footprints = scene(SHAPES["gable"], seen=())
+    xyz, classes, footprints = overhanging(SHAPES["gable"], seen=())
     rng = np.random.default_rng(2)
     end = {"nothing": 0.1, "less than half": 5.0}.get(seen, 12.0)
     positions = inset(np.array([0.0, 0.0]), np.array([end, 0.0]))
@@ -142,7 +112,7 @@ def test_a_step_as_high_as_the_roof_is_thick_crosses_an_eave():
     def top(x, y):
         return np.where(x < 6, 6.0, 5.6 + 0.6 * y)
 
-    xyz, classes, footprints = scene(shape)
+    xyz, classes, footprints = overhanging(shape)
     is_roof = (classes == 6) & (xyz[:, 2] > 4)
     xyz[is_roof, 2] = top(*xyz[is_roof, :2].T) + np.random.default_rng(0).normal(0, 0.01, is_roof.sum())
     _, (one,), _ = modelled(xyz, classes, footprints)
@@ -150,7 +120,7 @@ def test_a_step_as_high_as_the_roof_is_thick_crosses_an_eave():
 
 
 def test_walls_set_back_end_on_the_terrain_that_goes_on_below_the_eaves():
-    xyz, classes, footprints = scene(SHAPES["L"], turn=20.0)
+    xyz, classes, footprints = overhanging(SHAPES["L"], turn=20.0)
     xyz[:, 2] += 0.05 * xyz[:, 0]
     layers, (one,), _ = modelled(xyz, classes, footprints, terrain_tolerance=0.1)
     assert one.model.level == "2.3", one.model.reason
@@ -166,10 +136,10 @@ def test_walls_set_back_end_on_the_terrain_that_goes_on_below_the_eaves():
 
 
 def test_soffits_are_exported_and_kept():
-    layers, (one,), text = modelled(*scene(SHAPES["gable"]))
+    layers, (one,), text = modelled(*overhanging(SHAPES["gable"]))
     walls = layers["walls"].columns
     assert [kind == "soffit" for kind in walls["kind"]] == np.isnan(walls["azimuth"]).tolist()
-    coarser, *_ = modelled(*scene(SHAPES["gable"]), level="2.2")
+    coarser, *_ = modelled(*overhanging(SHAPES["gable"]), level="2.2")
     eave, expected = (some["buildings"].columns["eave_height"][0] for some in (layers, coarser))
     assert eave == pytest.approx(expected, abs=1e-9)
     (building,) = json.loads(text)["CityObjects"].values()

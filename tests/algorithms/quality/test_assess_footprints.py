@@ -85,6 +85,15 @@ def test_footprints_beyond_the_reference_are_not_compared():
     assert (values["invented"], values["outside"]) == (49, 0)
 
 
+@pytest.mark.parametrize(("off", "is_compared"), [(40.0, True), (75.0, False)])
+def test_the_reference_covers_a_square_as_wide_as_a_street_or_a_small_park(off, is_compared):
+    """A footprint in the middle of eight buildings of the reference, so far from its own middle."""
+    turns = np.radians(np.arange(0, 360, 45))
+    around = [box(off * x - 5, off * y - 5) for x, y in np.column_stack([np.cos(turns), np.sin(turns)])]
+    _, values = assessed([*around, box(-5, -5)], around)
+    assert (values["invented"], values["outside"]) == ((1, 0) if is_compared else (0, 1))
+
+
 def test_an_area_decides_what_is_compared_of_both_layers():
     """Houses of which half lies within: four of the reference of nine, of which one was not found."""
     area = layer(box(-5, -5, width=34, depth=34))

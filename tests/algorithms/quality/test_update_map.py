@@ -185,7 +185,7 @@ def test_a_map_is_updated_square_by_square_as_at_once(monkeypatch):
     whole, whole_gone, report = updated(list(old.values()), true, **given)
     boxes, within = [], updating.SeenPoints.of
     monkeypatch.setattr(updating, "_SIDE", 37.0)
-    monkeypatch.setattr(updating, "_REACH", 12.0)
+    monkeypatch.setattr(updating, "AROUND", 12.0)
     monkeypatch.setattr(
         updating.SeenPoints, "of", lambda xyz, *args: boxes.append(np.ptp(xyz, axis=0)) or within(xyz, *args)
     )

@@ -45,6 +45,18 @@ def test_what_no_plane_lies_beside_is_no_roof(site):
     assert not classified(xyz, on_plane, source="matched images")[part != 1].any()
 
 
+def test_earth_against_a_wall_is_seen_to_go_on_into_the_ground(rng):
+    """It falls from 4 m by 9 m; of the part that is raised alone, less than a tenth is low."""
+
+    def bank(x, y):
+        return np.where((x >= 5) & (x <= 15) & (y >= 13) & (y <= 22), 4 * (22 - y) / 9, 0)
+
+    xyz, part = seen_from_above(rng, bent_gable, bank)
+    building = classified(xyz, (part == 1) & (xyz[:, 1] < 8.7), source="matched images")
+    assert (building[part == 2] > 0).mean() < 0.01
+    assert (building[(part == 1) & (xyz[:, 1] > 9.3) & (xyz[:, 1] < 12.7)] == 1).mean() > 0.9
+
+
 def test_a_scanner_sees_planes_only(site):
     xyz, part, on_plane = site
     building = classified(xyz, on_plane, source="laser scanner")
