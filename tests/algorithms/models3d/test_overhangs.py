@@ -9,10 +9,11 @@ from lidar_buildings.algorithms.export.cityjson_faces import read_cityjson
 from lidar_buildings.algorithms.export.export_models import export_models
 from lidar_buildings.algorithms.export.gltf import glb
 from lidar_buildings.algorithms.geometry.rings import distances_to_rings, polygon_area
+from lidar_buildings.algorithms.models3d import overhangs as overhangs_module
 from lidar_buildings.algorithms.models3d.building_facts import NamedModel
 from lidar_buildings.algorithms.models3d.cityjson import CITYJSON
 from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
-from lidar_buildings.algorithms.stage import MapFrame, Monitor
+from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, Monitor
 from lidar_buildings.tests.overhanging_roofs import OVERHANG, THICKNESS, inset, overhanging
 from lidar_buildings.tests.roof_shapes import SHAPES
 from lidar_buildings.tests.solid_validity import assert_valid_cityjson, newell
@@ -85,6 +86,19 @@ def test_sides_without_a_wall_and_sides_with_a_neighbor_do_not_overhang():
     assert layers["buildings"].geometries[0][0][:, 1].min() == pytest.approx(OVERHANG, abs=0.03)
 
 
+def test_the_rim_of_a_roof_beyond_its_outline_is_no_house_next_door():
+    """The outline lies 0.2 m inside of the edge that the points show, as many maps have it."""
+    xyz, classes, footprints = overhanging(SHAPES["flat"])
+    ((ring,),) = footprints.geometries
+    drawn = ring - 0.2 * np.sign(ring - ring[:-1].mean(axis=0))
+    layers, (one,), _ = modelled(xyz, classes, LayerFeatures([[drawn]], footprints.columns))
+    assert one.model.level == "2.3", one.model.reason
+    low, high = (getattr(ring[:-1], end)(axis=0) for end in ("min", "max"))
+    corners = layers["buildings"].geometries[0][0][:, :2]
+    assert corners.min(axis=0) == pytest.approx(low + OVERHANG, abs=0.03)
+    assert corners.max(axis=0) == pytest.approx(high - OVERHANG, abs=0.03)
+
+
 @pytest.mark.parametrize("seen", ["nothing", "points at all distances", "less than half", "a wall close to the eave"])
 def test_without_a_wall_a_building_stays_at_level_2_2_and_is_sound(seen):
     xyz, classes, footprints = overhanging(SHAPES["gable"], seen=())
@@ -103,6 +117,15 @@ def test_without_a_wall_a_building_stays_at_level_2_2_and_is_sound(seen):
     assert facts["check"] == 0
     assert "2.3" not in one.model.solids
     assert set(layers["walls"].columns["kind"]) == {"wall"}
+
+
+@pytest.mark.parametrize(("bend", "off"), [(7, 0.0), (15, 1.87)])
+def test_walls_that_hardly_turn_have_a_step_where_one_overhang_ends(bend, off):
+    """Their lines intersect meters away from the corner of the roof, the farther the less they turn (°)."""
+    end = 20 + 20 * np.cos(np.radians(bend)), 20 * np.sin(np.radians(bend))
+    ring = np.array([[0, 0], [20, 0], end, [30, 20], [0, 20], [0, 0]])
+    made = overhangs_module._set_back(ring, np.array([OVERHANG, 0.0, 0.0, 0.0, 0.0]))
+    assert made[np.isclose(made[:, 1], OVERHANG), 0].max() == pytest.approx(20 + off, abs=0.01)
 
 
 def test_a_step_as_high_as_the_roof_is_thick_crosses_an_eave():
