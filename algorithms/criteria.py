@@ -8,15 +8,29 @@ MAJORITY = 0.5
 # Standard deviations within which normal errors lie, all but one of 370.
 DEVIATIONS = 3.0
 
+# Standard deviations of one normal error within which the difference of two lies, as of two points, or of a point and
+# the line through two others.
+DIFFERENCE = DEVIATIONS * 2**0.5
+
 # Side of a cell (point spacings) that holds four points of a surface on average: chance leaves one of fifty empty.
 CELL_SPACINGS = 2.0
 
 # Gap (point spacings) that random sampling of a surface does not leave: of 10^12 points one has such a hole around it.
 GAP_SPACINGS = 3.0
 
+# Point spacing (m) that the reach of automatic distances in parts of a cloud allows for: of 36 points per m².
+WIDE_SPACING = 1 / 6
+
 # Points of a neighborhood whose plane shows a surface: nine degrees of freedom, so that its deviation is known to a
 # quarter.
 PLANE_NEIGHBORS = 12
+
+# Root mean square distance of as many points from their plane (standard deviations of the points) that one plane in a
+# hundred exceeds by chance (chi-square).
+SMOOTH = 1.55
+
+# Roughness of a surface beyond noise (point spacings): its curvature between points.
+BENDS = 0.05
 
 # Share, distance (m) or area (m²) up to which rounding takes 0: far below the resolution of files.
 ROUNDING = 1e-9

@@ -15,15 +15,13 @@ from typing import Any, Callable
 import numpy as np
 
 from ..packages import spatial
+from ..threads import NEIGHBORS_AT_ONCE
 
 # Order of the six numbers of a symmetric matrix: xx, yy, zz, xy, xz, yz.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 # Candidates of a block (times those that it needs on a plane): 95 % of the points find all their neighbors among these.
 _SPARE = 1.3
-
-# Squared distances in one array (3 MB): chosen for the caches and for the cost of a call.
-_BATCH = 400_000
 
 # A covariance about the middle of a block loses the digits by which the spread is smaller than the second moment there.
 _LEAST_SPREAD = 1e-3
@@ -216,12 +214,12 @@ def _batches(columns: np.ndarray, tree: Any, points: np.ndarray, size: int, cand
     by_wanted, first = np.lexsort((-sizes, -wanted)), 0
     while first < len(by_wanted):
         most = wanted[by_wanted[first]]
-        alike = by_wanted[first : first + max(1, _BATCH // most)]
+        alike = by_wanted[first : first + max(1, NEIGHBORS_AT_ONCE // most)]
         alike = alike[wanted[alike] >= _ALIKE * most]
         first += len(alike)
         # All searches first: what comes between would drive the tree out of the caches.
         distances, found = (made.reshape(len(alike), most) for made in tree.query(centers[alike], k=most))
-        step = max(1, _BATCH // (most * sizes[alike].max()))
+        step = max(1, NEIGHBORS_AT_ONCE // (most * sizes[alike].max()))
         for part in (slice(start, start + step) for start in range(0, len(alike), step)):
             blocks = alike[part]
             slots = starts[blocks, None] + np.minimum(np.arange(sizes[blocks].max()), sizes[blocks, None] - 1)

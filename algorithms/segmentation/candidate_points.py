@@ -11,6 +11,10 @@ from ..cloud.asprs import NOISE, PointClass
 # No object on the ground is of these classes.
 NO_OBJECTS = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, PointClass.IGNORED_GROUND, *NOISE)
 
+# Automatic distances between points of one segment are less than this (m) in clouds of 3.3 points per m² and more. What
+# a window cuts off is joined with its part in the next one.
+AUTOMATIC_REACH = 5.0
+
 
 def candidates(classification: np.ndarray, height_above_ground: Optional[np.ndarray], min_height: float) -> np.ndarray:
     """Return the indices (m,) of the points whose class may be an object's, at least ``min_height`` (m) high.

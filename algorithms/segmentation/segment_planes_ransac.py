@@ -22,6 +22,9 @@ _POINTS_IN_VOXEL = 20.0
 # Least side of a voxel (tolerances): noise around a surface must not fill it.
 _TOLERANCES_IN_VOXEL = 10.0
 
+# Smallest voxel (m), from the paper.
+_SMALLEST_VOXEL = 0.5
+
 # Largest voxel (m), from the paper.
 _LARGEST_VOXEL = 3.0
 
@@ -44,7 +47,7 @@ def segment_planes_ransac(
         "Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.",
         within="[0.1, 20] m",
         automatic=f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
-        f"tolerances, at most {_LARGEST_VOXEL:g} m.",
+        f"tolerances, {_SMALLEST_VOXEL:g} to {_LARGEST_VOXEL:g} m.",
     ),
     tolerance: Optional[float] = tunable(
         None,
@@ -145,7 +148,7 @@ def segment_planes_ransac(
 def _voxel_size(density: float, tolerance: float) -> float:
     """Return the side of a voxel that suits the density of surfaces and the tolerance, m."""
     wide = max(float(np.sqrt(_POINTS_IN_VOXEL / density)), _TOLERANCES_IN_VOXEL * tolerance)
-    return min(wide, _LARGEST_VOXEL)
+    return min(max(wide, _SMALLEST_VOXEL), _LARGEST_VOXEL)
 
 
 def _within_slopes(

@@ -6,6 +6,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..criteria import BENDS, DIFFERENCE, SMOOTH
 from ..geometry.groups import number_large, placed
 from ..packages import spatial
 from ..params import POINT_DENSITY, SURFACE_NOISE
@@ -16,17 +17,6 @@ from .adjacent_pieces import adjacent_pieces
 from .piece_growing import Growth, Regions
 from .recorded_lines import Recording, recorded_lines
 from .straight_pieces import pieces_of, split_lines
-
-# Roughness of a surface beyond noise, in point spacings: its curvature between points.
-_BENDS = 0.05
-
-# Distance from a chord or plane within which points belong to it (standard deviations): the ends of a chord have noise,
-# too, and of some hundred points the farthest counts.
-_WITHIN = 4.5
-
-# Root mean square distance of the points of a seed from their plane (standard deviations): with a dozen degrees of
-# freedom 1 % of the planes have more (chi-square).
-_SMOOTH = 1.5
 
 # Largest distance of adjacent lines, and largest step between points of a line, in mean distances of lines. Where
 # strips do not overlap lines are twice as far apart as on the average, and pulses do not fall side by side.
@@ -65,7 +55,7 @@ def segment_recorded_lines(
         None,
         "Distance from the straight line through a piece, and of its ends from the plane of a region.",
         within="(0, 100] m",
-        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
+        automatic=f"{DIFFERENCE:.2g} times the root of the sum of the squares of the surface noise and {BENDS:g} point "
         "spacings.",
     ),
     line_distance: Optional[float] = tunable(
@@ -148,8 +138,8 @@ def segment_recorded_lines(
     """
     density = sampling.surface_density if density is None else density
     noise = sampling.noise if noise is None else noise
-    deviation = float(np.hypot(noise, _BENDS / np.sqrt(density)))
-    tolerance = _WITHIN * deviation if tolerance is None else tolerance
+    deviation = float(np.hypot(noise, BENDS / np.sqrt(density)))
+    tolerance = DIFFERENCE * deviation if tolerance is None else tolerance
     used = not_noise(classification)
     if not len(used):
         return np.zeros(len(xyz), np.int32)
@@ -173,7 +163,7 @@ def segment_recorded_lines(
     row, piece = row[on_piece], piece[on_piece]
     pieces = pieces_of(points[row], piece)
     adjacency = adjacent_pieces(points[row], piece, pieces, line_distance, monitor.part(0.3, 0.6))
-    growth = Growth(tolerance, _SMOOTH / _WITHIN * tolerance, surfaces == "planar")
+    growth = Growth(tolerance, SMOOTH / DIFFERENCE * tolerance, surfaces == "planar")
     regions = Regions(pieces, adjacency, growth)
     regions.grow(min_overlap, monitor.part(0.6, 0.9))
     segment = _with_others(points, row, piece, regions, line_distance, tolerance)

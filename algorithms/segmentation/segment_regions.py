@@ -11,7 +11,7 @@ from ..geometry.groups import number_large, placed
 from ..params import MIN_BUILDING_AREA, MIN_CLUSTER_HEIGHT, PAPER_THRESHOLDS, POINT_DENSITY, THRESHOLDS
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage, tunable
-from .candidate_points import candidates
+from .candidate_points import AUTOMATIC_REACH, candidates
 
 # T_Dh over the surface noise: the paper takes 0.2 m and 0.3 m for scanners with range errors of 2-3 cm.
 _HEIGHT_NOISE_FACTOR = 10.0
@@ -21,15 +21,12 @@ _HEIGHT_NOISE_FACTOR = 10.0
 _MIN_HEIGHT_DISTANCE = 0.2
 _MAX_HEIGHT_DISTANCE = 0.3
 
-# Automatic planimetric distances are less than this (m).
-_REACH = 5.0
-
 
 @stage(
     "Segmentation",
     tags="cluster,region growing,connected components,segmentation",
     writes=("cluster_id",),
-    reach=lambda tunables: max(tunables["plan_distance"] or 0.0, _REACH),
+    reach=lambda tunables: max(tunables["plan_distance"] or 0.0, AUTOMATIC_REACH),
     cost=2.0,
 )
 def segment_regions(

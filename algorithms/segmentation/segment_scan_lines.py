@@ -6,11 +6,13 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import DIFFERENCE
 from ..geometry.boxes import by_first_point
 from ..geometry.groups import number_large, placed
 from ..params import POINT_DENSITY, SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage, tunable
+from .candidate_points import AUTOMATIC_REACH
 from .scan_line_pieces import NearPoints, merged_pieces, pieces
 
 # Width of a line in point spacings: wider lines mix objects side by side; in narrower ones, neighbors on a line lie
@@ -21,19 +23,12 @@ _WIDTH_SPACINGS = 3.0
 # recorded three times as densely along as across.
 _DISTANCE_SPACINGS = 9.0
 
-# Height differences up to this are noise (standard deviations).
-_NOISE_STEP = 4.0
-
-# Automatic distances are less than this (m) in clouds of 3.3 points per square meter and more. A piece that a window
-# cuts off is joined with its part in the next one.
-_REACH = 5.0
-
 
 @stage(
     "Segmentation",
     tags="scan line,profile,slices,split and merge,region growing,segmentation,Sithole,Vosselman",
     writes=("segment_id",),
-    reach=lambda tunables: max(tunables["distance"] or 0.0, tunables["max_obstacle"], _REACH),
+    reach=lambda tunables: max(tunables["distance"] or 0.0, tunables["max_obstacle"], AUTOMATIC_REACH),
 )
 def segment_scan_lines(
     xyz,
@@ -62,7 +57,7 @@ def segment_scan_lines(
         "Points of a line also belong together if their heights differ by no more than this.",
         label="Height step",
         within="[0, 100] m",
-        automatic=f"{_NOISE_STEP:g} standard deviations of the surface noise.",
+        automatic=f"{DIFFERENCE:.2g} standard deviations of the surface noise.",
     ),
     max_obstacle: float = tunable(
         0.0,
@@ -128,7 +123,7 @@ def segment_scan_lines(
     spacing = 1 / float(np.sqrt(density))
     line_width = _WIDTH_SPACINGS * spacing if line_width is None else line_width
     distance = _DISTANCE_SPACINGS * spacing if distance is None else distance
-    max_step = _NOISE_STEP * noise if max_step is None else max_step
+    max_step = DIFFERENCE * noise if max_step is None else max_step
     monitor.resolved(density=density, noise=noise, line_width=line_width, distance=distance, max_step=max_step)
     used = not_noise(classification)
     if not len(used):

@@ -6,7 +6,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..criteria import DEVIATIONS, GAP_SPACINGS, PLANE_NEIGHBORS
+from ..criteria import BENDS, DEVIATIONS, GAP_SPACINGS, PLANE_NEIGHBORS, SMOOTH, WIDE_SPACING
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items, number_large, placed
 from ..params import POINT_DENSITY
@@ -15,21 +15,11 @@ from ..planes.surface_growing import grow_planes, grow_surfaces
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, stage, tunable
 
-# Roughness of a surface beyond noise, in point spacings: its curvature between points.
-_BENDS = 0.05
-
 # Tolerance (radii) up to which the noise of a cloud, at least a centimeter, is used; beyond, the scan's if finer.
 _OF_RADIUS = 0.25
 
-# Root mean square distance of the points of a seed (standard deviations): with nine degrees of freedom 1 % of the
-# planes have more (chi-square).
-_SMOOTH = 1.55
-
 # Reach within which neighborhoods decide on neighborhoods next to them (radii).
 _GROWTH = 4.0
-
-# Automatic radius (m) that the reach allows for, at 36 points per m².
-_WIDE_RADIUS = 0.5
 
 
 @stage(
@@ -37,7 +27,7 @@ _WIDE_RADIUS = 0.5
     tags="surface growing,region growing,plane growing,smooth,normals,Hough,planes,segmentation",
     writes=("segment_id",),
     # The reach of the decision on neighboring points; surfaces themselves may be larger.
-    reach=lambda tunables: _GROWTH * (tunables["radius"] or _WIDE_RADIUS),
+    reach=lambda tunables: _GROWTH * (tunables["radius"] or GAP_SPACINGS * WIDE_SPACING),
 )
 def segment_surfaces(
     xyz,
@@ -80,7 +70,7 @@ def segment_surfaces(
         "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
         "surfaces.",
         within="(0, 100] m",
-        automatic=f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} point "
+        automatic=f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and {BENDS:g} point "
         "spacings.",
     ),
     max_angle: float = tunable(
@@ -127,7 +117,7 @@ def segment_surfaces(
     planes of one another are one surface. A point that several surfaces could take joins its nearest neighbor's.
     Where it does not fit the plane there, the next neighbor is tried, even if that belongs to the same surface. A point
     that joins gets the least squares plane of the surface around it, as the paper asks for. The paper accepts seeds by
-    the sum of squared distances. Here the limit is a root mean square distance of ``_SMOOTH`` standard deviations,
+    the sum of squared distances. Here the limit is a root mean square distance of ``SMOOTH`` standard deviations,
     corrected for the degrees of freedom. The local Hough transform votes for 128 directions of planes through each
     point. In *global* mode planes start from the smoothest seed of each neighborhood and are joined in mutually best
     pairs where they meet.
@@ -156,7 +146,7 @@ def segment_surfaces(
     spacing = 1 / float(np.sqrt(density))
     radius = GAP_SPACINGS * spacing if radius is None else radius
     noise = _noise(sampling, radius) if noise is None else noise
-    tolerance = DEVIATIONS * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
+    tolerance = DEVIATIONS * float(np.hypot(noise, BENDS * spacing)) if tolerance is None else tolerance
     monitor.resolved(density=density, noise=noise, radius=radius, tolerance=tolerance)
     used = not_noise(classification)
     if not len(used):
@@ -169,7 +159,7 @@ def segment_surfaces(
     planes = local_planes(points, neighbors, radius, seeds, tolerance, monitor.part(0, 0.5))
     if proximity == "edges":
         planes.neighbors = _edge_neighbors(points, radius, monitor.part(0.5, 0.6))
-    is_seed = planes.deviation <= _SMOOTH / DEVIATIONS * tolerance
+    is_seed = planes.deviation <= SMOOTH / DEVIATIONS * tolerance
     criteria = Criteria(
         tolerance if planarity != "none" else None, float(np.cos(np.radians(max_angle))) if smooth_normals else None
     )
@@ -188,7 +178,7 @@ def _grown(
 ) -> np.ndarray:
     """Return the surface (n,) of each point, -1 for none: planes with global planarity."""
     if planarity == "global":
-        return grow_planes(planes, is_seed, criteria, _SMOOTH / DEVIATIONS * tolerance, monitor)
+        return grow_planes(planes, is_seed, criteria, SMOOTH / DEVIATIONS * tolerance, monitor)
     return grow_surfaces(planes, is_seed, criteria, monitor)
 
 

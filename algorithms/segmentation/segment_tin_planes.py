@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import BENDS
 from ..geometry.boxes import by_first_point
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import number_large, placed
@@ -24,9 +25,6 @@ _EDGE_SPACINGS = 4.0
 # error of its three points.
 _WITHIN = 2.0
 
-# Roughness of a surface beyond noise, in point spacings.
-_BENDS = 0.05
-
 
 @stage(
     "Segmentation",
@@ -42,7 +40,7 @@ def segment_tin_planes(
         None,
         "Two surfaces merge if neither lies farther than this from their common plane (root mean square).",
         within="(0, 100] m",
-        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {_BENDS:g} "
+        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {BENDS:g} "
         "point spacings.",
     ),
     max_edge: Optional[float] = tunable(
@@ -101,7 +99,7 @@ def segment_tin_planes(
     density = sampling.density if density is None else density
     noise = sampling.noise if noise is None else noise
     spacing = 1 / float(np.sqrt(density))
-    tolerance = _WITHIN * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
+    tolerance = _WITHIN * float(np.hypot(noise, BENDS * spacing)) if tolerance is None else tolerance
     max_edge = _EDGE_SPACINGS * spacing if max_edge is None else max_edge
     monitor.resolved(density=density, noise=noise, tolerance=tolerance, max_edge=max_edge)
     used = not_noise(classification)

@@ -14,6 +14,10 @@ _ROUNDS = 8
 # Patterns are linearly dependent if an eigenvalue of their products is below this share of the largest.
 _LEAST_PRODUCT = 1e-12
 
+# Fewest points of a seed, a stem or a piece of a branch to which a cylinder or a sphere is fitted: three times the five
+# unknowns and one more.
+LEAST_POINTS = 16
+
 # Number of sectors of the circumference that are seen or not: 10° each.
 SECTORS = 36
 

@@ -8,17 +8,17 @@ from typing import Optional
 
 import numpy as np
 
-from ..criteria import MAJORITY
+from ..criteria import GAP_SPACINGS, MAJORITY
 from ..geometry.polygons import axes_across
 from ..neighborhoods.covariance import symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
 from .cylinder_evidence import FACING, MOST_LOOKED_AT, CylinderEvidence, Points
-from .cylinder_fits import Cylinder, fit_cylinder, upward
+from .cylinder_fits import LEAST_POINTS, Cylinder, fit_cylinder, upward
 from .hough_planes import PlaneDirections
 from .search_settings import ARC_DEVIATIONS
 from .searched_points import MeasuredPoints
-from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, RADII_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
+from .shape_windows import CENTER_BIN, RADII_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
 
 # Width of a bin of the Gaussian sphere, as a slope: 8°, about three times the error of a normal.
 _DIRECTION_BIN = 0.14
@@ -33,9 +33,6 @@ _SINE_ON_FITTED = float(np.sin(np.radians(15.0)))
 # Fewest bins that the normals of a cylinder fill along their great circle: the faces of a box fill three.
 _LEAST_BINS = 5
 
-# Largest share of the normals that one bin counts, so that a plane does not decide the direction of the circle.
-_MOST_IN_BIN = 1 / 16
-
 # Least second eigenvalue of the mean product of the normals of a window: (4°)². Normals of planes, with an error of 3°,
 # have less; a cylinder with 72° seen has 0.12, and 0.006 if it holds a twentieth of the points of a window.
 _LEAST_SPREAD = 0.005
@@ -44,27 +41,14 @@ _LEAST_SPREAD = 0.005
 # between two levels are found in one of them.
 _WIDER = 1.1
 
-# Side of the bins for centers of circles (least radius of the level), as fine as the steps of the radius. Points so far
-# from the circle are of its first fit.
-_CENTER_BIN = 0.15
-
 # Rounds of each fit of a seed; it need not converge, as its points change afterwards.
 _SEED_ROUNDS = 2
-
-# Fewest points of a seed, and of a window in which one is searched for: three times the five unknowns and one more.
-LEAST_POINTS = 16
 
 # Most seeds of one window, which is as wide as two of the thinnest cylinders of its level or one of the widest.
 _MOST_IN_WINDOW = 4
 
-# Length (radii) by which a seed is first extended at both ends: its axis is accurate enough for that.
-_FIRST_STEP = 6.0
-
 # Widest gap along a cylinder (radii): the shadow of another pipe.
 _GAP_RADII = 2.0
-
-# Widest gap along a cylinder (spacings of the thinned points): more than chance leaves.
-_GAP_SPACINGS = 6.0
 
 
 @lru_cache(maxsize=64)
@@ -174,13 +158,11 @@ class CylinderSearch:
         if len(on_circle) < LEAST_POINTS:
             return None
         cylinder = self._circle(on_circle, axis, low, high)
-        for reach in (_CENTER_BIN * low, 2 * self.tolerance, self.tolerance):
+        for reach in (CENTER_BIN * low, 2 * self.tolerance, self.tolerance):
             points = on_circle[self._is_on(on_circle, cylinder, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None
             cylinder = self._fitted(points, cylinder, _SEED_ROUNDS)
-            if not LEAST_OF_LEVEL * low <= cylinder.radius <= MOST_OF_LEVEL * high:
-                return None
         if not low / _WIDER <= cylinder.radius <= high * _WIDER:
             # It belongs to another level and is found in that one's windows; each window here would grow it again.
             return None
@@ -202,17 +184,15 @@ class CylinderSearch:
         count = every[occupied]
         # Of twenty normals and more, a bin with one counts as noise.
         is_common = count >= min(2, len(bins) // 20 + 1)
-        if is_common.sum() < _LEAST_BINS:
-            return None
-        weight = np.minimum(count, max(1.0, _MOST_IN_BIN * len(bins))).astype(np.float32)
-        best = int(np.argmax(weight @ self.on_circle[occupied]))
-        if self.on_circle[occupied[is_common], best].sum() < _LEAST_BINS:
+        # Bins count alike, so that a plane does not decide the direction of the circle.
+        filled = self.on_circle[occupied[is_common]].sum(axis=0)
+        best = int(np.argmax(filled))
+        if filled[best] < _LEAST_BINS:
             return None
         axis = self.directions.normal[best]
         for _ in range(2):
             is_near = np.abs(normals @ axis) <= _SINE_ON_FITTED
             near, own = normals[is_near], bins[is_near]
-            # Bins count alike, so that the normals of a plane next to it don't turn the circle.
             share = 1 / np.bincount(own, minlength=len(self.directions))[own]
             axis = np.linalg.eigh((near * share[:, None]).T @ near)[1][:, 0]
         return upward(axis)
@@ -226,7 +206,7 @@ class CylinderSearch:
         toward /= np.maximum(np.linalg.norm(toward, axis=1), 1e-12)[:, None]
         radii = _radii(low, high)
         signed = np.concatenate([radii, -radii])
-        cell, reach = _CENTER_BIN * low, WINDOW * low / 2 + _WIDER * high
+        cell, reach = CENTER_BIN * low, WINDOW * low / 2 + _WIDER * high
         side = int(np.ceil(2 * reach / cell)) + 2
         number = np.tile(np.arange(RADII_OF_LEVEL), 2)
         index = [
@@ -253,8 +233,9 @@ class CylinderSearch:
         along = cylinder.local(self.xyz[seed])[0]
         ends = cylinder.center + np.outer([along.min(), along.max()], cylinder.axis)
         thinned_spacing = max(self.spacing, THINNING * cylinder.radius)
-        gap = max(_GAP_RADII * cylinder.radius, _GAP_SPACINGS * thinned_spacing)
-        step = _FIRST_STEP * cylinder.radius
+        gap = max(_GAP_RADII * cylinder.radius, GAP_SPACINGS * self.spacing)
+        # The axis is accurate enough for its own length at both ends.
+        step = float(np.linalg.norm(ends[1] - ends[0]))
         while True:
             near = self._near(rows, ends, cylinder, step)
             points = near[self._is_on(near, cylinder, self.tolerance)]

@@ -6,7 +6,8 @@ from typing import Optional
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
+from .cylinder_fits import LEAST_POINTS
+from .cylinder_search import CylinderSearch, Found
 from .joined_cylinders import joined, without_nested
 from .joined_pieces import whole_axis
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius

@@ -9,12 +9,12 @@ import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_evidence import EVIDENCE, MOST_LOOKED_AT
-from .cylinder_fits import explained, fit_sphere
+from .cylinder_evidence import EVIDENCE, FACING, MOST_LOOKED_AT
+from .cylinder_fits import LEAST_POINTS, explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
 from .searched_points import SEARCH_IN, MeasuredPoints, SearchedCloud, SearchTunables, Shape, search_shapes
-from .shape_windows import LEAST_OF_LEVEL, MOST_OF_LEVEL, RADII_OF_LEVEL, WINDOW, level_of, levels
+from .shape_windows import CENTER_BIN, RADII_OF_LEVEL, WINDOW, level_of, levels
 from .surface_normals import NORMAL_POINTS
 
 CENTER_FIRST, _FOUR_DIMENSIONS = METHODS = ("center first", "four dimensions")
@@ -27,18 +27,11 @@ _FIELDS = (
     Field("seen", float, "share of the sphere that has points, 0 to 1"),
 )
 
-# Side of the bins of centers, as a share of the least radius of the level. Points so far from the sphere are of its
-# first fit.
-_CENTER_BIN = 0.25
-
-# Largest angle between the normal of a point on a sphere and the direction from the center (°).
-_NORMAL_ANGLE = 25.0
-
-# Least points of a seed, and of a window in which one is looked for.
-LEAST_POINTS = 20
-
 # Least share of the variance of normals in each direction: they vary in two on a sphere, in one on a cylinder.
 _LEAST_SPREAD = 0.02
+
+# Factor by which the radius of a fit may lie outside the range of its level; the adjacent levels find it, too.
+_BEYOND_LEVEL = 1.25
 
 # Largest deviation of the points from a sphere, in multiples of the noise.
 _MOST_ROUGH = 1.25
@@ -115,7 +108,7 @@ class SphereSearch:
         radii = np.geomspace(low, high, RADII_OF_LEVEL)
         signed = np.concatenate([radii, -radii])
         centers = (self.xyz[rows] - middle)[:, None] + signed[:, None] * self.normals[rows][:, None]
-        cell, reach = _CENTER_BIN * low, WINDOW * low / 2 + 1.1 * high
+        cell, reach = CENTER_BIN * low, WINDOW * low / 2 + 1.1 * high
         side = int(np.ceil(2 * reach / cell)) + 2
         index = np.floor((centers + reach) / cell).astype(np.int64)
         inside = ((index >= 0) & (index < side)).all(axis=2)
@@ -135,12 +128,12 @@ class SphereSearch:
         self, rows: np.ndarray, center: np.ndarray, radius: float, low: float, high: float
     ) -> Optional[tuple[np.ndarray, float]]:
         """Return the least-squares sphere of the points around a start, None where its radius is out of range."""
-        for reach in (_CENTER_BIN * low, 2 * self.tolerance, self.tolerance):
+        for reach in (CENTER_BIN * low, 2 * self.tolerance, self.tolerance):
             points = rows[self._is_on(rows, center, radius, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None
             center, radius = fit_sphere(self.xyz[points[:: len(points) // MOST_LOOKED_AT + 1]], center, radius)
-            if not LEAST_OF_LEVEL * low <= radius <= MOST_OF_LEVEL * high:
+            if not low / _BEYOND_LEVEL <= radius <= high * _BEYOND_LEVEL:
                 return None
         return (center, radius) if self._is_round(points, center, radius) else None
 
@@ -149,7 +142,7 @@ class SphereSearch:
         offset = self.xyz[rows] - center
         distance = np.linalg.norm(offset, axis=1)
         facing = np.abs(np.einsum("ij,ij->i", offset, self.normals[rows]))
-        return (np.abs(distance - radius) <= tolerance) & (facing >= np.cos(np.radians(_NORMAL_ANGLE)) * distance)
+        return (np.abs(distance - radius) <= tolerance) & (facing >= FACING * distance)
 
     def _is_round(self, points: np.ndarray, center: np.ndarray, radius: float) -> bool:
         """Return whether points lie close to a sphere and their distances show no other shape."""

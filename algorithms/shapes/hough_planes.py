@@ -7,17 +7,18 @@ from typing import Optional
 
 import numpy as np
 
-from ..criteria import DEVIATIONS
 from ..geometry.boxes import Boxes
 from ..geometry.principal_axes import principal_axes
 from ..planes.local_planes import LEAST_POINTS, REFITS
 from ..planes.voxel_planes import more_than_chance
 from ..stage import Monitor
 from ..threads import PAIRS_AT_ONCE, in_chunks
-from .surface_normals import NORMAL_ERROR
 
 # Counters of the largest parameter space: of 8 bytes each, for each thread.
 _MOST_BINS = 20_000_000
+
+# Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
+_MOST_ANGLE = 10.0
 
 
 class PlaneDirections:
@@ -108,7 +109,7 @@ class HoughPlanes:
         # The largest section of a cube is the root of two times a face.
         self.by_chance = min(0.99, 2 * np.sqrt(2) * tolerance / side)
         self.trials = int(n_bins)
-        self.cosine = np.cos(DEVIATIONS * NORMAL_ERROR)
+        self.cosine = np.cos(np.radians(_MOST_ANGLE))
 
     def find(self, monitor: Monitor, normals: Optional[np.ndarray] = None) -> np.ndarray:
         """Return the plane (n,), int32, of each point in the order of the boxes: from 1 in each window, or 0.

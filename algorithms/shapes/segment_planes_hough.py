@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..criteria import GAP_SPACINGS
+from ..criteria import GAP_SPACINGS, WIDE_SPACING
 from ..geometry.boxes import Boxes, by_first_point
 from ..geometry.groups import split_groups
 from ..neighborhoods.dbscan import dbscan
@@ -29,12 +29,6 @@ _POINTS_IN_WINDOW = 40.0
 
 # Least side of a window (tolerances): noise around a surface must not fill it.
 _TOLERANCES_IN_WINDOW = 20.0
-
-# Window (m) assumed for the reach if it is automatic: as in clouds with 40 points per m² and noise of 2 cm.
-_WIDE_WINDOW = 1.0
-
-# Gap (m) assumed for the reach if it is automatic: as in clouds with 40 points per m².
-_WIDE_GAP = 0.5
 
 _DISTANCE_BIN = tunable(
     None,
@@ -59,7 +53,10 @@ _SLOPE_BIN = tunable(
     title="Segment planes (Hough)",
     tags="plane,Hough,Gaussian sphere,normal,roof,wall,facade,planar,segmentation,parameter space",
     writes=("segment_id", "shape"),
-    reach=lambda tunables: 2 * (tunables["window_size"] or _WIDE_WINDOW) + (tunables["max_gap"] or _WIDE_GAP),
+    reach=lambda tunables: (
+        2 * (tunables["window_size"] or np.sqrt(_POINTS_IN_WINDOW) * WIDE_SPACING)
+        + (tunables["max_gap"] or GAP_SPACINGS * WIDE_SPACING)
+    ),
     layers=(Layer("planes", "Planes", "Polygon", PLANE_FIELDS, deviation="rms", whole=whole_plane),),
 )
 def segment_planes_hough(

@@ -12,8 +12,8 @@ from ..geometry.polygons import axes_across
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..segmentation.candidate_points import candidates
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_fits import Cylinder, fit_cylinder
-from .stem_search import BREAST, FAR, LEAST_POINTS, ROUND, find_stems, ground_level
+from .cylinder_fits import LEAST_POINTS, Cylinder, fit_cylinder
+from .stem_search import BREAST, FAR, ROUND, find_stems, ground_level
 from .surface_normals import refuse_line
 from .tree_structure import (
     Branch,

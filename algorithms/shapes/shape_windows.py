@@ -14,8 +14,9 @@ WINDOW = 4.0
 # Spacing of the points of a level, in its least radii.
 THINNING = 0.15
 
-# Factors by which the radius of a fit may lie outside the range of its level; the adjacent levels find it, too.
-LEAST_OF_LEVEL, MOST_OF_LEVEL = 0.8, 1.25
+# Side of the bins for centers of circles and spheres (least radius of the level), as fine as the steps of the radius.
+# Points so far from them are of their first fit.
+CENTER_BIN = 0.15
 
 # Radii that are tried in one level, an octave at most: steps of up to 10 %, which the first fit bridges.
 RADII_OF_LEVEL = 8

@@ -10,7 +10,7 @@ from ..geometry.boxes import connect
 from ..geometry.grid import distinct, find_cells, grid_over
 from ..geometry.groups import least_of, split_groups
 from ..stage import Monitor
-from .cylinder_fits import Cylinder, fit_cylinder
+from .cylinder_fits import LEAST_POINTS, Cylinder, fit_cylinder
 
 # Height above the ground at which stems are measured (m).
 BREAST = 1.3
@@ -20,10 +20,6 @@ _HALF_SLICE = 0.3
 
 # Largest distance between neighboring points of one stem in the slice (m).
 _APART = 0.15
-
-# Fewest points of a stem in the slice, or of a piece of a branch, to which a cylinder is fitted: twice those that
-# determine it, and a few leaves.
-LEAST_POINTS = 12
 
 # Least share of the height of the slice that a stem crosses.
 _CROSSED = 0.7

@@ -11,13 +11,11 @@ from ..criteria import PLANE_NEIGHBORS, ROUNDING
 from ..neighborhoods.covariance import Nearest, defined_eigenvalues, reduce_neighborhoods, smallest_eigenvectors
 from ..neighborhoods.nearest_blocks import Shapes
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor, tunable
 
 # Standard deviation (radians) that normals may have from the noise: 3°, so that directions distinguish surfaces.
-NORMAL_ERROR = 0.05
-
-# Points of the largest neighborhood of a normal: more cost time.
-_MOST_POINTS = 80
+_NORMAL_ERROR = 0.05
 
 # Of each sampling: the points that its normals were measured on, and the normals. They go with the sampling.
 _KEPT: WeakKeyDictionary[CloudSampling, tuple[tuple, np.ndarray]] = WeakKeyDictionary()
@@ -28,7 +26,8 @@ NORMAL_POINTS = tunable(
     "off edges and thin pipes.",
     label="Points for normals",
     within="[4, 1000]",
-    automatic=f"as many as hold the error of normals from the noise to 3°, {PLANE_NEIGHBORS} to {_MOST_POINTS}.",
+    automatic=f"as many as hold the error of normals from the noise to 3°, {PLANE_NEIGHBORS} to "
+    f"{SURFACES.most_neighbors}.",
     advanced=True,
 )
 
@@ -39,8 +38,8 @@ def normal_points(sampling: CloudSampling) -> int:
     The slope of a plane fitted to k points with the deviation s that fill a disk of radius r is off by 2 s / (r
     sqrt(k)), and r is sqrt(k / (pi density)).
     """
-    needed = 2 * sampling.scan_noise * float(np.sqrt(np.pi * sampling.surface_density)) / NORMAL_ERROR
-    return int(np.clip(np.ceil(min(needed, _MOST_POINTS)), PLANE_NEIGHBORS, _MOST_POINTS))
+    needed = 2 * sampling.scan_noise * float(np.sqrt(np.pi * sampling.surface_density)) / _NORMAL_ERROR
+    return int(np.clip(np.ceil(min(needed, SURFACES.most_neighbors)), PLANE_NEIGHBORS, SURFACES.most_neighbors))
 
 
 def normals_of(xyz: np.ndarray, count: int, sampling: CloudSampling, monitor: Monitor) -> np.ndarray:

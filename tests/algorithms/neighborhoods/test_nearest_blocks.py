@@ -140,7 +140,7 @@ def test_coincident_points_have_no_extent(rng):
 def test_batches_change_nothing(scene, monkeypatch):
     whole, order = nearest(scene, 12)
     around, _ = within(scene, 1.0)
-    monkeypatch.setattr(blocks, "_BATCH", 500)
+    monkeypatch.setattr(blocks, "NEIGHBORS_AT_ONCE", 500)
     parts, _ = nearest(scene, 12)
     around_parts, _ = within(scene, 1.0)
     for one, other in ((whole, parts), (around, around_parts)):
