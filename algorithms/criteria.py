@@ -44,6 +44,9 @@ MILLIMETER = 1e-3
 # Semi-major axis (m) of the ellipsoids of WGS 84 and GRS 1980.
 EQUATORIAL_RADIUS = 6_378_137.0
 
+# Directions that differ by less than this (°), of faces, slopes or edges, are the same way.
+SAME_WAY = 20.0
+
 # Lines with a smaller sine between them, and planes with a smaller share of the greatest singular value, are parallel:
 # the position of their intersection is undetermined.
 PARALLEL = 0.05

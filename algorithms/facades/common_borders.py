@@ -7,15 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..criteria import SAME_WAY
 from ..geometry.polygon_overlap import meeting_boxes
 from ..geometry.rings import is_valid
 from ..stage import Monitor
 from .facade_frame import Frame, intersection_line
 from .facade_outline import ring_of_lines
 from .facade_surfaces import Facade
-
-# An edge runs along an intersection line within this angle (cosine: 20°).
-_ALONG = np.cos(np.radians(20.0))
 
 # Least length (m) of the part that the edges of two neighbors share.
 _LEAST_COMMON = 0.3
@@ -68,7 +66,7 @@ def _edges_along(facade: Facade, point: np.ndarray, direction: np.ndarray, reach
     across = np.array([-way[1], way[0]])
     off = np.abs((facade.ring - position) @ across)
     off = np.maximum(off[:-1], off[1:])
-    found = (np.abs(steps @ way) >= _ALONG * length) & (off <= reach) & (length >= _LEAST_COMMON)
+    found = (np.abs(steps @ way) >= np.cos(np.radians(SAME_WAY)) * length) & (off <= reach) & (length >= _LEAST_COMMON)
     return [(int(edge), float(off[edge])) for edge in np.flatnonzero(found)]
 
 

@@ -6,16 +6,11 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import PARALLEL
 from ..geometry.grid import distinct, grid_over, shared_cells
 from ..geometry.groups import components
 from ..planes.least_squares_planes import planes_of
-from .facade_surfaces import CELL
-
-# Least angle (sine: 3°) between strips of one curved front; planes at smaller angles are one wall.
-_LEAST_SINE = np.sin(np.radians(3.0))
-
-# Largest angle (sine: 40°) between strips of one curved front; planes at larger angles meet at a corner.
-_MOST_SINE = np.sin(np.radians(40.0))
+from .facade_surfaces import CELL, ONE_FRONT
 
 # Least number of these cells: one may be of a pole or a sign at a corner.
 _TOUCHES = 2
@@ -54,7 +49,8 @@ def _fronts(xyz: np.ndarray, wall: np.ndarray, count: int) -> list[np.ndarray]:
     normal = planes_of(xyz[rows] - start, wall[rows] - 1, count).normal
     one, other, shared = shared_cells(xyz[rows], wall[rows] - 1, count, CELL)
     sine = np.linalg.norm(np.cross(normal[one], normal[other]), axis=1)
-    touch = (shared >= _TOUCHES) & (sine >= _LEAST_SINE) & (sine <= _MOST_SINE)
+    # Parallel planes are one wall.
+    touch = (shared >= _TOUCHES) & (sine >= PARALLEL) & (sine <= np.sin(ONE_FRONT))
     _, group = components(one[touch], other[touch], count)
     return [np.flatnonzero(group == number) + 1 for number in np.flatnonzero(np.bincount(group) > 1)]
 

@@ -33,10 +33,6 @@ FACADE_LINES = "facade lines"
 # Distance (m) from a corner within which the border of a facade, and its outer side, depend on the facade next to it.
 AROUND_CORNER = 5.0
 
-# Least height of the points of a facade, as a share of its minimum height: its boundary may go on to the corner of
-# another one.
-_SEEN_HEIGHT = 0.9
-
 # Distance (m) of points that decide on a facade. Those up to 10 m before it show from which side it was seen; those up
 # to 10 m before the facades next to it decide on its border. The length of the facade itself is not included.
 _AROUND = 2 * FARTHEST
@@ -274,7 +270,7 @@ def split_at_gaps(xyz: np.ndarray, segment_id: np.ndarray, gap: float) -> np.nda
 def _leave_low(xyz: np.ndarray, pieces: np.ndarray, min_height: float) -> None:
     """Remove pieces too low for a facade, in place, so that nearly half of a street's pieces need no boundary."""
     for points in members(pieces).values():
-        if np.ptp(xyz[points, 2]) < _SEEN_HEIGHT * min_height:
+        if np.ptp(xyz[points, 2]) < min_height:
             pieces[points] = 0
 
 

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..criteria import DEVIATIONS, MAJORITY
+from ..criteria import DEVIATIONS, MAJORITY, SAME_WAY
 from ..geometry.rings import is_valid
 from ..packages import spatial
 from ..params import BOUNDARY, COMPLETE_FACADES, CORNER_DISTANCE, FACADE_GAP, FACADE_TILT
+from ..sampling.density import DENSITY
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .approaches import BEFORE
 from .common_borders import with_common_borders
@@ -44,12 +45,6 @@ PIERCED = (
     replace(FACADES, title="Facades with openings"),
     Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
 )
-
-# Walls whose normals enclose less than this angle (cosine: 20°) face the same way.
-_SAME_WAY = np.cos(np.radians(20.0))
-
-# A position lies on a wall with a point within this distance (spacings of the wall), as raster cells are counted.
-_ON_WALL = 1.5
 
 # Positions along and up an opening at which a wall is looked for before it.
 _STEPS = 8
@@ -231,7 +226,7 @@ def drawn_once(found: Found, xyz: np.ndarray, max_depth: float) -> Found:
     kept: list[list[Opening]] = [[] for _ in found]
     for own, opening in candidates:
         frame = found[own][0].frame
-        ring, faces_as = frame.space(opening.ring), normals @ frame.normal >= _SAME_WAY
+        ring, faces_as = frame.space(opening.ring), normals @ frame.normal >= np.cos(np.radians(SAME_WAY))
         others = [wall for k, wall in enumerate(walls) if k != own and faces_as[k]]
         # It is one of the others, seen through a second wall.
         is_drawn = taken[opening.points].mean() >= MAJORITY
@@ -260,4 +255,5 @@ class _Wall:
         share = (np.arange(_STEPS) + 0.5) / _STEPS
         along, up = np.meshgrid(*(low + share[:, None] * size).T)
         off = self.tree.query(np.column_stack([along.ravel(), up.ravel()]))[0]
-        return bool(np.mean(off <= _ON_WALL * self.facade.spacing) > MAJORITY)
+        # A position lies on the wall where a point is no farther than points of one object are apart.
+        return bool(np.mean(off <= DENSITY.link * self.facade.spacing) > MAJORITY)

@@ -7,10 +7,8 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import PARALLEL
 from ..geometry.polygons import line_of_planes
-
-# Below this angle (sine: 5°), noise makes the intersection line of two planes useless.
-_LEAST_SINE = np.sin(np.radians(5.0))
 
 
 @dataclass(frozen=True)
@@ -54,6 +52,6 @@ def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np
 
     The point is the one nearest to the middle between the origins of both.
     """
-    if np.linalg.norm(np.cross(one.normal, other.normal)) < _LEAST_SINE:
+    if np.linalg.norm(np.cross(one.normal, other.normal)) < PARALLEL:
         return None
     return line_of_planes((one.origin, other.origin), (one.normal, other.normal))

@@ -101,7 +101,7 @@ def outline_of(positions: np.ndarray, drawing: Drawing) -> Optional[Outline]:
         traced = completed(traced)
     hull = spatial.ConvexHull(positions)
     width = float(hull.volume) / float(np.linalg.norm(np.ptp(positions, axis=0)))
-    tolerance = max(min(_TOLERANCE_SPACINGS * spacing, _TOLERANCE_SHARE * width), _LEAST_TOLERANCE)
+    tolerance = edge_tolerance(spacing, _TOLERANCE_SHARE * width)
     if drawing.boundary == "key points":
         ring, limit = key_points(traced), np.inf
     else:
@@ -109,6 +109,11 @@ def outline_of(positions: np.ndarray, drawing: Drawing) -> Optional[Outline]:
     if not is_valid([ring]):
         ring = traced
     return Outline(pushed_out(ring, traced[:-1], limit), spacing, float(hull.volume), seen)
+
+
+def edge_tolerance(spacing: float, most: float = np.inf) -> float:
+    """Return the distance (m) from a straight edge, ``most`` at most, up to which scattered points are along it."""
+    return max(min(_TOLERANCE_SPACINGS * spacing, most), _LEAST_TOLERANCE)
 
 
 def _straightened(traced: np.ndarray, tolerance: float) -> np.ndarray:

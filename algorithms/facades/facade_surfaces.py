@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..criteria import DEVIATIONS
 from ..geometry.grid import shared_cells
 from ..geometry.groups import members
 from ..geometry.sparse_voxels import voxelize
@@ -16,8 +17,8 @@ from ..stage import LayerFeatures, Monitor
 from .facade_frame import Frame, frame_of, intersection_line
 from .facade_outline import Drawing, outline_of, ring_area
 
-# Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't show which side was seen.
-_THICKNESS = 0.05
+# Points nearer to a facade's plane than this (m) are of the wall and its relief.
+_LEAST_THICKNESS = 0.03
 
 # Side (m) of the cells in which street scans are examined, in plan and on facades: some spacings of a sparse scan. Two
 # facades meet where they share a cell.
@@ -38,8 +39,9 @@ _LEAST_COLUMNS = 3
 # Which side of a corner a facade lies on follows from its points within this distance (m) of the corner.
 _AT_CORNER = 1.5
 
-# Facades whose normals enclose less than this angle (cosine: 40°) are strips of one front, and face the same side.
-_ALIKE = np.cos(np.radians(40.0))
+# Facades that enclose less than this angle (rad) are strips of one front, and face the same side; others meet at a
+# corner.
+ONE_FRONT = np.radians(40.0)
 
 
 @dataclass(frozen=True)
@@ -93,8 +95,7 @@ def surfaces_of(xyz: np.ndarray, segment_id: np.ndarray, drawing: Drawing, monit
         return []
     planes = {number: plane_of(xyz[points]) for number, points in groups.items()}
     steep = [n for n, (frame, _) in planes.items() if len(groups[n]) >= 4 and abs(frame.tilt) <= drawing.max_tilt]
-    # Or three standard deviations, within which nearly all points of the facade itself lie.
-    thickness = np.array([max(_THICKNESS, 3 * planes[n][1]) for n in steep])
+    thickness = np.array([wall_thickness(planes[n][1]) for n in steep])
     rows = [groups[n] for n in steep]
     frames = facing_outside([planes[n][0] for n in steep], xyz, rows, thickness, monitor.part(0, 0.3))
     facades = []
@@ -106,6 +107,11 @@ def surfaces_of(xyz: np.ndarray, segment_id: np.ndarray, drawing: Drawing, monit
             facades.append(Facade(number, frame, *found, outline.hull_area, outline.seen_area))
         monitor.progress(0.3 + 0.7 * done / len(steep))
     return facades
+
+
+def wall_thickness(rms: float) -> float:
+    """Return the distance (m) from a facade's plane within which points are its own, by their deviation (m)."""
+    return max(DEVIATIONS * rms, _LEAST_THICKNESS)
 
 
 def plane_of(xyz: np.ndarray) -> tuple[Frame, float]:
@@ -228,7 +234,7 @@ def _agreement(one: Frame, of_one: np.ndarray, other: Frame, of_other: np.ndarra
     """Return whether two normals point to the same side of a corner, -1 to 1; 0 where undecided."""
     line = intersection_line(one, other)
     cosine = float(one.normal @ other.normal)
-    if line is None or abs(cosine) >= _ALIKE:
+    if line is None or abs(cosine) >= np.cos(ONE_FRONT):
         return float(np.sign(cosine))
     sides = []
     for frame, points in ((one, of_other), (other, of_one)):

@@ -7,16 +7,13 @@ from typing import Optional
 
 import numpy as np
 
-from ..criteria import DEVIATIONS, MAJORITY
+from ..criteria import MAJORITY
 from ..geometry.groups import components, least_of, mask_of, members
 from ..geometry.polylines import simplify_ring
 from ..packages import ndimage, spatial
 from .approaches import BEFORE, FROM_WALL, Approach
-from .facade_outline import grown
-from .facade_surfaces import Facade
-
-# Least distance (m) from the plane of points that are not of the wall.
-_LEAST_OFF = 0.03
+from .facade_outline import edge_tolerance, grown
+from .facade_surfaces import Facade, wall_thickness
 
 # Side of a cell, in point spacings of the wall: few cells of a wall are empty.
 _CELL_SPACINGS = 1.2
@@ -43,23 +40,12 @@ _SEEN = 0.1
 # An opening higher than this (m) must have wall above it: the recessed part of a front has none.
 _TALL = 4.0
 
-# Panes side by side with no more than this between them (m) are one window: a pier of wall is wider than a mullion.
+# Panes side by side with no more than this between them (m), which end at one height within it, are one window: a pier
+# of wall is wider than a mullion.
 _MULLION = 0.15
-
-# Panes of one window end at one height within this distance (m).
-_LEVEL = 0.2
 
 # Pieces whose boxes overlap by this share of the smaller one are one opening, as a shop front has many pieces.
 _SHARED = 0.3
-
-# Deviation from a straight line up to which an edge of the wall is the side of an opening, in point spacings.
-_STRAIGHT_SPACINGS = 2.0
-
-# Least deviation (m) from a straight line that the side of an opening may have, whatever the spacing.
-_LEAST_STRAIGHT = 0.06
-
-# Height (m) above the lower side of a door up to which an edge is its sill.
-_SILL = 0.05
 
 # Area of the convex hull of an opening, as a share of its rectangle, from which it is that rectangle.
 _RECTANGULAR = 0.75
@@ -139,7 +125,7 @@ def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: 
         Least width and height (m).
     """
     local = facade.frame.local(xyz[rows])
-    off_wall = max(DEVIATIONS * facade.rms, _LEAST_OFF)
+    off_wall = wall_thickness(facade.rms)
     # Outward from the wall is positive.
     distance = local[:, 2]
     is_wall = np.abs(distance) <= off_wall
@@ -169,7 +155,7 @@ def _joined(positions: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
     area = np.prod(high - low, axis=1)
     overlap = np.prod(np.maximum(shared, 0), axis=2) >= _SHARED * np.fmin(area[:, None], area)
     overlap &= (shared > 0).all(axis=2)
-    level = (np.abs(low[:, None, 1] - low[:, 1]) <= _LEVEL) & (np.abs(high[:, None, 1] - high[:, 1]) <= _LEVEL)
+    level = (np.abs(low[:, None, 1] - low[:, 1]) <= _MULLION) & (np.abs(high[:, None, 1] - high[:, 1]) <= _MULLION)
     beside = level & (shared[..., 0] > -_MULLION) & (shared[..., 1] > 0)
     one, other = np.nonzero(overlap | beside)
     joined = components(one, other, count + 1)[1] + 1
@@ -227,7 +213,7 @@ def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> 
         shares[2 * axis + end] = has_wall.mean()
         if has_wall.any():
             edge = float(np.median(nearest[has_wall]))
-            is_straight = np.abs(nearest - edge) <= max(_STRAIGHT_SPACINGS * spacing, _LEAST_STRAIGHT)
+            is_straight = np.abs(nearest - edge) <= edge_tolerance(spacing)
             # A slanting edge bounds the opening by its shape, not by its box.
             if is_straight.mean() >= MAJORITY:
                 bounded[end, axis] = box[end, axis] + sign * (edge - spacing / 2)
@@ -252,7 +238,7 @@ def _shape(box: np.ndarray, positions: np.ndarray, spacing: float) -> tuple[np.n
         return rectangle, 1.0
     # The edge lies halfway between the outermost points behind and the wall.
     ring = grown(np.concatenate([corners, corners[:1]]), spacing / 2)
-    ring = simplify_ring(ring, max(spacing, _LEAST_STRAIGHT))
+    ring = simplify_ring(ring, edge_tolerance(spacing / 2))
     return (ring, share) if len(ring) > 3 else (rectangle, 1.0)
 
 
@@ -262,7 +248,7 @@ def _enclosure(raster: WallRaster, ring: np.ndarray, sill: Optional[float]) -> f
     length = np.linalg.norm(steps, axis=1)
     counted = np.ones(len(steps), bool)
     if sill is not None:
-        counted = ~((ring[:-1, 1] <= sill + _SILL) & (ring[1:, 1] <= sill + _SILL))
+        counted = np.maximum(ring[:-1, 1], ring[1:, 1]) > sill + raster.size
     pieces = np.maximum(np.ceil(length / raster.size), 1).astype(int)
     positions = [
         start + (np.arange(n)[:, None] + 0.5) / n * step

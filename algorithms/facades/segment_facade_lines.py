@@ -26,11 +26,9 @@ _PAUSE = 20.0
 # A pause of this share of a turn is the sky: 45°.
 _SKY = 1 / 8
 
-# Slope (°) up to which a segment is level enough for ground: ramps and gutters are less steep.
+# Angle (°) to the horizontal up to which a segment is level enough for ground: ramps and gutters are less steep. The
+# same angle to the vertical is upright enough for a facade: windshields and hoods lean more.
 _LEVEL = 20.0
-
-# Slope (°) from which a segment is upright enough for a facade: windshields and hoods lean more.
-_UPRIGHT = 70.0
 
 # Length (m) from which a steep segment may be of a facade.
 _LEAST_FACADE = 0.5
@@ -286,7 +284,7 @@ def _kinds(columns: dict, side: np.ndarray, limits: tuple[float, float]) -> np.n
     slope, height, distance, length = (columns[name] for name in ("slope", "height", "distance", "length"))
     kind = np.full(len(slope), _OTHER)
     kind[(slope <= _LEVEL) & (height <= limits[0])] = _GROUND
-    steep = np.flatnonzero((slope >= _UPRIGHT) & (length >= _LEAST_FACADE))
+    steep = np.flatnonzero((slope >= 90.0 - _LEVEL) & (length >= _LEAST_FACADE))
     farthest = -least_of(-distance[steep], side[steep], int(side.max(initial=-1)) + 1)
     kind[steep[distance[steep] >= farthest[side[steep]] - limits[1]]] = _FACADE
     return kind

@@ -22,14 +22,13 @@ from ..threads import in_chunks
 from .grid import find_cells, plan_box
 from .groups import components, mask_of
 
-# Most positions of a tile: twice as fast per position as a hundred thousand at once.
-_TILE_POSITIONS = 3000
+# Most positions of a tile: twice as fast per position as a hundred thousand at once. In smaller tiles, their overlap
+# takes more.
+TILE_POSITIONS = 3000
 
-# Tiles that a thread triangulates between two reports of progress.
+# Tiles that a thread triangulates between two reports of progress. Where there are no more, one triangulation takes
+# less time.
 TILES_AT_ONCE = 4
-
-# Up to this number of positions, one triangulation takes less time than tiles.
-_FEW = 12_000
 
 # Surroundings of a tile, in distances between positions: nearly all circles on its border end there.
 _MARGIN = 3.0
@@ -77,7 +76,7 @@ class Triangulation:
 
 def triangulate(plan: np.ndarray, monitor: Optional[Monitor] = None) -> Triangulation:
     """Return the Delaunay triangulation of positions (n, 2), m, that are not all on one line."""
-    mended = _by_tiles(plan, monitor or Monitor()) if len(plan) > _FEW else None
+    mended = _by_tiles(plan, monitor or Monitor()) if len(plan) > TILES_AT_ONCE * TILE_POSITIONS else None
     return _by_qhull(plan) if mended is None else mended
 
 
@@ -127,7 +126,7 @@ def _tiles(plan: np.ndarray, rows: np.ndarray) -> Iterator[tuple[np.ndarray, np.
         axis = int(np.argmax(high - low))
         # Off the middle, where no lines of regular grids are: circles with the same center have one owner.
         middle = 0.5137 * low[axis] + 0.4863 * high[axis]
-        if len(own) <= _TILE_POSITIONS or not low[axis] < middle < high[axis]:
+        if len(own) <= TILE_POSITIONS or not low[axis] < middle < high[axis]:
             yield rows, box, seen
             continue
         margin = _MARGIN * np.sqrt((high - low).prod() / len(own))

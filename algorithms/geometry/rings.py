@@ -13,9 +13,6 @@ import numpy as np
 from ..threads import PAIRS_AT_ONCE
 from .groups import items
 
-# Positions along rings, apart from their vertices: 100 km in steps of 0.1 m, more than any building has, in 50 MB.
-_MOST_POSITIONS = 1_000_000
-
 
 def signed_area(ring: np.ndarray) -> float:
     """Return the area (m²) within a ring, negative when it runs clockwise."""
@@ -71,7 +68,7 @@ def sampled_rings(rings: list[np.ndarray], step: float) -> np.ndarray:
     """Return positions (n, 2) along rings, vertices among these, at most ``step`` (m) apart or a millionth of all."""
     start, end = np.moveaxis(sides_of_rings(rings), 1, 0)
     length = np.hypot(*(end - start).T)
-    step = max(step, float(length.sum()) / _MOST_POSITIONS)
+    step = max(step, float(length.sum()) / PAIRS_AT_ONCE)
     side, number = items(np.ceil(length / step).astype(np.int64).clip(1))
     return start[side] + (number / np.bincount(side)[side])[:, None] * (end - start)[side]
 
@@ -83,7 +80,7 @@ def along_sides(sides: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray,
     """
     ways = sides[:, 1] - sides[:, 0]
     length = np.hypot(*ways.T)
-    step = max(step, float(length.sum()) / _MOST_POSITIONS)
+    step = max(step, float(length.sum()) / PAIRS_AT_ONCE)
     count = np.where(length > 0, np.maximum(1, np.rint(length / step)), 0).astype(np.int64)
     side, number = items(count)
     positions = sides[side, 0] + ((number + 0.5) / count[side])[:, None] * ways[side]

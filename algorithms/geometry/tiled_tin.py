@@ -19,13 +19,9 @@ from ..criteria import ROUNDING
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
-from .delaunay import TILES_AT_ONCE, circles
+from .delaunay import TILE_POSITIONS, TILES_AT_ONCE, circles
 from .grid import grid_over, plan_box
 from .tin import CORNERS, Tin
-
-# Most nodes of a tile: per node, tiles of this size take less than half the time of tiles of twenty thousand; in
-# smaller ones the overlap of tiles takes more.
-_TILE_NODES = 5_000
 
 
 class TiledTin:
@@ -171,10 +167,10 @@ def _tiles(nodes: np.ndarray, positions: np.ndarray) -> Iterator[tuple[np.ndarra
         rows, own = waiting.pop()
         if not len(own):
             continue
-        low, high = plan_box(nodes[rows] if len(rows) > _TILE_NODES else positions[own])
+        low, high = plan_box(nodes[rows] if len(rows) > TILE_POSITIONS else positions[own])
         axis = int(np.argmax(high - low))
         middle = (low[axis] + high[axis]) / 2
-        if (len(rows) <= _TILE_NODES and len(own) <= ROWS_AT_ONCE) or not low[axis] < middle:
+        if (len(rows) <= TILE_POSITIONS and len(own) <= ROWS_AT_ONCE) or not low[axis] < middle:
             yield rows, own
             continue
         margin = 2 * _cell_size(nodes, rows)

@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..criteria import MAJORITY
+from ..criteria import MAJORITY, SAME_WAY
 from ..footprints.footprint_attributes import EAVE
 from ..geometry.groups import split_groups
 from ..rules import rules
@@ -20,10 +20,7 @@ from .roof_limits import OFF
 from .solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL, Solid
 
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
-_FLAT = 5.0
-
-# Azimuths or slopes that differ by less than this (°) are the same: the two slopes of a mansard roof differ by more.
-_SAME_WAY = 20.0
+FLAT = 5.0
 
 # Directions with less than this share of the sloping area are ignored for the type.
 _MINOR = 0.03
@@ -262,7 +259,7 @@ def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
     z = solid.vertices[solid.faces[face][0]][:, 2]
     rms, on, rim = (getattr(one.model, name).get(solid.planes[face], math.nan) for name in _OF_PLANES)
     facts.update(slope=slope, usable_area=area * on, eave=float(z.min()), ridge=float(z.max()), rms=rms)
-    return {**facts, "parapet": rim if slope < _FLAT else math.nan}
+    return {**facts, "parapet": rim if slope < FLAT else math.nan}
 
 
 def roof_type(solids: Sequence[Solid]) -> str:
@@ -292,7 +289,7 @@ def type_of_faces(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray, low:
     """
     # Annexes and lean-tos do not change the type of a sloping roof: they end below the middle of its largest face.
     largest = int(np.argmax(area))
-    if slope[largest] > _FLAT:
+    if slope[largest] > FLAT:
         is_body = high >= (low[largest] + high[largest]) / 2
         area, slope, azimuth, low, high = area[is_body], slope[is_body], azimuth[is_body], low[is_body], high[is_body]
     kind = _type_of(area, slope, azimuth)
@@ -303,7 +300,7 @@ def type_of_faces(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray, low:
     kind = _type_of(area[is_main], slope[is_main], azimuth[is_main])
     if kind not in ("hip", "other"):
         return kind
-    return "truncated" if _has_flat_top(low[is_main], high[is_main], slope[is_main] <= _FLAT) else "other"
+    return "truncated" if _has_flat_top(low[is_main], high[is_main], slope[is_main] <= FLAT) else "other"
 
 
 def _has_flat_top(low: np.ndarray, high: np.ndarray, is_level: np.ndarray) -> bool:
@@ -316,7 +313,7 @@ def _has_flat_top(low: np.ndarray, high: np.ndarray, is_level: np.ndarray) -> bo
 
 def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
     """Return the type of faces (n,) with areas (m²), slopes and azimuths (°)."""
-    sloping = slope > _FLAT
+    sloping = slope > FLAT
     if area[sloping].sum() < 0.5 * area.sum():
         return "flat" if len(area) == 1 else "stepped flat" if not sloping.any() else "other"
     ways = _ways(azimuth[sloping], area[sloping])
@@ -324,11 +321,11 @@ def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
         return "other"
     if len(ways) == 1:
         return "shed"
-    opposite = any(abs((ways[0] - way) % 360 - 180) < _SAME_WAY for way in ways[1:])
+    opposite = any(abs((ways[0] - way) % 360 - 180) < SAME_WAY for way in ways[1:])
     if len(ways) == 2 and opposite:
-        # A mansard roof has two slopes each way.
+        # A mansard roof has two slopes each way, which differ as directions do.
         steep = max(np.ptp(slope[sloping][_near(azimuth[sloping], way)]) for way in ways)
-        return "mansard" if steep > _SAME_WAY and sloping.sum() >= 4 else "gable"
+        return "mansard" if steep > SAME_WAY and sloping.sum() >= 4 else "gable"
     # A hipped roof has one face each way, unless all ways have large ones: not dormers'.
     largely = [area[sloping][_near(azimuth[sloping], way)].sum() >= _ANNEX * area.sum() for way in ways]
     is_hip = opposite and len(ways) in (3, 4) and (sloping.sum() == len(ways) or all(largely))
@@ -336,7 +333,7 @@ def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
 
 
 def _near(azimuth: np.ndarray, way: float) -> np.ndarray:
-    return np.abs((azimuth - way + 180) % 360 - 180) < _SAME_WAY
+    return np.abs((azimuth - way + 180) % 360 - 180) < SAME_WAY
 
 
 def _ways(azimuth: np.ndarray, area: np.ndarray) -> list[float]:

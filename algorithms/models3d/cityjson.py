@@ -14,13 +14,10 @@ import numpy as np
 from ..stage import Field, MapFrame
 from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, NamedModel, building_attributes, face_attributes
 from .set_openings import DOOR, WINDOW
-from .solids import DECIMALS, GROUND, ROOF, SOFFIT, WALL, Solid, edges_around
+from .solids import GROUND, RESOLUTION, ROOF, SOFFIT, WALL, Solid, edges_around
 
 CITYJSON, CITYJSON_SEQ = "CityJSON", "CityJSONSeq"
 FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".jsonl")}
-
-# Vertices are whole numbers of this (map units), as solids have them: faces stay plane.
-_SCALE = 10.0**-DECIMALS
 
 SURFACES = {
     **{ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface", SOFFIT: "OuterCeilingSurface"},
@@ -113,7 +110,7 @@ def head_of(extent: tuple[np.ndarray, np.ndarray], translate: np.ndarray, crs: s
     return {
         "type": "CityJSON",
         "version": "2.0",
-        "transform": {"scale": [_SCALE] * 3, "translate": translate.tolist()},
+        "transform": {"scale": [RESOLUTION] * 3, "translate": translate.tolist()},
         "metadata": metadata,
     }
 
@@ -129,7 +126,8 @@ class Vertices:
     def numbers(self, local: np.ndarray) -> list[int]:
         """Return the numbers of positions (n, 3), local m; new ones are added."""
         found = []
-        for row in np.rint((self.frame.to_map(local) - self.translate) / _SCALE).astype(np.int64).tolist():
+        # Whole steps, in map units, as solids have them: faces stay plane.
+        for row in np.rint((self.frame.to_map(local) - self.translate) / RESOLUTION).astype(np.int64).tolist():
             key = tuple(row)
             if key not in self._number:
                 self._number[key] = len(self.rows)

@@ -26,7 +26,7 @@ from ..geometry.polygon_overlap import are_in_polygons, as_polygons
 from ..geometry.rings import along_sides, polygon_area, sides_of_rings
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
-from ..sampling.density import point_spacing
+from ..sampling.density import DENSITY, point_spacing
 from ..sampling.kinds import LASER
 from ..sampling.points_on_top import RULES
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, stage
@@ -35,9 +35,6 @@ from .roof_partition import cells_inside, covered_share
 from .roof_planes import STEEPEST, RoofPlanes, find_roof_planes
 
 SEEN, PARTLY, TREES, ABSENT, EMPTY = "seen", "partly seen", "under trees", "no building", "no points"
-
-# Unclassified points farther than this (spacings) in plan from those on planes are of plants next to a roof.
-_APART = 2.0
 
 # Points nearest to a position in plan that show whether it lies under something, itself among them.
 _BESIDE = 4
@@ -294,12 +291,13 @@ def _state(n_points: int, has_roof: bool, covered: float, trees: float) -> str:
 def _are_plants(xyz: np.ndarray, is_on: np.ndarray, spacing: float) -> np.ndarray:
     """Return the mask of points (n, 3), m, clearly above or next to those on planes (n,), bool; all without planes.
 
-    The others off planes are walls, chimneys and edges.
+    Farther in plan from those on planes than points of one object are apart, they are of plants next to the roof. The
+    others off planes are walls, chimneys and edges.
     """
     if not is_on.any():
         return np.ones(len(xyz), bool)
     distance, nearest = spatial.cKDTree(xyz[is_on, :2]).query(xyz[:, :2])
-    return ~is_on & ((distance > _APART * spacing) | (xyz[:, 2] > xyz[is_on, 2][nearest] + RULES.below))
+    return ~is_on & ((distance > DENSITY.link * spacing) | (xyz[:, 2] > xyz[is_on, 2][nearest] + RULES.below))
 
 
 def _roof_facts(

@@ -13,20 +13,14 @@ from .roof_partition import FARTHEST, FORBIDDEN, Partition
 from .roof_planes import planes_through
 from .solid_faces import build_solid
 from .solid_faults import faults_of
-from .solid_levels import Levels, turns_around
-from .solids import DECIMALS, ROOF, Solid
-
-# Most rounds of clearing positions where too many walls meet.
-_CLEARINGS = 60
+from .solid_levels import Levels, is_crowded
+from .solids import RESOLUTION, ROOF, Solid
 
 # Most rounds of giving small parts and high cells another plane.
 _ROUNDS = 10
 
-# Most rounds of giving parts with faults another plane.
+# Most rounds of giving parts with faults another plane, and of clearing positions where too many walls meet.
 _MENDINGS = 40
-
-# In large parts with faults, at most this many single cells take another plane before whole parts do.
-_SPARED = 30
 
 # Parts of a roof larger than this (m²) are no dormers: one fault must not cost the whole part.
 LARGE = 5.0
@@ -41,9 +35,6 @@ _LOWERED = 0.02
 # Parts of a roof with less area in plan (m²), or a smaller mean width (m), join a neighbor: they are smaller than
 # dormers, and no wider than the distance of points.
 _LEAST_AREA, _LEAST_WIDTH = 1.0, 0.4
-
-# Two edges at a corner are nearly in line if the mean of their unit vectors is shorter than this.
-_STRAIGHT = 0.3
 
 
 @dataclass
@@ -82,11 +73,11 @@ def mended(
     a part is cut off, which takes a plane that keeps to the limit.
     """
     found = []
-    for spared in (_SPARED, 0):
+    for may_spare in (True, False):
         own = replace(partition, cells=partition.cells.copy(), label=partition.label.copy())
-        mending = _Mending(own, xyz, limits, percentile, spared)
+        mending = _Mending(own, xyz, limits, percentile, may_spare)
         found.append((*_mended(mending, base), mending))
-        if mending.spared == spared:
+        if not mending.changed:
             break
     solids, why, best = min(found, key=lambda one: one[2].off() if one[0] else np.inf)
     for name in ("cells", "label", "coefficients", "cost"):
@@ -108,11 +99,11 @@ def _mended(mending: _Mending, base: float) -> tuple[list[Solid], str]:
         found = [(piece, *one) for piece in pieces for one in faults_of(piece.solid).items()]
         if not found:
             return [piece.solid for piece in pieces], ""
-        left = mending.spared
+        changed = len(mending.changed)
         if not mending.relabel([(piece, face) for piece, face, _ in found], count < _LOWERINGS):
             return [], found[0][2]
         # Single changed cells count these rounds.
-        count += mending.spared == left
+        count += len(mending.changed) == changed
     return [], "no solid could be made"
 
 
@@ -152,7 +143,7 @@ def connected(partition: Partition) -> list[Partition]:
 
 def _cleared(partition: Partition, base: float, highest: np.ndarray) -> Optional[Levels]:
     """Give cells other planes until at most two walls meet in any edge; return the heights, None if that fails."""
-    for _ in range(_CLEARINGS):
+    for _ in range(_MENDINGS):
         levels = Levels(partition.cells, partition.label, partition.coefficients, base)
         crowded = levels.crowded()
         if not crowded:
@@ -184,12 +175,12 @@ def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarra
         if own < 0:
             continue
         loop = partition.cells.loops[cell]
-        area, limit = partition.cells.area(loop), highest[loop] + 10**-DECIMALS
+        area, limit = partition.cells.area(loop), highest[loop] + RESOLUTION
         corners = np.array([partition.cells.vertices[v] for v in loop])
         for label in present:
             changed = [int(partition.label[c]) for c in around]
             changed[position] = label
-            if label == own or turns_around([height[k] for k in changed]) > 2:
+            if label == own or is_crowded([height[k] for k in changed]):
                 continue
             loss = FORBIDDEN if label < 0 else float(partition.cost[cell, label] - partition.cost[cell, own])
             is_high = label >= 0 and bool((planes[label, :2] @ corners.T + planes[label, 2] > limit).any())
@@ -208,11 +199,11 @@ class _Mending:
     """
 
     def __init__(
-        self, partition: Partition, xyz: np.ndarray, limits: Optional[HeightsAround], percentile: float, spared: int
+        self, partition: Partition, xyz: np.ndarray, limits: Optional[HeightsAround], percentile: float, may_spare: bool
     ) -> None:
         self.partition, self.xyz, self.limits, self.percentile = partition, xyz, limits, percentile
-        # Single cells that may still change, and those that have.
-        self.spared = spared
+        # Whether single cells may change, each once, and those that have.
+        self.may_spare = may_spare
         self.changed: set[int] = set()
         self.own: set[int] = set()
         self.lowered: set[int] = set()
@@ -307,7 +298,7 @@ class _Mending:
         corner = np.concatenate([self.loops[cell] for cell in used])
         a, b, c = self.partition.coefficients[self.partition.label[cell]].T
         x, y = self.positions[corner].T
-        is_high = a * x + b * y + c > self.highest[corner] + 10**-DECIMALS
+        is_high = a * x + b * y + c > self.highest[corner] + RESOLUTION
         return cell[is_high], corner[is_high]
 
     def _cut_off(self, cell: int, corner: int) -> np.ndarray:
@@ -329,14 +320,8 @@ class _Mending:
         return plane + slope * np.array([*inward, -RADIUS - at @ inward])
 
     def _way_in(self, cell: int, corner: int) -> np.ndarray:
-        """Return the unit vector (2,) from a corner into a cell, halfway between its edges there."""
-        ring = self.positions[self.loops[cell]] - self.positions[corner]
-        is_here = ~ring.any(axis=1)
-        ends = np.concatenate([np.roll(ring, step, axis=0)[is_here] for step in (1, -1)])
-        ends /= np.hypot(*ends.T)[:, None]
-        inward = ends.mean(axis=0)
-        if np.hypot(*inward) < _STRAIGHT:
-            inward = ring.mean(axis=0)
+        """Return the unit vector (2,) from a corner of a cell to the middle of its corners."""
+        inward = self.positions[self.loops[cell]].mean(axis=0) - self.positions[corner]
         return inward / np.hypot(*inward)
 
     def relabel(self, faces: list[tuple[_Piece, int]], may_lower: bool) -> bool:
@@ -362,7 +347,7 @@ class _Mending:
 
     def _spare(self, part: np.ndarray) -> bool:
         """Give the smallest cell at the border of a large part the plane of a neighbor; return whether one was left."""
-        if not self.spared or self.areas[part].sum() <= LARGE:
+        if not self.may_spare or self.areas[part].sum() <= LARGE:
             return False
         is_part = mask_of(len(self.areas), part)
         edges = self.beside[is_part[self.beside].sum(axis=1) == 1]
@@ -371,7 +356,6 @@ class _Mending:
         if not cells:
             return False
         cell = np.array([min(cells, key=lambda cell: (self.areas[cell], cell))])
-        self.spared -= 1
         self.changed.add(int(cell[0]))
         return self._take(cell, self._neighbors(cell))
 
@@ -446,7 +430,7 @@ class _Mending:
 
     def _is_high(self, corners: np.ndarray, plane: np.ndarray) -> bool:
         """Return whether a plane exceeds the height limit at any of the corners."""
-        return bool((self._above(corners, plane) > 10**-DECIMALS).any())
+        return bool((self._above(corners, plane) > RESOLUTION).any())
 
     def _above(self, corners: np.ndarray, plane: np.ndarray) -> np.ndarray:
         """Return the heights (k,), m, of a plane above the limits of corners."""

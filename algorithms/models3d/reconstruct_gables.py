@@ -8,32 +8,23 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..footprints.footprint_points import ground_beside
 from ..geometry.groups import members
 from ..geometry.polygons import area_vector, line_of_planes
 from ..packages import spatial
 from ..planes.least_squares_planes import Planes, planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
 from . import cityjson
-from .building_facts import NamedModel
+from .building_facts import FLAT, NamedModel
 from .building_models import BuildingModel
 from .solids import GROUND, ROOF, WALL, Solid
 
-# Least slope (°) of the roof planes of a gable.
-_LEAST_SLOPE = 8.0
-
-# Largest slope (°) of a ridge.
-_LEVEL = 6.0
-
-# Both planes of a gable rise toward each other within this angle (°).
+# Both planes of a gable rise toward each other within this angle (°), so that their ridge is nearly level.
 _OPPOSITE = 15.0
 
 # Edges of a roof lie at the quantile of its points that leaves out this share, so that stray points do not move them.
 # For evenly spread points the same share of the width lies beyond, and is added.
 _EDGE = 0.02
-
-# If no ground is near the corners of a house, search it around its middle: within the extent of the house plus this
-# distance (m).
-_AROUND = 10.0
 
 # The faces of a house by their vertices, from 1 as in the paper, counterclockwise seen from outside.
 FACES = {
@@ -163,17 +154,16 @@ class _Ground:
 
     def __init__(self, xyz: np.ndarray, classification: np.ndarray) -> None:
         is_ground = classification == PointClass.GROUND
-        self.points = xyz[is_ground] if is_ground.any() else xyz
-        self.quantile = 0.5 if is_ground.any() else 0.01
+        self.is_known = bool(is_ground.any())
+        self.points = xyz[is_ground] if self.is_known else xyz
         self.tree = spatial.cKDTree(self.points[:, :2])
 
-    def near(self, corners: np.ndarray) -> Optional[float]:
-        """Return the elevation (m) around corners (m, 2): the median of the ground, or of the lowest points."""
-        near = np.unique(np.concatenate(self.tree.query_ball_point(corners, 2.0)).astype(np.int64))
-        if not len(near):
-            extent = float(np.ptp(corners, axis=0).max())
-            near = np.array(self.tree.query_ball_point(corners.mean(axis=0), _AROUND + extent), int)
-        return float(np.quantile(self.points[near, 2], self.quantile)) if len(near) else None
+    def near(self, corners: np.ndarray) -> float:
+        """Return the elevation (m) around corners (4, 2): the median of the ground, or of the lowest points."""
+        if self.is_known:
+            return float(np.median(ground_beside(self.points, self.tree, [corners[[0, 1, 2, 3, 0]]])))
+        near = self.tree.query_ball_point(corners.mean(axis=0), float(np.ptp(corners, axis=0).max()))
+        return float(np.quantile(self.points[near, 2], 0.01))
 
 
 def _gables(
@@ -183,7 +173,7 @@ def _gables(
     normal, area = planes.normal, planes.area
     steep = np.degrees(np.arccos(np.clip(normal[:, 2], 0, 1)))
     # Steeper planes than 80° are walls.
-    good = np.flatnonzero((steep >= _LEAST_SLOPE) & (steep <= 80.0) & (area >= min_area))
+    good = np.flatnonzero((steep >= FLAT) & (steep <= 80.0) & (area >= min_area))
     trees = {int(k): spatial.cKDTree(xyz[groups[k]]) for k in good}
     found = []
     for done, a in enumerate(good):
@@ -211,13 +201,10 @@ def _gables(
 
 
 def _are_opposite(planes: Planes, a: int, b: int) -> bool:
-    """Return whether two planes rise toward each other, to a ridge that is nearly level."""
+    """Return whether two planes rise toward each other."""
     one, other = planes.normal[a], planes.normal[b]
     downhill = [plane[:2] / np.hypot(*plane[:2]) for plane in (one, other)]
     if downhill[0] @ downhill[1] > -np.cos(np.radians(_OPPOSITE)):
-        return False
-    ridge = np.cross(one, other)
-    if abs(ridge[2]) > np.sin(np.radians(_LEVEL)) * np.linalg.norm(ridge):
         return False
     # Downhill leads away from the other plane; otherwise it is a valley.
     apart = planes.center[a, :2] - planes.center[b, :2]
@@ -252,7 +239,7 @@ def _house(
     upper = np.array([point + u * along + v * across for u, v in flat])
     upper[2:, 2] = point[2] - drop
     base = ground.near(upper[2:, :2])
-    if base is None or base >= point[2] - drop:
+    if base >= point[2] - drop:
         return None
     feet = upper[2:].copy()
     feet[:, 2] = base

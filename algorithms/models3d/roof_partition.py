@@ -26,7 +26,8 @@ _WEDGE = 0.02
 # Distances from a plane are cut off at this many tolerances.
 _FAR_OFF = 2.0
 
-# All points on top of the roof draw their cells to nearby planes; from this distance (m) on they count in full.
+# All points on top of the roof draw their cells to nearby planes. From this distance (m) on they count in full, and
+# steps between two planes cost no more.
 FARTHEST = 1.0
 
 # Weight of a point on top that counts in full, as a share of its area.
@@ -38,9 +39,6 @@ _BORDER = 0.10
 
 # Area (m²) of roof without a plane that costs as much as a square meter of the wall between two planes.
 _STEP = 0.05
-
-# Highest step (m) between two planes that costs more than a lower one.
-_MOST_STEP = 1.0
 
 # Least height (m) of roofs over the ground.
 _LEAST_HEIGHT = 0.5
@@ -178,10 +176,10 @@ def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.n
     heights = [planes.coefficients[:, :2] @ positions[ends[:, k]].T + planes.coefficients[:, 2:] for k in (0, 1)]
 
     def border(one: np.ndarray, other: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        step = sum(np.minimum(np.abs(height[one, rows] - height[other, rows]), _MOST_STEP) for height in heights) / 2
+        step = sum(np.minimum(np.abs(height[one, rows] - height[other, rows]), FARTHEST) for height in heights) / 2
         return length[rows] * np.where(one == other, 0.0, _BORDER + _STEP * step)
 
-    at_most = np.bincount(beside.ravel(), np.repeat(length, 2) * (_BORDER + _STEP * _MOST_STEP), len(used))
+    at_most = np.bincount(beside.ravel(), np.repeat(length, 2) * (_BORDER + _STEP * FARTHEST), len(used))
     return cheapest_labels(cost, beside, border, at_most, np.argmin(cost, axis=1))
 
 

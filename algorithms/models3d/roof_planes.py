@@ -12,6 +12,7 @@ from ..geometry.principal_axes import principal_axes
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..packages import spatial
 from ..planes.least_squares_planes import planes_of
+from ..sampling.density import DENSITY
 
 # Slope (°) of the steepest plane of a roof; steeper ones are walls.
 STEEPEST = 75.0
@@ -22,9 +23,6 @@ _FACING = 25.0
 
 # Refit a plane after a round of growth has added this share of its points.
 _REFIT = 0.3
-
-# Points on top that lie on no plane form a patch where they are no farther from each other than this (spacings).
-_PATCH_SPACINGS = 2.0
 
 # Rounds in which points choose the best plane of their neighborhood.
 _CHOICES = 3
@@ -105,7 +103,7 @@ def with_level_patches(
     rest = np.flatnonzero(is_top & (planes.label < 0))
     if len(rest) < min_points:
         return planes
-    pairs = spatial.cKDTree(xyz[rest]).query_pairs(_PATCH_SPACINGS * spacing, output_type="ndarray")
+    pairs = spatial.cKDTree(xyz[rest]).query_pairs(DENSITY.link * spacing, output_type="ndarray")
     _, patch = components(pairs[:, 0], pairs[:, 1], len(rest))
     patch = _large(patch, min_points)
     count = int(patch.max()) + 1

@@ -6,16 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..criteria import MAJORITY
+from ..criteria import MAJORITY, SAME_WAY
 from ..facades.facade_frame import frame_of
 from ..geometry.polygons import area_vector
 from ..geometry.rings import are_inside, is_valid
 from .solids import WALL, Solid
 
 WINDOW, DOOR = "window", "door"
-
-# Wall and opening face the same way within this angle (cosine: 15°).
-_SAME_WAY = 0.966
 
 # Distance (m) of the middle of an opening from the plane of its wall, at most.
 _OFF = 0.5
@@ -83,7 +80,7 @@ def _best_wall(walls: list[_Wall], opening: WallOpening) -> tuple:
         wall = walls[number]
         if off[number] > _OFF:
             break
-        if normal @ wall.frame.normal >= _SAME_WAY:
+        if normal @ wall.frame.normal >= np.cos(np.radians(SAME_WAY)):
             flat = _cut_back(wall.rings, wall.flat(opening.ring))
             if flat is not None:
                 return wall, flat

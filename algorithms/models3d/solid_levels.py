@@ -9,7 +9,7 @@ import numpy as np
 
 from ..criteria import MILLIMETER, PARALLEL
 from ..geometry.subdivision import OUTSIDE, SNAP, Subdivision, loop_area
-from .solids import DECIMALS, edges_around
+from .solids import DECIMALS, RESOLUTION, edges_around
 
 # Planes that intersect within this distance (m) of a vertex, in plan, meet in it: the snapping distance of cuts.
 _MEET = 2 * SNAP
@@ -17,9 +17,6 @@ _MEET = 2 * SNAP
 # Heights at one position that differ by at most this (m) become their mean. Two planes then move by half of it, less
 # than the 0.01 m that corners may be off a face. If up to three planes meet, the vertex moves and the planes stay.
 _SAME_HEIGHT = 0.016
-
-# Vertices that are nearer to an intersection of planes than this (m) are not moved.
-_EXACT = 0.0001
 
 # The outline of a footprint is kept within this distance (m): a vertex that close to the line between its neighbors is
 # no corner.
@@ -33,9 +30,6 @@ _THICKNESS = 0.25
 
 # Easting, northing and height (m).
 Position = tuple[float, float, float]
-
-# With this many changes between up and down around a vertex, four walls meet in one edge.
-_CROWD = 4
 
 
 class Levels:
@@ -99,7 +93,7 @@ class Levels:
         turn = np.hypot(difference[:, 0], difference[:, 1])
         apart = difference @ [x, y, 1.0]
         is_near = (turn > 0) & (np.abs(apart) <= _MEET * turn)
-        if not (np.abs(apart[is_near]) >= _EXACT * turn[is_near]).any():
+        if not (np.abs(apart[is_near]) >= RESOLUTION * turn[is_near]).any():
             return
         # Where it may go: anywhere, or along the outline.
         ways = np.eye(2)
@@ -262,9 +256,8 @@ class Levels:
 
     def crowded(self) -> list[int]:
         """Return the vertices where more than two walls would meet in an edge."""
-        # Four changes between up and down need four cells.
-        some = [v for v, planes in self.around.items() if len(planes) > 1 and len(self._spokes[v]) >= _CROWD]
-        return [vertex for vertex in some if turns_around(self._heights_around(vertex)) >= _CROWD]
+        some = [vertex for vertex, planes in self.around.items() if len(planes) > 1]
+        return [vertex for vertex in some if is_crowded(self._heights_around(vertex))]
 
     def _heights_around(self, vertex: int) -> list[float]:
         return [self.height(vertex, self.label[cell]) for cell in self.cells_around(vertex)]
@@ -285,7 +278,7 @@ class Levels:
                 return ring
 
 
-def turns_around(heights: list[float]) -> int:
-    """Return the number of changes between up and down in a ring of heights."""
+def is_crowded(heights: list[float]) -> bool:
+    """Return whether a ring of heights turns between up and down more than twice: four walls would meet in an edge."""
     steps = [b - a for a, b in zip(heights, [*heights[1:], heights[0]]) if abs(b - a) > 1e-9]
-    return sum(a * b < 0 for a, b in zip(steps, [*steps[1:], *steps[:1]]))
+    return sum(a * b < 0 for a, b in zip(steps, [*steps[1:], *steps[:1]])) > 2

@@ -15,6 +15,9 @@ ROOF, WALL, GROUND, SOFFIT, TERRAIN = "roof", "wall", "ground", "soffit", "terra
 # triangle 5 mm high by less than a degree.
 DECIMALS = 4
 
+# The step (m) of positions.
+RESOLUTION = 10.0**-DECIMALS
+
 Ring = list[int]
 
 

@@ -10,11 +10,8 @@ import numpy as np
 from ..criteria import MAJORITY
 from ..geometry.rings import signed_area
 from .wall_edges import closed
-from .wall_lines import MOST, WallLine
+from .wall_lines import MOST, SAME_WALL, WallLine
 from .wall_outline import Limits, WallOutline
-
-# Narrowest alley (m); closer pairs of lines are one wall, seen from both sides or twice.
-_NARROWEST = 0.3
 
 
 def find_alley(outline: WallOutline, limits: Limits) -> Optional[WallLine]:
@@ -23,7 +20,7 @@ def find_alley(outline: WallOutline, limits: Limits) -> Optional[WallLine]:
     Along it, what was taken for one building falls into two. Roofs that meet over an alley jut out from both sides.
     """
     seen = [line for line in outline.cells.lines if line.is_seen]
-    widest, middle = _NARROWEST, None
+    widest, middle = SAME_WALL, None
     for one, other in combinations(seen, 2):
         alley = _between(one, other)
         if alley is None:

@@ -15,13 +15,10 @@ from ..stage import Monitor
 from ..threads import PAIRS_AT_ONCE
 from .roof_outline import RoofCover
 from .wall_edges import WallEdge, closed, edge_between, points_near
-from .wall_lines import Scale, WallLine
+from .wall_lines import SAME_WALL, Scale, WallLine
 
 # Cost of a square meter of the outline without roof points.
 _OUTSIDE = 5.0
-
-# Distance (m) beyond the roof within which outline costs nothing: noise and the uneven edge of the roof.
-_BEYOND = 0.4
 
 # Cost of a square meter of roof that is left out although it is farther from the edge than the overhang.
 _INSIDE = 1.0
@@ -123,7 +120,7 @@ def _cell_costs(cells: Arrangement, cover: RoofCover, overhang: float) -> tuple[
     def area(chosen: np.ndarray) -> np.ndarray:
         return np.bincount(cell[chosen & (cell >= 0)], minlength=cells.count) * cover.cell**2
 
-    if_inside = _OUTSIDE * area(depth < -_BEYOND) + _CERTAIN * cells.is_border
+    if_inside = _OUTSIDE * area(depth < -SAME_WALL) + _CERTAIN * cells.is_border
     if_outside = _INSIDE * area(depth > overhang)
     # The deepest position is inside at any cost.
     if_outside[cell[np.argmax(depth)]] += _CERTAIN

@@ -24,16 +24,13 @@ from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE, SURFACES, plane_
 from ..segmentation.candidate_points import NO_OBJECTS
 from ..stage import Monitor, stage, tunable
 from ..threads import n_threads
-from .surroundings import CELL
+from .surroundings import CELL, NEAR
 
 # Radius of the neighborhood of a normal (times the roughness): large enough for an error of a few degrees.
 _REACH_DEVIATIONS = SURFACES.reach
 
 # Largest number of points of a normal that is set automatically: more would reach around corners.
 _MOST_NEIGHBORS = 30
-
-# Largest distance (m) in plan of a wall from its roof, if part of the roof was not seen; other walls lie under it.
-_NEAR = 2.0
 
 # Hull of a roof without area: one side with every point outside.
 _NOWHERE = np.array([[0.0, 0.0, np.inf]])
@@ -174,7 +171,7 @@ def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: 
     cell = np.floor((all_xy[roof] - start) / CELL).astype(np.int64)
     _, first = np.unique(np.column_stack([cell, cluster_id[roof]]), axis=0, return_index=True)
     positions = (cell[first] + 0.5) * CELL
-    nearest = spatial.cKDTree(positions).query(xy - start, distance_upper_bound=_NEAR + margin, workers=n_threads())[1]
+    nearest = spatial.cKDTree(positions).query(xy - start, distance_upper_bound=NEAR + margin, workers=n_threads())[1]
     found = np.flatnonzero(nearest < len(first))
     owner[found] = cluster_id[roof[first]][nearest[found]]
     for number, part in members(owner).items():

@@ -15,7 +15,8 @@ from ..geometry.grid import plan_box
 from ..geometry.polygon_overlap import are_within
 from ..geometry.rings import sides_of_rings, signed_area
 from ..packages import ndimage
-from .surroundings import CELL, without_nested
+from ..threads import PAIRS_AT_ONCE
+from .surroundings import CELL, NEAR, without_nested
 
 # Area of the smallest part and of the smallest courtyard (square spacings).
 _LEAST_AREA = 16.0
@@ -23,12 +24,6 @@ _LEAST_AREA = 16.0
 # Point spacings per side when walls are searched. Of twelve test corners next to holes, one was lost at 0.6, two at 0.8
 # or 1. Superfluous lines go later, by the cost of corners.
 _FINE = 0.6
-
-# Most cells in which one roof is compared with walls: extended ones have larger cells.
-_MOST_CELLS = 5e5
-
-# Width (m) of the margin around the roof in which walls are searched for.
-_ROOM = 2.0
 
 
 @dataclass(frozen=True)
@@ -61,13 +56,16 @@ def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
 
 
 class RoofCover:
-    """A roof with rings (k, 2) as small cells, with the depth (m) of each inside the roof, negative outside."""
+    """A roof with rings (k, 2) as small cells, with the depth (m) of each inside the roof, negative outside.
+
+    The roofs of the largest halls have larger cells.
+    """
 
     def __init__(self, rings: list[np.ndarray]) -> None:
         low, high = plan_box(np.concatenate(rings))
-        self.cell = max(float(np.sqrt((high - low).prod() / _MOST_CELLS)), CELL)
-        shape = np.ceil((high - low + 2 * _ROOM) / self.cell).astype(np.int64)
-        self.low, self.high = low - _ROOM, low - _ROOM + shape * self.cell
+        self.cell = max(float(np.sqrt((high - low).prod() / PAIRS_AT_ONCE)), CELL)
+        shape = np.ceil((high - low + 2 * NEAR) / self.cell).astype(np.int64)
+        self.low, self.high = low - NEAR, low - NEAR + shape * self.cell
         self.positions = self.low + (np.indices(shape).reshape(2, -1).T + 0.5) * self.cell
         covered = are_within(self.positions, sides_of_rings(rings)).reshape(shape)
         inside, outside = ndimage.distance_transform_edt(covered), ndimage.distance_transform_edt(~covered)

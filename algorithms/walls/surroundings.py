@@ -18,6 +18,9 @@ from ..sampling.cloud_sampling import CloudSampling
 # Least side (m) of the cells in which roofs and their surroundings are looked up.
 CELL = 0.25
 
+# Largest distance (m) in plan of a wall from its roof, if part of the roof was not seen; other walls lie under it.
+NEAR = 2.0
+
 # Least side of these cells in point spacings: then less than one cell of a surface in two hundred is empty by chance.
 _CELL_SPACINGS = 2.5
 
@@ -40,9 +43,6 @@ _FILLED = 2.0
 
 # Distance (m) outward from a side within which the other roof is searched for: gaps between party walls are narrower.
 _OUTWARD = 1.0
-
-# Distance (m) between the positions on a side where it is searched for.
-_STEP = 0.5
 
 
 class Surroundings:
@@ -102,7 +102,7 @@ class Surroundings:
 
     def is_party(self, sides: np.ndarray, number: int) -> np.ndarray:
         """Return the mask of the sides (k, 2, 2) of roof ``number``, to their left, next to which other roofs begin."""
-        along, side, outward = along_sides(sides, _STEP)
+        along, side, outward = along_sides(sides, CELL)
         is_beside = np.zeros(len(side), bool)
         for distance in np.arange(CELL, _OUTWARD + CELL, CELL):
             roof = self._at(along + distance * outward)[1]

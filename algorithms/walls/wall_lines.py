@@ -38,6 +38,9 @@ MOST = np.deg2rad(8.0)
 # Points are rougher than noise if their variance about the line exceeds the noise's by this many standard errors.
 _CERTAIN = 2.0
 
+# Parallel lines within this distance (m) are one wall, and the edge of a roof is as uneven.
+SAME_WALL = 0.3
+
 # Radius (m) of the neighborhoods that show the direction of a wall at a point.
 _AROUND = 0.6
 

@@ -8,21 +8,16 @@ from typing import Optional
 
 import numpy as np
 
+from ..criteria import PARALLEL
 from ..geometry.rings import nearest_edge_distances, perimeter
 from ..stage import Monitor
 from .cheapest_outline import OutlineCells, simplified
 from .roof_outline import RoofCover, RoofOutline
 from .wall_edges import WallEdge
-from .wall_lines import MOST, Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
+from .wall_lines import MOST, SAME_WALL, Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
 # The few points that locate a wall below a side of the roof cover at least this share of its length.
 _LEAST_COVERED = 0.2
-
-# Largest angle (radians) between a wall and its eave.
-_EAVE_ANGLE = np.deg2rad(3.0)
-
-# Largest deviation (m) of an eave from the position expected from wall and overhang.
-_EAVE = 0.3
 
 
 @dataclass(frozen=True)
@@ -119,8 +114,8 @@ def _like_walls(direction: np.ndarray, seen: list[WallLine]) -> np.ndarray:
 
 def _is_eave_of(wall: WallLine, line: WallLine) -> bool:
     """Return whether a wall is the one that is expected on a ``line``."""
-    parallel = abs(wall.direction @ line.direction) >= np.cos(_EAVE_ANGLE)
-    return bool(parallel and abs(float(wall.across(line.point[None])[0])) <= _EAVE)
+    is_parallel = abs(wall.normal @ line.direction) < PARALLEL
+    return bool(is_parallel and abs(float(wall.across(line.point[None])[0])) <= SAME_WALL)
 
 
 def _from_roof(
@@ -143,7 +138,7 @@ def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -
     With a known direction, far fewer points determine a wall.
     """
     across, along = line.across(walls), (walls - line.point) @ line.direction
-    beside = np.flatnonzero((np.abs(across) <= _EAVE) & (np.abs(along) <= half))
+    beside = np.flatnonzero((np.abs(across) <= SAME_WALL) & (np.abs(along) <= half))
     if not len(beside):
         return line
     position, near = across[beside], scale.tolerance / 2

@@ -15,8 +15,7 @@ CORNERS = 300.0 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 
 @pytest.fixture(autouse=True)
 def small_tiles(monkeypatch):
-    monkeypatch.setattr(module, "_TILE_POSITIONS", 40)
-    monkeypatch.setattr(module, "_FEW", 100)
+    monkeypatch.setattr(module, "TILE_POSITIONS", 40)
 
 
 @pytest.fixture

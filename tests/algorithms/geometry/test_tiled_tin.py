@@ -18,7 +18,7 @@ SIDE = 80.0
 @pytest.fixture(autouse=True)
 def small_tiles(monkeypatch):
     """Tiles so small that the few points of a test make many."""
-    monkeypatch.setattr(module, "_TILE_NODES", 400)
+    monkeypatch.setattr(module, "TILE_POSITIONS", 400)
     monkeypatch.setattr(module, "ROWS_AT_ONCE", 600)
 
 
@@ -131,7 +131,7 @@ def test_order_and_position_change_nothing(rng):
 def test_size_of_tiles_changes_nothing(rng, monkeypatch):
     nodes, places = ground(rng, lambda plan: from_middle(plan) > 20), rng.uniform(0, SIDE, (3000, 2))
     found = TiledTin(nodes).elevation(places)
-    monkeypatch.setattr(module, "_TILE_NODES", 100_000)
+    monkeypatch.setattr(module, "TILE_POSITIONS", 100_000)
     monkeypatch.setattr(module, "ROWS_AT_ONCE", 100_000)
     np.testing.assert_allclose(TiledTin(nodes).elevation(places), found, atol=1e-9)
 

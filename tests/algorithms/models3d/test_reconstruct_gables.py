@@ -121,6 +121,19 @@ def test_ground_far_from_the_corners_is_that_around_the_house_wherever_it_lies(r
         assert gables_of(xyz + shift, classes, plane).columns["z7"] == pytest.approx([1.6] * 7, abs=0.6)
 
 
+def test_ground_on_a_slope_or_far_off_and_gentle_slopes_make_gables_too(rng):
+    """Hillside of 20 % with the ground along the house at 1 m in the median; ground 22 m off; a roof of 6.5°."""
+    xyz, classes, plane = house(rng)
+    is_ground = classes == PointClass.GROUND
+    hillside, lonely, gentle = (xyz.copy() for _ in range(3))
+    hillside[is_ground, 2] += 0.2 * (xyz[is_ground, 0] - 6)
+    lonely[is_ground, :2] += [40.0, 0.0]
+    gentle[~is_ground, 2] = RIDGE - np.tan(np.radians(6.5)) * np.abs(xyz[~is_ground, 1])
+    for points in (hillside, lonely, gentle):
+        found = gables_of(points, classes, plane)
+        assert found.columns["z7"] == pytest.approx([GROUND] * 7, abs=0.25)
+
+
 def test_valleys_single_planes_and_level_roofs_are_no_gables(rng):
     xyz, classes, plane = house(rng)
     valley = xyz.copy()
