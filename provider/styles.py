@@ -172,8 +172,10 @@ def store_styles(source: str, stem: Optional[str], fields: Sequence[Field]) -> N
     first = manager.currentStyle()
     for name in manager.styles():
         manager.setCurrentStyle(name)
-        title = "Default" if name == first else name
-        error = layer.saveStyleToDatabase(title, "", name == first, "")
+        style = "Default" if name == first else name, "", name == first, ""
+        # QGIS 3.44 deprecates the first of these; 3.40 has no other.
+        newer = getattr(layer, "saveStyleToDatabaseV2", None)
+        error = newer(*style)[1] if newer else layer.saveStyleToDatabase(*style)
         if error:
             raise ValueError(f"The styles can't be stored in {Path(source.split('|', maxsplit=1)[0]).name}: {error}")
 

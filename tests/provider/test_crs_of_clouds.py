@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 import struct
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -145,7 +146,7 @@ def test_a_cloud_without_a_system_is_in_that_of_the_other_with_a_warning(provide
 
 def test_layers_of_clouds_without_a_system_are_no_degrees(provider, context, log, square, out):
     run("toyoutline", {"INPUT": str(square(geokeys())), "FOOTPRINTS": str(out / "a.gpkg")}, context, log)
-    with sqlite3.connect(out / "a.gpkg") as tables:
+    with closing(sqlite3.connect(out / "a.gpkg")) as tables:
         assert tables.execute("select srs_id from gpkg_contents where data_type = 'features'").fetchall() == [(-1,)]
     assert QgsVectorLayer(str(out / "a.gpkg")).crs().description() in _UNDEFINED
 

@@ -289,6 +289,21 @@ def test_styles_are_stored_in_a_geopackage(provider, context, log, town_file, ou
     assert layer.displayExpression() == '"id"'
 
 
+def test_styles_are_stored_by_the_method_that_newer_versions_of_qgis_have(
+    provider, context, log, town_file, out, monkeypatch
+):
+    """QGIS 3.44 warned of a deprecated method with every layer in a GeoPackage."""
+    stored = []
+
+    def newer(layer, name, description, is_default, form):
+        stored.append((name, is_default))
+        return 0, ""
+
+    monkeypatch.setattr(QgsVectorLayer, "saveStyleToDatabaseV2", newer, raising=False)
+    run("toychain", {"INPUT": str(town_file), "FOOTPRINTS": str(out / "f.gpkg")}, context, log)
+    assert stored == [("Height", False), ("Default", True)]
+
+
 def test_a_layer_that_another_step_has_taken_further_is_loaded_switched_off(context):
     from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsVectorLayer
 
