@@ -18,7 +18,7 @@ from .cylinder_fits import LEAST_POINTS, Cylinder, fit_cylinder, upward
 from .hough_planes import PlaneDirections
 from .search_settings import ARC_DEVIATIONS
 from .searched_points import MeasuredPoints
-from .shape_windows import CENTER_BIN, RADII_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
+from .shape_windows import BEYOND_LEVEL, CENTER_BIN, RADII_OF_LEVEL, THINNING, WINDOW, Level, level_of, levels
 
 # Width of a bin of the Gaussian sphere, as a slope: 8°, about three times the error of a normal.
 _DIRECTION_BIN = 0.14
@@ -163,6 +163,8 @@ class CylinderSearch:
             if len(points) < LEAST_POINTS:
                 return None
             cylinder = self._fitted(points, cylinder, _SEED_ROUNDS)
+            if not low / BEYOND_LEVEL <= cylinder.radius <= high * BEYOND_LEVEL:
+                return None
         if not low / _WIDER <= cylinder.radius <= high * _WIDER:
             # It belongs to another level and is found in that one's windows; each window here would grow it again.
             return None

@@ -14,7 +14,7 @@ from .cylinder_fits import LEAST_POINTS, explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
 from .searched_points import SEARCH_IN, MeasuredPoints, SearchedCloud, SearchTunables, Shape, search_shapes
-from .shape_windows import CENTER_BIN, RADII_OF_LEVEL, WINDOW, level_of, levels
+from .shape_windows import BEYOND_LEVEL, CENTER_BIN, RADII_OF_LEVEL, WINDOW, level_of, levels
 from .surface_normals import NORMAL_POINTS
 
 CENTER_FIRST, _FOUR_DIMENSIONS = METHODS = ("center first", "four dimensions")
@@ -29,9 +29,6 @@ _FIELDS = (
 
 # Least share of the variance of normals in each direction: they vary in two on a sphere, in one on a cylinder.
 _LEAST_SPREAD = 0.02
-
-# Factor by which the radius of a fit may lie outside the range of its level; the adjacent levels find it, too.
-_BEYOND_LEVEL = 1.25
 
 # Largest deviation of the points from a sphere, in multiples of the noise.
 _MOST_ROUGH = 1.25
@@ -133,7 +130,7 @@ class SphereSearch:
             if len(points) < LEAST_POINTS:
                 return None
             center, radius = fit_sphere(self.xyz[points[:: len(points) // MOST_LOOKED_AT + 1]], center, radius)
-            if not low / _BEYOND_LEVEL <= radius <= high * _BEYOND_LEVEL:
+            if not low / BEYOND_LEVEL <= radius <= high * BEYOND_LEVEL:
                 return None
         return (center, radius) if self._is_round(points, center, radius) else None
 

@@ -18,6 +18,9 @@ THINNING = 0.15
 # Points so far from them are of their first fit.
 CENTER_BIN = 0.15
 
+# Factor by which the radius of a fit may lie outside the range of its level; the adjacent levels find it, too.
+BEYOND_LEVEL = 1.25
+
 # Radii that are tried in one level, an octave at most: steps of up to 10 %, which the first fit bridges.
 RADII_OF_LEVEL = 8
 
