@@ -41,8 +41,14 @@ MICROMETER = 1e-6
 # Positions closer than this (m) are the same, as maps and files have millimeters at best.
 MILLIMETER = 1e-3
 
+# Value in place of a missing number in grids and attributes: GDAL and most GIS programs take it for none.
+NO_DATA = -9999
+
 # Semi-major axis (m) of the ellipsoids of WGS 84 and GRS 1980.
 EQUATORIAL_RADIUS = 6_378_137.0
+
+# Semi-minor axis (m) of the ellipsoid of WGS 84, and of that of GRS 1980 within 0.2 mm.
+POLAR_RADIUS = 6_356_752.314245
 
 # Directions that differ by less than this (°), of faces, slopes or edges, are the same way.
 SAME_WAY = 20.0

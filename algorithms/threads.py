@@ -26,7 +26,7 @@ NEIGHBORS_AT_ONCE = 200_000
 PAIRS_AT_ONCE = 1_000_000
 
 # Seconds between two checks for a cancellation by the user.
-BETWEEN_LOOKS = 0.2
+BETWEEN_LOOKS = 0.1
 
 # Number of threads assigned to a process that shares the machine with others of its kind; empty without one.
 _ASSIGNED: list[int] = []

@@ -14,7 +14,7 @@ from .places import Place
 from .qgis_crs import crs_of, to_degrees
 from .run_outputs import target_path, through_memory
 from .styles import Styler, layer_style, show_on_load, store_styles, switch_off
-from .vectors import fields_of, qgis_features, wkb_type
+from .vectors import BETWEEN_CHECKS, fields_of, qgis_features, wkb_type
 
 # Formats that name systems by a code only.
 _BY_CODE = (".geojson", ".json")
@@ -23,9 +23,6 @@ _UNDEFINED = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1],AXIS["Easting",
 
 # The format whose files hold the styles of their layers.
 GPKG = ".gpkg"
-
-# Features, or pieces of a text, that are written between two looks at whether to stop.
-_BETWEEN_CHECKS = 1000
 
 
 def write_layer(given: Given, name: str, layer: Layer, features: LayerFeatures, place: Place, monitor: Monitor) -> dict:
@@ -79,7 +76,7 @@ def _fill_sink(given: Given, name: str, layer: Layer, features: LayerFeatures, p
         raise QgsProcessingException(given.algorithm.invalidSinkError(given.parameters, name))
     try:
         for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
-            if row % _BETWEEN_CHECKS == 0:
+            if row % BETWEEN_CHECKS == 0:
                 monitor.progress(1.0)
             if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
                 raise QgsProcessingException(_unwritten(layer, target, sink))
@@ -107,7 +104,7 @@ def write_text(given: Given, name: str, file: TextFile, content: FileContent, pl
     try:
         with replacing(path) as stream:
             for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
-                if number % _BETWEEN_CHECKS == 0 or isinstance(piece, tuple):
+                if number % BETWEEN_CHECKS == 0 or isinstance(piece, tuple):
                     monitor.progress(0.0)
                 if isinstance(piece, tuple):
                     # Into the working folder of the run, from which it is put in place with the file.

@@ -14,10 +14,7 @@ from typing import BinaryIO
 
 from osgeo import gdal, osr
 
-from ..algorithms.cloud.outputs import os_errors_as_messages
-
-# Bytes that are copied at once: 16 MiB.
-_PIECE = 2**24
+from ..algorithms.cloud.outputs import PIECE, os_errors_as_messages
 
 
 @contextmanager
@@ -53,7 +50,7 @@ def copy_file(made: str, stream: BinaryIO) -> None:
     """Copy a file of GDAL's into a stream, piece by piece."""
     file = gdal.VSIFOpenL(made, "rb")
     try:
-        while piece := gdal.VSIFReadL(1, _PIECE, file):
+        while piece := gdal.VSIFReadL(1, PIECE, file):
             stream.write(piece)
     finally:
         gdal.VSIFCloseL(file)

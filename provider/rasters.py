@@ -12,6 +12,7 @@ from osgeo import gdal
 from qgis.core import QgsCoordinateReferenceSystem
 
 from ..algorithms.cloud.outputs import os_errors_as_messages, replacing
+from ..algorithms.criteria import NO_DATA
 from ..algorithms.stage import Cancelled, Monitor, Raster, RasterSurface
 from ..algorithms.tiling.joined_files import RasterMosaic
 from .memory_files import copy_file, gdal_errors, memory_folder
@@ -20,8 +21,6 @@ from .places import Place
 # Extensions of file names that are written, the first one by default.
 EXTENSIONS = ("tif", "tiff")
 
-# Value of empty cells: GDAL and most GIS programs take it for none.
-NO_DATA = -9999.0
 
 # Options of GDAL's driver COG. With IF_SAFER files that might pass 4 GB become BigTIFF.
 _OPTIONS = (

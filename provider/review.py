@@ -26,6 +26,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QMetaType
 
 from ..algorithms.buildings.reviewed_buildings import CHANGED, DELETED, REVIEW, REVIEWED_AT
+from ..algorithms.criteria import MAJORITY
 from .qgis_crs import meters_per_unit
 
 # Whether a building is marked as deleted.
@@ -44,12 +45,8 @@ _SHORT = 10
 _FAINT = 15
 
 
-# Share of a building that overlaps another one from which this is said: walls that meet overlap by rounding.
-_OVERLAP = 0.001
-
-# Intersection over union from which an outline is the same one, and share of the smaller of two that both have where
-# one is the other drawn anew.
-_SAME, _REDRAWN = 0.999, 0.5
+# Share of the area of a building by which rounding makes outlines that meet overlap, and two that are one differ.
+_ROUNDED = 0.001
 
 
 def changes_between(before: QgsVectorLayer, after: QgsVectorLayer) -> dict[str, int]:
@@ -62,8 +59,9 @@ def changes_between(before: QgsVectorLayer, after: QgsVectorLayer) -> dict[str, 
         both = {fid: outline.intersection(old[fid]).area() for fid in index.intersects(outline.boundingBox())}
         fid, shared = max(both.items(), key=lambda one: one[1], default=(None, 0.0))
         areas = (outline.area(), old[fid].area()) if shared else (1.0, 1.0)
-        is_same = shared > _REDRAWN * min(areas)
-        found["kept" if shared > _SAME * (sum(areas) - shared) else "redrawn" if is_same else "new"] += 1
+        # Drawn anew where the majority of the smaller one is the same.
+        is_same = shared > MAJORITY * min(areas)
+        found["kept" if shared > (1 - _ROUNDED) * (sum(areas) - shared) else "redrawn" if is_same else "new"] += 1
         matched.update([fid] if is_same else [])
     return {**{name: found[name] for name in ("kept", "redrawn", "new")}, "gone": len(old) - len(matched)}
 
@@ -166,7 +164,7 @@ class Review:
         outline = self.layer.getGeometry(fid)
         near = self.layer.getFeatures(QgsFeatureRequest().setFilterRect(outline.boundingBox()))
         others = [one for one in near if one.id() != fid and self.value(one, REVIEW) != DELETED]
-        return [one for one in others if one.geometry().intersection(outline).area() > _OVERLAP * outline.area()]
+        return [one for one in others if one.geometry().intersection(outline).area() > _ROUNDED * outline.area()]
 
     def prepare_division(self, fid: int) -> None:
         """Have QGIS's tool split this building alone, and share its volume and points by area."""

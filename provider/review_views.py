@@ -22,22 +22,16 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QPixmap
 from qgis.PyQt.QtWidgets import QGridLayout, QLabel, QWidget
 
-from ..algorithms.cloud.asprs import NOISE
+from ..algorithms.cloud.asprs import CODES, NOISE
 from ..algorithms.cloud.files import read_cloud
-from ..algorithms.report.building_views import draw_sections
+from ..algorithms.report.building_views import AROUND, draw_sections
 from .clouds import file_of_layer
 from .qgis_crs import crs_of_layer, meters_per_unit
 from .styles import Styler
 from .web import check_sizes
 
-# Width of the surroundings that are read, m.
-_AROUND = 4.0
-
 # A class of a style, and its color.
 _CATEGORY = re.compile(r'<category value="(\d+)"[^>]* color="(\d+,\d+,\d+)')
-
-# Classes that can have a color: a picture has one more, of its background.
-_CLASSES = 255
 
 
 # Rows, columns and rows that they span of the views, and their largest width and height, pixels.
@@ -99,13 +93,13 @@ def sections_of(file: Path, ring: np.ndarray, around: float) -> list[str]:
     check_sizes([file], box)
     cloud = read_cloud(file, box=box)
     kind = cloud.get("classification")
-    is_shown = ~np.isin(kind, NOISE) & (kind < _CLASSES)
+    is_shown = ~np.isin(kind, NOISE) & (kind < CODES - 1)
     return draw_sections(cloud.get("xyz")[is_shown], kind[is_shown], cloud.from_map(ring), _colors())
 
 
 def _colors() -> np.ndarray:
-    """Return the colors of the background and of the classes, as on the map."""
-    colors = np.full((1 + _CLASSES, 3), 128)
+    """Return the colors of the background and of all classes but the last, as on the map: a picture has 256 colors."""
+    colors = np.full((CODES, 3), 128)
     colors[0] = 255
     for number, color in _CATEGORY.findall(Styler.file("classification").read_text(encoding="utf-8")):
         colors[1 + int(number)] = [int(part) for part in color.split(",")]
@@ -127,7 +121,7 @@ def _cloud_around(layer: QgsVectorLayer, outline: QgsGeometry) -> tuple[Path, np
         if file is not None:
             ring = next(moved.constParts()).exteriorRing()
             corners = np.array([(corner.x(), corner.y()) for corner in ring.points()])
-            return file, corners, _AROUND / meters_per_unit(cloud.crs())[0]
+            return file, corners, AROUND / meters_per_unit(cloud.crs())[0]
     raise ValueError("The project has no point cloud here.")
 
 

@@ -44,6 +44,9 @@ _SAMPLES = {
 }
 _WORD = "word"
 
+# Features that are read or written, and pieces of texts that are written, between two looks at whether to stop.
+BETWEEN_CHECKS = 1000
+
 
 def check_layer(path: Path, kind: Qgis.ProcessingSourceType) -> None:
     """Refuse a file name whose extension is of no format that holds a layer: QGIS would write another file, or lose it.

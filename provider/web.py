@@ -16,11 +16,9 @@ from ..algorithms.cloud.web_addresses import is_address
 from ..algorithms.cloud.web_file import WebFile
 from ..algorithms.cloud.web_requests import TIMEOUT, NoAnswerError, Reply, range_of_whole, use_transport
 from ..algorithms.stage import Monitor
+from ..algorithms.threads import BETWEEN_LOOKS
 from .options import WEB_LIMIT
 from .qgis_crs import is_main_thread
-
-# Milliseconds between two looks at whether the run was cancelled, and of work of the main thread while it waits.
-_LOOK, _WORK = 100, 20
 
 
 class QgisTransport:
@@ -50,13 +48,13 @@ class QgisTransport:
     def wait(self) -> None:
         """Let the main thread answer what other threads ask it: for passwords, say."""
         if is_main_thread():
-            QCoreApplication.processEvents(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents, _WORK)
+            QCoreApplication.processEvents(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
 
 
 def _finished(reply: QNetworkReply, loop: QEventLoop, most: int, is_stopped: Callable[[], bool]) -> Reply:
     """Wait for the end of a reply, which is ended where it has more bytes than asked for; return it."""
     timer, kept = QTimer(), b""
-    timer.start(_LOOK)
+    timer.start(round(1000 * BETWEEN_LOOKS))
     # No signals: Python keeps what is connected to them, and takes it for the one of a later reply at the same address.
     while not reply.isFinished():
         loop.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)

@@ -32,7 +32,7 @@ _LEAF_POINTS = 65_536
 # Levels of the grid within a node: 2^7 = 128 cells along its side. One point of each is shown at the node's level.
 _GRID_LEVELS = 7
 # Bits per axis of a position in the root cube; three of them fill a 64-bit Morton code.
-_BITS = 21
+_BITS = np.iinfo(np.uint64).bits // 3
 # Level of the smallest nodes, whose grid is the finest one.
 _DEEPEST = _BITS - _GRID_LEVELS
 
@@ -104,20 +104,12 @@ def _sorted(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
     return order
 
 
-# Steps in which the bits of a number are spread: how far a copy is shifted, and the bits that stay.
-_SPREAD = (
-    (32, 0x1F00000000FFFF),
-    (16, 0x1F0000FF0000FF),
-    (8, 0x100F00F00F00F00F),
-    (4, 0x10C30C30C30C30C3),
-    (2, 0x1249249249249249),
-)
-
-
 def _spread(cells: np.ndarray) -> np.ndarray:
     """Put two zero bits between all bits of 21-bit numbers."""
-    for shift, mask in _SPREAD:
-        cells = (cells | cells << np.uint64(shift)) & np.uint64(mask)
+    # Groups of 16 bits are taken apart, then groups of 8, down to single ones.
+    for size in (16, 8, 4, 2, 1):
+        kept = sum(((1 << size) - 1) << start for start in range(0, 3 * _BITS, 3 * size)) & (2**64 - 1)
+        cells = (cells | cells << np.uint64(2 * size)) & np.uint64(kept)
     return cells
 
 

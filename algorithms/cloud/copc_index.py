@@ -9,14 +9,12 @@ from typing import BinaryIO
 import numpy as np
 
 from .header import COPC_INFO, Header, truncated
-from .octree import Nodes, nodes_of
+from .octree import PAGE, Nodes, nodes_of
 
 # center, halfsize, spacing, root hierarchy offset and size, GPS time range, reserved
 INFO = struct.Struct("<3dddQQdd11Q")
 # Level, x, y, z of a node; position, bytes and number of points of its chunk.
 ENTRY = np.dtype([("key", "<i4", 4), ("offset", "<u8"), ("size", "<i4"), ("count", "<i4")])
-# In the field for the number of points: the entry leads to a further page of entries.
-_PAGE = -1
 
 
 def has_index(header: Header) -> bool:
@@ -80,10 +78,10 @@ def _nodes(path: Path, stream: BinaryIO, at: int, size: int, most: int) -> np.nd
         page = np.frombuffer(stream.read(size), ENTRY)
         nodes = page[page["count"] > 0]
         count += len(nodes)
-        if (page["count"] < _PAGE).any() or count > most:
+        if (page["count"] < PAGE).any() or count > most:
             raise _damaged(path, f"it names more nodes than the {most} chunks of the file")
         found.append(nodes)
-        waiting += [(int(one["offset"]), int(one["size"])) for one in page[page["count"] == _PAGE]]
+        waiting += [(int(one["offset"]), int(one["size"])) for one in page[page["count"] == PAGE]]
     return np.concatenate(found)
 
 

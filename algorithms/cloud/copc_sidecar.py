@@ -8,20 +8,19 @@ changed since: nothing but an untouched view may be lost.
 from __future__ import annotations
 
 import hashlib
-import struct
 from collections.abc import Iterable
 from pathlib import Path
 from typing import BinaryIO
 
-from .header import SIZES
-from .outputs import COPC, LAS, same_file
+import numpy as np
+
+from .header import HEADER, bytes_of
+from .outputs import COPC, LAS, PIECE, same_file
 
 # What the header of a view says of the program that wrote it.
 VIEW_SOFTWARE = "LiDAR Buildings view"
-# Position and size (bytes) of the project id (GUID) in the header of LAS 1.4, which holds the digest of a view.
-_DIGEST_AT, _DIGEST_SIZE = 8, 16
-# Positions (bytes) in that header of the name of the writing program and of the offsets to points and EVLRs.
-_SOFTWARE_AT, _POINTS_AT, _EVLRS_AT = 58, 96, 235
+# Bytes of the project id (GUID) in the header, which holds the digest of a view.
+_DIGEST = bytes_of("guid")
 
 
 def copc_path(path: Path) -> Path:
@@ -55,10 +54,10 @@ def is_view(copc: Path, path: Path) -> bool:
     if not (copc.is_file() and path.is_file()):
         return False
     with copc.open("rb") as view, path.open("rb") as shown:
-        header = view.read(SIZES[4])
-        if len(header) < SIZES[4] or not header[_SOFTWARE_AT:].startswith(VIEW_SOFTWARE.encode()):
+        header = view.read(HEADER.itemsize)
+        if len(header) < HEADER.itemsize or not header[bytes_of("software")].startswith(VIEW_SOFTWARE.encode()):
             return False
-        return _digest(view, shown) == header[_DIGEST_AT : _DIGEST_AT + _DIGEST_SIZE]
+        return _digest(view, shown) == header[_DIGEST]
 
 
 def seal(view: BinaryIO, shown: BinaryIO) -> None:
@@ -67,20 +66,18 @@ def seal(view: BinaryIO, shown: BinaryIO) -> None:
     Both streams can be read from any position.
     """
     digest = _digest(view, shown)
-    view.seek(_DIGEST_AT)
+    view.seek(_DIGEST.start)
     view.write(digest)
 
 
 def _digest(view: BinaryIO, shown: BinaryIO) -> bytes:
     """Digest the view's points and all of the other file; QGIS may add statistics behind the points."""
-    view.seek(_POINTS_AT)
-    (start,) = struct.unpack("<I", view.read(4))
-    view.seek(_EVLRS_AT)
-    (stop,) = struct.unpack("<Q", view.read(8))
-    digest = hashlib.blake2b(digest_size=_DIGEST_SIZE)
-    for stream, first, last in ((view, start, stop), (shown, 0, shown.seek(0, 2))):
+    view.seek(0)
+    fields = np.frombuffer(view.read(HEADER.itemsize), HEADER)[0]
+    digest = hashlib.blake2b(digest_size=HEADER["guid"].itemsize)
+    parts = ((view, int(fields["points_at"]), int(fields["evlrs_at"])), (shown, 0, shown.seek(0, 2)))
+    for stream, first, last in parts:
         stream.seek(first)
-        # In portions of a megabyte large files need little memory.
-        while block := stream.read(max(0, min(1 << 20, last - stream.tell()))):
+        while block := stream.read(max(0, min(PIECE, last - stream.tell()))):
             digest.update(block)
     return digest.digest()

@@ -10,10 +10,10 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from ..criteria import EQUATORIAL_RADIUS
+from ..criteria import EQUATORIAL_RADIUS, POLAR_RADIUS
 from ..stage import Monitor
 from .authority import Authority, Definition, authority_here
-from .header import WKT_BIT, Header, Vlr
+from .header import LARGEST_VLR, WKT_BIT, Header, Vlr
 from .printable import shown
 from .units import (
     GEOKEYS,
@@ -35,8 +35,6 @@ from .units import (
 
 # User and record ids of the VLRs with WKT.
 _WKT = ((PROJECTION, 2112), (b"liblas", 2112))
-# Longest WKT (bytes): real systems have some thousand; a longer one takes seconds to parse and counts as damage.
-_LONGEST_WKT = 1_000_000
 # Difference of the map's scale from 1 above which a warning names it: twice the difference at the edges of UTM zones.
 _NAMED_SCALE = 0.001
 # Scale, as a difference from 1, above which lengths are corrected to meters on the ground. No system for surveys
@@ -49,8 +47,8 @@ _LARGEST_DISTORTION = 1.1
 _STEP = 1e-4
 # Distance (m) of the positions that the scale is measured by from the middle, and the directions to them.
 _APART, _CROSS = 50.0, np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
-# Squared eccentricity of the ellipsoid of GRS 1980: all others are within 0.02 % of it.
-_ECCENTRICITY = 0.00669438
+# Squared eccentricity of the ellipsoids of WGS 84 and GRS 1980: all others are within 0.02 % of it.
+_ECCENTRICITY = 1 - (POLAR_RADIUS / EQUATORIAL_RADIUS) ** 2
 
 # A code, and the code of the vertical system.
 _CODE = re.compile(r"[A-Za-z]{3,}:\w+(\+\d+)?")
@@ -316,7 +314,7 @@ def header_with_crs(header: Header, crs: Crs) -> Header:
     if header.layout.is_old:
         if own or define_system(keys) or not crs.identity:
             return header
-        code = crs.plane if _is_code(crs.plane) and crs.vertical == crs.horizontal else ""
+        code = crs.plane if is_epsg_code(crs.plane) and crs.vertical == crs.horizontal else ""
         vlrs, bits = crs_records(code or crs.wkt or crs.stated)
         return replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
     if '"' in crs.wkt and own != crs.stated:
@@ -330,7 +328,7 @@ def header_with_crs(header: Header, crs: Crs) -> Header:
 def crs_records(text: str) -> tuple[list[Vlr], int]:
     """Return the VLRs that store ``text`` (WKT, "EPSG:code" or ""), and its bits of the global encoding."""
     if text and '"' not in text:
-        if not _is_code(text):
+        if not is_epsg_code(text):
             raise ValueError(f"The CRS {text!r} can't be stored; give WKT or EPSG:code.")
         numbers = (1, 1, 0, 2, MODEL, 0, 1, 1, PROJECTED, 0, 1, int(text[5:]))
         return [Vlr(*GEOKEYS, struct.pack(f"<{len(numbers)}H", *numbers), description=b"GeoKeys")], 0
@@ -339,15 +337,15 @@ def crs_records(text: str) -> tuple[list[Vlr], int]:
     return [Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")], WKT_BIT
 
 
-def _is_code(text: str) -> bool:
+def is_epsg_code(text: str) -> bool:
     """Whether a text is a code that GeoKeys can hold."""
     return text.upper().startswith("EPSG:") and text[5:].isdecimal() and 0 < int(text[5:]) < USER_DEFINED
 
 
 def stated_wkt(header: Header) -> str:
-    """Return the WKT in a file, "" without any."""
+    """Return the WKT in a file, "" without any; one that no VLR holds is damage, and would take seconds to parse."""
     for key in _WKT:
         record = header.find(key)
-        if record is not None and record.data and len(record.data) <= _LONGEST_WKT:
+        if record is not None and record.data and len(record.data) <= LARGEST_VLR:
             return record.data.split(b"\0")[0].decode("utf-8", "replace").strip()
     return ""

@@ -12,32 +12,22 @@ import numpy as np
 from .. import packages
 from ..stage import Monitor
 from .catalog_json import read_json
-from .crs import crs_records
-from .extra_bytes import new_field
-from .header import LARGEST_STEP, Header, truncated
-from .octree import Nodes, fetched_to, nodes_of
-from .outputs import EPT, kind_of
+from .crs import crs_records, is_epsg_code
+from .extra_bytes import LONGEST_NAME, new_field
+from .header import LARGEST_STEP, LARGEST_VLR, MOST_EXTRAS, Header, truncated
+from .octree import PAGE, Nodes, fetched_to, nodes_of
+from .outputs import EPT, PIECE, kind_of
 from .point_formats import Layout
 from .printable import shown
-from .web_file import WebFile, fetch_files, is_on_web
+from .web_file import MOST_READ, WebFile, fetch_files, is_on_web
 
 # Encodings of nodes with the extensions of their files; zstandard compresses binary nodes.
 _ENDINGS = {"laszip": "laz", "binary": "bin", "zstandard": "zst"}
 # Most nodes and pages of one hierarchy: ten times as many as the largest known data sets have.
 _MOST_NODES, _MOST_PAGES = 5_000_000, 20_000
-# This value in place of a number of points means that the node begins a page of its own.
-_PAGE = -1
-# Most points of a node.
-_MOST_POINTS = 2**31 - 1
-# Most bytes of the points of a node, unpacked: a thousand times the largest known node. They are read in pieces.
-_MOST_BYTES, _PIECE = 2**30, 2**20
 _KEY = re.compile(r"\d{1,2}(?:-\d{1,12}){3}")
 # Kinds of numbers by their names in a schema, with the numbers of bytes that they may have.
 _KINDS = {"signed": ("i", (1, 2, 4, 8)), "unsigned": ("u", (1, 2, 4, 8)), "floating": ("f", (4, 8))}
-# Longest name of a dimension in a LAS file, and most of them.
-_LONGEST_NAME, _MOST_DIMENSIONS = 31, 300
-# Scale (units of the file) of coordinates that are stored as floating numbers.
-_SCALE = 0.001
 # Names of standard fields that differ from laspy's names in capitals.
 _NAMES = {"ScanAngleRank": "scan_angle", "ScanAngle": "scan_angle", "Infrared": "nir", "ScanChannel": "scanner_channel"}
 # Compact form of a name, without the characters that PDAL and laspy spell differently.
@@ -64,12 +54,12 @@ class Ept:
             self.kind, self.count = str(content["dataType"]), int(content["points"])
             ends = np.array([content["bounds"], content.get("boundsConforming") or content["bounds"]], float)
             ends = ends.reshape(2, 2, 3)
-            self.fields = [_field(one) for one in content["schema"][: _MOST_DIMENSIONS + 1]]
+            self.fields = [_field(one) for one in content["schema"][: MOST_EXTRAS + 1]]
             names = {name for name, *_ in self.fields}
             self.srs, span = content.get("srs") or {}, float(content.get("span") or 0)
             is_sound = bool(np.isfinite(ends).all() and (ends[:, 1] >= ends[:, 0]).all())
             is_sound &= (
-                len(names) == len(self.fields) <= _MOST_DIMENSIONS
+                len(names) == len(self.fields) <= MOST_EXTRAS
                 and bool((ends[0, 1] > ends[0, 0]).all())
                 and 0 <= self.count < 2**62
             )
@@ -129,7 +119,7 @@ class Ept:
         of = {name: (scale, offset) for name, dtype, scale, offset in self.fields if dtype.kind == "i"}
         if all(of.get(axis, (0.0, 0.0))[0] > 0 for axis in "XYZ"):
             return tuple(np.array([of[axis][i] for axis in "XYZ"]) for i in (0, 1))
-        return np.full(3, _SCALE), np.floor(self.bounds.mean(axis=0))
+        return Header().scale, np.floor(self.bounds.mean(axis=0))
 
     def _layout(self) -> Layout:
         """Return the layout of records that hold the dimensions of binary nodes."""
@@ -183,7 +173,7 @@ def _field(one: dict) -> tuple[str, np.dtype, float, float]:
     """Return name, type, scale (0 for none) and offset of a dimension of a schema."""
     name, size, scale, offset = str(one["name"]), one["size"], float(one.get("scale", 0)), float(one.get("offset", 0))
     letter, sizes = _KINDS[one["type"]]
-    if size not in sizes or not 0 < len(name.encode()) <= _LONGEST_NAME or not np.isfinite([scale, offset]).all():
+    if size not in sizes or not 0 < len(name.encode()) <= LONGEST_NAME or not np.isfinite([scale, offset]).all():
         raise ValueError(name)
     # Plain numbers have a scale of 1 and no offset.
     is_plain = (scale, offset) == (1.0, 0.0) and name not in ("X", "Y", "Z")
@@ -193,10 +183,10 @@ def _field(one: dict) -> tuple[str, np.dtype, float, float]:
 def _system(srs: Any) -> str:
     """Return the coordinate reference system of a description: WKT, "EPSG:code" or ""."""
     wkt, code = (srs.get(name) for name in ("wkt", "horizontal")) if isinstance(srs, dict) else ("", "")
-    if isinstance(wkt, str) and '"' in wkt and len(wkt) < 2**15:
+    if isinstance(wkt, str) and '"' in wkt and len(wkt.encode()) < LARGEST_VLR:
         return wkt
     text = f"EPSG:{code}"
-    return text if str(code).isdecimal() and len(text) < 11 and 0 < int(str(code)) < 2**15 - 1 else ""
+    return text if len(text) < 11 and is_epsg_code(text) else ""
 
 
 class EptOctree:
@@ -247,7 +237,7 @@ class EptOctree:
             return self.read_laz(file, count, self.header)
         expected = count * self.ept.record.itemsize
         with file.open("rb") as stream:
-            raw = self._bytes(file, stream, min(expected, _MOST_BYTES))
+            raw = self._bytes(file, stream, min(expected, MOST_READ))
         if len(raw) != expected:
             found = len(raw) if len(raw) < expected else "more"
             raise truncated(file, f"its {count} points should take {expected} bytes, and it has {found}")
@@ -260,7 +250,7 @@ class EptOctree:
         try:
             # A stream allocates as much as one call asks for.
             stream = zstandard.open(stream) if zstandard else stream
-            while len(found) <= size and (piece := stream.read(_PIECE)):
+            while len(found) <= size and (piece := stream.read(PIECE)):
                 found += piece
         except errors:
             raise truncated(file, "its points can't be unpacked") from None
@@ -287,7 +277,7 @@ def _hierarchy(
         if len(found) + len(entries) > _MOST_NODES or len(seen) > _MOST_PAGES:
             raise truncated(path, f"its hierarchy has more than {_MOST_NODES} nodes or {_MOST_PAGES} pages")
         found.update({key: count for key, count in entries.items() if count > 0})
-        pages = [key for key, count in entries.items() if count == _PAGE and key not in seen]
+        pages = [key for key, count in entries.items() if count == PAGE and key not in seen]
         waiting = [key for key, touches in zip(pages, _nodes(ept, pages).touch(box, sides)) if touches]
         seen.update(waiting)
     keys = sorted(found)
@@ -298,7 +288,7 @@ def _hierarchy(
 
 def _nodes(ept: Ept, keys: list[tuple], counts: Any = ()) -> Nodes:
     """Return the nodes of an octree by their keys."""
-    margin = np.full(2, max([_SCALE, *(scale for name, _, scale, _ in ept.fields if name in ("X", "Y"))]))
+    margin = np.full(2, max([*Header().scale, *(scale for name, _, scale, _ in ept.fields if name in ("X", "Y"))]))
     points = np.array(counts if len(counts) else [0] * len(keys), np.int64)
     found = np.array(keys, np.int64).reshape(-1, 4)
     side = ept.high - ept.low
@@ -309,7 +299,7 @@ def _page(file: Path) -> dict[tuple, int]:
     """Return the numbers of points by the keys of one page of a hierarchy."""
     content = read_json(file)
     is_sound = isinstance(content, dict) and all(
-        _KEY.fullmatch(key) and type(count) is int and _PAGE <= count <= _MOST_POINTS for key, count in content.items()
+        _KEY.fullmatch(key) and type(count) is int and PAGE <= count <= MOST_READ for key, count in content.items()
     )
     if not is_sound:
         raise truncated(file, "it is no page of the hierarchy of Entwine point tiles")

@@ -9,18 +9,19 @@ import numpy as np
 
 from .laspy_library import need_laspy
 
-# Bytes of a descriptor.
-DESCRIPTOR_SIZE = 192
 # Where a descriptor has the number that means "no data", of the first of up to 3 axes.
 _NO_DATA = slice(40, 48)
 # Where it has minimum and maximum of 3 axes.
 _RANGE = slice(64, 112)
 # Where it has name and description.
 _TEXTS = (slice(4, 36), slice(160, 192))
+# Bytes of a descriptor, which ends with the description; and of the longest name, which ends with a 0.
+DESCRIPTOR_SIZE = _TEXTS[1].stop
+LONGEST_NAME = _TEXTS[0].stop - _TEXTS[0].start - 1
 # Where it has what the numbers mean: options; "no data" of all axes; scales and offsets.
 _MEANING = (slice(3, 4), slice(40, 64), slice(112, 160))
 # Most bytes of unknown meaning that one descriptor holds: their number is stored in a byte.
-_LONGEST_UNDOCUMENTED = 255
+_LONGEST_UNDOCUMENTED = np.iinfo(np.uint8).max
 
 
 def _parsed(raw: bytes) -> Any:

@@ -19,7 +19,7 @@ from .header import OF_OLD_CHUNKS, OF_OLD_POINTS, Header
 from .laspy_library import need_lazrs
 from .laz import writing_backend
 from .outputs import COPC, LAZ, STAC, VPC, check_output, kind_of, replacing
-from .point_formats import WITH_WAVEFORMS, Layout
+from .point_formats import Layout
 from .point_records import PointRecords, merged_layout
 from .points import (
     EVERYWHERE,
@@ -410,7 +410,7 @@ def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[Bina
     records = cloud.records(for_copc=True)
     old, new = cloud.header.layout.point_format, records.layout.point_format
     if old != new:
-        lost = "; its waveform references are left out" if old in WITH_WAVEFORMS else ""
+        lost = "; its waveform references are left out" if cloud.header.layout.has_waveforms else ""
         report = monitor.warn if lost else monitor.inform
         report(f"COPC holds point formats 6 to 8 only: {path.name} is written in format {new} instead of {old}{lost}.")
     header = copc_header(_output_header(cloud, records))

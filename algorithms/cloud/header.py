@@ -13,34 +13,41 @@ import numpy as np
 
 from .extra_bytes import DESCRIPTOR_SIZE, fields_of, payload_of
 from .laspy_library import need_laspy
-from .point_formats import FORMATS, WITH_WAVEFORMS, Layout
+from .outputs import PIECE
+from .point_formats import FORMATS, Layout
 
-# Position (bytes) in a header of its own size, offset to the points, number of VLRs, point format, record length and
-# 32-bit number of points.
-_SIZES_AT, _START_SIZES = 94, struct.Struct("<HIIBHI")
-# Positions in it of the minor version, the number of VLRs, and the 32-bit numbers of points.
-_MINOR_AT, _VLRS_AT, _OLD_COUNTS_AT = 25, 100, 107
-# Bytes of the system that recorded the points, and of the date.
-_SYSTEM, _DATE = slice(26, 58), slice(90, 94)
-# Bytes of the numbers of points by return, which are counted anew; laspy 2.5 has 32 bits for each.
-_OLD_RETURNS, _RETURNS = slice(111, 131), slice(255, 375)
+# The header of LAS 1.4, whose beginning is that of earlier versions; the "old" numbers of points have 32 bits.
+HEADER = np.dtype([
+    ("signature", "S4"), ("source_id", "<u2"), ("encoding", "<u2"), ("guid", "V16"), ("major", "u1"), ("minor", "u1"),
+    ("system", "S32"), ("software", "S32"), ("date", "V4"), ("size", "<u2"), ("points_at", "<u4"), ("n_vlrs", "<u4"),
+    ("point_format", "u1"), ("length", "<u2"), ("old_count", "<u4"), ("old_returns", "<u4", 5), ("scale", "<f8", 3),
+    ("offset", "<f8", 3), ("bounds", "<f8", 6), ("waveforms_at", "<u8"), ("evlrs_at", "<u8"), ("n_evlrs", "<u4"),
+    ("count", "<u8"), ("returns", "<u8", 15),
+])  # fmt: skip
+
+
+def bytes_of(name: str) -> slice:
+    """Return the bytes of a field of the header, by its name in ``HEADER``."""
+    kind, start = HEADER.fields[name][:2]
+    return slice(start, start + kind.itemsize)
+
+
 # Reserved bytes, user id, record id, length and description before the payload of a VLR and of an EVLR.
 _VLR = struct.Struct("<2s16sHH32s")
 EVLR = struct.Struct("<2s16sHQ32s")
 # Size of the header of each minor version.
-SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
+SIZES = {**dict.fromkeys(range(3), bytes_of("bounds").stop), 3: bytes_of("waveforms_at").stop, 4: HEADER.itemsize}
 # The first minor version of LAS that has a point format; laspy supports versions from 1.1 on.
 _FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 
 # Bits of the encoding: the CRS is a WKT; waveforms are in the file, in a file of their own.
 WKT_BIT = 16
 WAVEFORMS_INSIDE, WAVEFORMS_OUTSIDE = 2, 4
-# Most bytes of the payload of a VLR.
-_LARGEST_VLR = 65_535
+# Most bytes of the payload of a VLR, and most extra dimensions that it describes.
+LARGEST_VLR = np.iinfo(np.uint16).max
+MOST_EXTRAS = LARGEST_VLR // DESCRIPTOR_SIZE
 # Largest coordinate of a record, in steps of the scale from the offset.
-LARGEST_STEP = 2**31 - 1
-# Payloads of more bytes (waveforms), and indexes, stay in their file until they are copied, in parts of this size.
-_KEPT_IN_MEMORY = 2**24
+LARGEST_STEP = np.iinfo(np.int32).max
 # Areas of cells whose sides are a smaller step are 0 in doubles.
 _LEAST_STEP = float(np.sqrt(np.finfo(float).tiny))
 # The name of the writing program, in the header of every file written here.
@@ -87,8 +94,8 @@ class Vlr:
             return
         with self.path.open("rb") as source:
             source.seek(self.start)
-            for done in range(0, self.size, _KEPT_IN_MEMORY):
-                stream.write(source.read(min(_KEPT_IN_MEMORY, self.size - done)))
+            for done in range(0, self.size, PIECE):
+                stream.write(source.read(min(PIECE, self.size - done)))
 
 
 @dataclass
@@ -127,7 +134,7 @@ class Header:
     @property
     def has_waveforms_outside(self) -> bool:
         """Whether the points refer to waveforms in a file of their own (.wdp)."""
-        return self.layout.point_format in WITH_WAVEFORMS and bool(self.encoding & WAVEFORMS_OUTSIDE)
+        return self.layout.has_waveforms and bool(self.encoding & WAVEFORMS_OUTSIDE)
 
     def find(self, key: tuple[bytes, int]) -> Optional[Vlr]:
         """Return the first VLR or EVLR of that user and record id, or None."""
@@ -149,9 +156,9 @@ class Header:
         old = found[0] if found else None
         if len(found) < 2 and payload == (old.data if old else b""):
             return replace(self, layout=layout)
-        if len(payload) > _LARGEST_VLR:
+        if len(payload) > LARGEST_VLR:
             raise ValueError(
-                f"A LAS file describes at most {_LARGEST_VLR // DESCRIPTOR_SIZE} extra dimensions, got "
+                f"A LAS file describes at most {MOST_EXTRAS} extra dimensions, got "
                 f"{len(payload) // DESCRIPTOR_SIZE}; remove some."
             )
         new = Vlr(*EXTRA_BYTES, payload, description=b"Extra bytes")
@@ -194,13 +201,13 @@ class Header:
             raw = bytearray(packed.getvalue())
         self.points_at = las.offset_to_point_data
         if SIZES[self.minor] == SIZES[las.version.minor]:
-            raw[_MINOR_AT] = self.minor
-        raw[_SYSTEM], raw[_DATE] = self.system.ljust(32, b"\0"), self.date
-        struct.pack_into("<I", raw, _VLRS_AT, len(self.vlrs) + len(las.vlrs))
+            raw[bytes_of("minor").start] = self.minor
+        raw[bytes_of("system")], raw[bytes_of("date")] = self.system.ljust(32, b"\0"), self.date
+        struct.pack_into("<I", raw, bytes_of("n_vlrs").start, len(self.vlrs) + len(las.vlrs))
         # LAS 1.4 has the number of points in the old place too, where it fits and the format is an old one.
         if self.minor == 4 and self.layout.is_old and las.point_count < 2**32:
             returns = map(int, las.number_of_points_by_return[:5])
-            struct.pack_into("<6I", raw, _OLD_COUNTS_AT, las.point_count, *returns)
+            struct.pack_into("<6I", raw, bytes_of("old_count").start, las.point_count, *returns)
         stream.seek(0)
         stream.write(raw)
 
@@ -252,10 +259,10 @@ class _Reader:
 
     def __init__(self, path: Path, stream: BinaryIO, raw: bytes, total: int) -> None:
         self.path, self.stream, self.raw, self.total = path, stream, raw, total
-        self.major, self.minor = raw[24], raw[_MINOR_AT]
-        self.size, self.points_at, self.n_vlrs, kind, self.length, self.old_count = _START_SIZES.unpack_from(
-            raw, _SIZES_AT
-        )
+        fields = np.frombuffer(raw.ljust(HEADER.itemsize, b"\0"), HEADER)[0]
+        self.major, self.minor, kind = (int(fields[name]) for name in ("major", "minor", "point_format"))
+        names = ("size", "points_at", "n_vlrs", "length", "old_count")
+        self.size, self.points_at, self.n_vlrs, self.length, self.old_count = (int(fields[name]) for name in names)
         # LASzip marks compressed files in the upper two bits of the point format.
         self.point_format, self.is_compressed = kind & 63, bool(kind & 128)
 
@@ -264,7 +271,8 @@ class _Reader:
         las = self._parsed()
         header = Header(
             minor=self.minor, source_id=las.file_source_id, encoding=las.global_encoding.value,
-            guid=las.uuid.bytes_le, system=self.raw[_SYSTEM], date=self.raw[_DATE], user_bytes=las.extra_header_bytes,
+            guid=las.uuid.bytes_le, system=self.raw[bytes_of("system")],
+            date=self.raw[bytes_of("date")], user_bytes=las.extra_header_bytes,
             is_compressed=self.is_compressed, scale=las.scales, offset=las.offsets, low=las.mins, high=las.maxs,
             count=las.point_count or self.old_count, points_at=self.points_at,
             waveforms_at=las.start_of_waveform_data_packet_record,
@@ -295,10 +303,9 @@ class _Reader:
         """Return laspy's header, with the VLRs as bytes before the points."""
         self.stream.seek(0)
         plain = bytearray(self.stream.read(self.points_at))
-        plain[_VLRS_AT : _VLRS_AT + 4] = bytes(4)
-        plain[_OLD_RETURNS] = bytes(20)
-        if self.minor >= 4:
-            plain[_RETURNS] = bytes(120)
+        # Points by return are counted anew; laspy 2.5 has 32 bits for each.
+        for name in ("n_vlrs", "old_returns", *(["returns"] if self.minor >= 4 else [])):
+            plain[bytes_of(name)] = bytes(HEADER[name].itemsize)
         return need_laspy().LasHeader.read_from(io.BytesIO(plain))
 
     def _check_scale(self, header: Header) -> None:
@@ -353,7 +360,8 @@ class _Reader:
             known = f"{name} {record_id} " if name.isascii() and name.isprintable() else ""
             raise truncated(self.path, f"a record {known}of {size} bytes runs past byte {end}")
         record = Vlr(user_id, record_id, None, description, reserved, self.path, start, size)
-        if size > _KEPT_IN_MEMORY or record.key == COPC_HIERARCHY:
+        # Long payloads (waveforms), and indexes, stay in their file until they are copied.
+        if size > PIECE or record.key == COPC_HIERARCHY:
             self.stream.seek(start + size)
         else:
             record.data = self.stream.read(size)

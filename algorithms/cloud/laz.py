@@ -12,7 +12,7 @@ import numpy as np
 
 from .header import LASZIP, Header, truncated
 from .laspy_library import explained, has_backend, need_laspy, need_lazrs
-from .point_formats import WITH_WAVEFORMS
+from .point_formats import Layout
 
 # The size of LAZ chunks that laszip and lazrs use when nothing else is asked for.
 POINTS_PER_CHUNK = 50_000
@@ -23,8 +23,12 @@ _POINTWISE, _CHUNKED = 1, 2
 # The number of points of a chunk in a LASzip record whose chunks have different numbers, each in the chunk table; many
 # writers of COPC leave 0 there, which LASzip takes for the same.
 _VARIABLE_CHUNKS, _UNSTATED_CHUNKS = 2**32 - 1, 0
-# Byte of the LASzip record at which the number of points of a chunk lies, and that at which the items begin.
-_CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
+# What a LASzip record has before its items: how points are compressed, coder, version, options, points of a chunk,
+# number and bytes of further records, number of items.
+_HEAD = np.dtype([
+    ("compressor", "<u2"), ("coder", "<u2"), ("version", "V4"), ("options", "<u4"), ("chunk_size", "<u4"),
+    ("n_evlrs", "<i8"), ("evlr_bytes", "<i8"), ("n_items", "<u2"),
+])  # fmt: skip
 # Type, size in bytes and version of an item of the record.
 _ITEM = struct.Struct("<HHH")
 # The position of the chunk table, and its head: version, number of chunks.
@@ -33,15 +37,13 @@ _TABLE_POSITION, _TABLE_START = struct.Struct("<q"), struct.Struct("<II")
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 # Versions of the items of points in layers, and of all others; lazrs lacks the newest.
 _LAYERED_VERSIONS, _PLAIN_VERSIONS = (3, 4), (1, 2)
-_NOT_IN_LAZRS = 4
+_NOT_IN_LAZRS = max(_LAYERED_VERSIONS)
 # Types of the items of each point format, and of extra bytes behind formats 0 to 5 and 6 to 10.
 _TYPES = {
     0: (6,), 1: (6, 7), 2: (6, 8), 3: (6, 7, 8), 4: (6, 7, 9), 5: (6, 7, 8, 9),
     6: (10,), 7: (10, 11), 8: (10, 12), 9: (10, 13), 10: (10, 12, 13),
 }  # fmt: skip
 _EXTRA_TYPES = 0, 14
-# Formats from this on are stored in layers.
-_FIRST_LAYERED_FORMAT = 6
 # Size of an item (bytes) by its type.
 _SIZES = {6: 20, 7: 8, 8: 6, 9: 29, 10: 30, 11: 6, 12: 8, 13: 29}
 
@@ -57,10 +59,9 @@ class _Laz:
     def record(self) -> bytes:
         """Return the LASzip record, as :func:`_plain_record` gives it, its items held against the header's records."""
         found = self.header.find(LASZIP)
-        if found is None or found.data is None or len(found.data) < _ITEMS_AT:
+        if found is None or found.data is None or len(found.data) < _HEAD.itemsize:
             raise truncated(self.path, "its LASzip record is missing")
-        n_items = struct.unpack_from("<H", found.data, _ITEMS_AT - 2)[0]
-        if len(found.data) < _ITEMS_AT + n_items * _ITEM.size:
+        if len(found.data) < _HEAD.itemsize + int(_head(found.data)["n_items"]) * _ITEM.size:
             raise truncated(self.path, "its LASzip record is too short")
         size, expected = sum(item[1] for item in _items(found.data)), self.header.layout.dtype.itemsize
         if size != expected:
@@ -130,7 +131,7 @@ class _Laz:
 
     def check_pointwise(self) -> None:
         """Refuse layers in points that are compressed in one go: laszip ends the process on them."""
-        if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
+        if not self.header.layout.is_old:
             raise truncated(self.path, "its LASzip record describes layered points without chunks")
 
     def check_layers(self, chunks: np.ndarray, record: bytes, stream: BinaryIO, origin: int = 0) -> None:
@@ -138,7 +139,7 @@ class _Laz:
 
         The stream begins at position ``origin`` of the file.
         """
-        if self.header.layout.point_format < _FIRST_LAYERED_FORMAT:
+        if self.header.layout.is_old:
             return
         n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
         # A chunk begins with one whole record, its number of points and the size of each layer, 4 bytes each.
@@ -210,25 +211,31 @@ def _plain_record(record: bytes) -> bytes:
     return _with_chunk_size(record, _VARIABLE_CHUNKS)
 
 
+def _head(record: bytes) -> np.ndarray:
+    """Return what a LASzip record has before its items, without a copy."""
+    return np.frombuffer(record, _HEAD, 1)[0]
+
+
 def _with_chunk_size(record: bytes, size: int) -> bytes:
     """Return a LASzip record with another number of points of a chunk."""
-    return record[:_CHUNK_SIZE_AT] + struct.pack("<I", size) + record[_CHUNK_SIZE_AT + 4 :]
+    head = _head(record).copy()
+    head["chunk_size"] = size
+    return head.tobytes() + record[_HEAD.itemsize :]
 
 
 def _chunk_size(record: bytes) -> int:
     """Return the number of points of a chunk that a LASzip record states."""
-    return struct.unpack_from("<I", record, _CHUNK_SIZE_AT)[0]
+    return int(_head(record)["chunk_size"])
 
 
 def _items(record: bytes) -> list[tuple]:
     """Return type, size and version of the items that the points are compressed as."""
-    n_items = struct.unpack_from("<H", record, _ITEMS_AT - 2)[0]
-    return [_ITEM.unpack_from(record, _ITEMS_AT + i * _ITEM.size) for i in range(n_items)]
+    return [_ITEM.unpack_from(record, _HEAD.itemsize + i * _ITEM.size) for i in range(int(_head(record)["n_items"]))]
 
 
 def _fit(items: list[tuple], point_format: int, size: int) -> bool:
     """Whether items fit records of ``size`` bytes of a point format; lazrs may allocate GBs for others."""
-    is_old = point_format < _FIRST_LAYERED_FORMAT
+    is_old = Layout(point_format).is_old
     types = list(_TYPES[point_format])
     extra = size - sum(_SIZES[kind] for kind in types)
     expected = [(kind, _SIZES[kind]) for kind in types] + ([(_EXTRA_TYPES[not is_old], extra)] if extra else [])
@@ -338,7 +345,7 @@ def first_records(path: Path, header: Header, stream: BinaryIO) -> list[int]:
 def has_variable_chunks(header: Header) -> bool:
     """Whether chunks of a LAZ file may differ in their numbers of points, and lazrs can read some of them."""
     found = header.find(LASZIP)
-    if found is None or found.data is None or len(found.data) < _ITEMS_AT or found.data[0] == _POINTWISE:
+    if found is None or found.data is None or len(found.data) < _HEAD.itemsize or found.data[0] == _POINTWISE:
         return False
     return _chunk_size(_plain_record(found.data)) == _VARIABLE_CHUNKS and _is_for_lazrs(found.data)
 
@@ -364,7 +371,7 @@ def writing_backend(point_format: int) -> Any:
     ValueError
         If the format has waveforms and laszip is not installed, or neither package is.
     """
-    if point_format not in WITH_WAVEFORMS:
+    if not Layout(point_format).has_waveforms:
         return _backend(_LAZRS, _LASZIP)
     found = _backend(_LASZIP, _LAZRS)
     if found is not need_laspy().LazBackend.Laszip:

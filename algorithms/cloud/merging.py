@@ -13,10 +13,8 @@ from .crs import Crs, common_crs
 from .dimensions import DIMENSIONS
 from .header import Header
 from .point_records import PointRecords, convert, find_extra, is_stored_as
+from .points import AT_ONCE
 from .vpc import merged_header
-
-# Points converted at once: the memory in addition to the clouds and their union stays small.
-_CHUNK = 500_000
 
 
 def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optional[Monitor] = None) -> Cloud:
@@ -114,8 +112,9 @@ def _header(cloud: Cloud, records: PointRecords, position: np.ndarray, crs: Crs)
 
 def _fill(out: np.ndarray, records: PointRecords, position: np.ndarray, header: Header) -> None:
     """Write the records of one cloud, with its new coordinates, to their part of the union."""
-    for start in range(0, len(out), _CHUNK):
-        chunk = slice(start, start + _CHUNK)
+    # So that the memory in addition to the clouds and their union stays small.
+    for start in range(0, len(out), AT_ONCE):
+        chunk = slice(start, start + AT_ONCE)
         convert(records.take(chunk), records.layout, header.layout, out[chunk])
         for i, axis in enumerate("XYZ"):
             out[axis][chunk] = np.rint((position[chunk, i] - header.offset[i]) / header.scale[i])

@@ -9,11 +9,14 @@ from typing import Optional
 import numpy as np
 
 from .header import truncated
+from .web_file import AT_ONCE, MOST_AT_ONCE
 
 # No octree is deeper: a cell of this level of the whole Earth is a hundredth of a millimeter wide.
 _DEEPEST = 42
-# Bytes of points on the web that are fetched before they are decompressed.
-FETCHED = 2**26
+# In place of a number of points: the entry leads to a further page of entries.
+PAGE = -1
+# Bytes of points on the web that are fetched before they are decompressed: by the requests that are sent at once.
+FETCHED = AT_ONCE * MOST_AT_ONCE
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,8 @@ LOCK = "lock"
 _OLD = "old"
 # Error numbers of a lock that another program holds; any other error means a disk without locks.
 _IS_HELD = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES, errno.EDEADLK)
+# Bytes that are copied or unpacked at once: more than most files and records have, and little of a computer's memory.
+PIECE = 2**24
 # A working folder younger than this (s) may belong to a run that has not locked it yet, which takes far less.
 _UNLOCKED = 2.0
 

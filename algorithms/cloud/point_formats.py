@@ -21,8 +21,6 @@ _NAMES = {"scan_angle_rank": "scan_angle"}
 UPGRADED = {0: 6, 1: 6, 2: 7, 3: 7, 4: 9, 5: 10}
 # COPC allows 6, 7 and 8 only; waveform references have no field there.
 OF_COPC = {**UPGRADED, 4: 6, 5: 7, 6: 6, 7: 7, 8: 8, 9: 6, 10: 8}
-# Formats whose records refer to waveforms.
-WITH_WAVEFORMS = (4, 5, 9, 10)
 
 
 @dataclass(frozen=True)
@@ -63,6 +61,11 @@ class Layout:
     def is_old(self) -> bool:
         """Whether this is one of the formats 0-5, which have 5 bits for the class."""
         return self.point_format < 6
+
+    @property
+    def has_waveforms(self) -> bool:
+        """Whether records refer to waveforms."""
+        return "wavepacket_index" in self.standard.fields
 
     @cached_property
     def names(self) -> tuple[str, ...]:

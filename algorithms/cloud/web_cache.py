@@ -36,11 +36,11 @@ class KeptRanges:
         Where the file is, and how the user is known there. Only a digest of both is in the names of files.
     version : str
         As the server names it; what has no version is not kept.
-    size : int
-        Bytes of the whole file.
+    size : int, optional
+        Bytes of the whole file; None where it is kept as a whole, with the version of what names it.
     """
 
-    def __init__(self, address: str, login: str, version: str, size: int) -> None:
+    def __init__(self, address: str, login: str, version: str, size: Optional[int] = None) -> None:
         self.folder: Optional[Path] = Path(_folder[0]).expanduser() if _folder[0] and version else None
         self.name = sha256(repr((address, login, version, size)).encode()).hexdigest()
 

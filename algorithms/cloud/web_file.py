@@ -19,21 +19,19 @@ from typing import Any, NamedTuple, Optional, Union, cast
 from urllib.parse import unquote, urlsplit
 
 from ..stage import Monitor
+from ..threads import BETWEEN_LOOKS
 from .printable import shown
 from .web_addresses import is_address, redirected, same_server, split_address, without_query
 from .web_cache import KeptRanges, remove_oldest
 from .web_requests import NoAnswerError, Reply, transport
 
-# Least number of bytes that are asked for at once: the header of a COPC file and most pages of its index are shorter.
+# Least number of bytes that are asked for at once, since a request takes longer than these; so ranges with no more
+# between them are fetched as one. The header of a COPC file and most pages of its index are shorter.
 _LEAST = 2**14
 # Most bytes of one request, and most that are read in one piece: nothing sound in a point cloud is longer.
-_MOST_AT_ONCE, _MOST_READ = 2**23, 2**29
-# Ranges with no more than this between them (bytes) are fetched as one: a request takes longer than these.
-_GAP = 2**13
+MOST_AT_ONCE, MOST_READ = 2**23, 2**29
 # Bytes of one file, and of all together, that are kept; those fetched or used first go first.
 _KEPT = 2**28
-# In place of the size of a file that is kept as a whole.
-_WHOLE = -1
 # Seconds for which a file that nobody reads is known.
 _KNOWN_FOR = 600.0
 # Seconds before a request is sent again: each time more, as servers ask.
@@ -42,9 +40,7 @@ _WAITS = (0.5, 1.0, 2.0)
 _MOST_REDIRECTIONS = 5
 _REDIRECTIONS, _AGAIN = (301, 302, 303, 307, 308), (408, 429, 500, 502, 503, 504)
 # Requests that are sent at once: as many as browsers open connections to a server.
-_AT_ONCE = 6
-# Seconds between two looks at whether the run was cancelled.
-_LOOK = 0.1
+AT_ONCE = 6
 
 
 class WebState(NamedTuple):
@@ -77,7 +73,7 @@ class _Content:
                 return b""
             if self._held_to(at) == at:
                 stop = self._starts[bisect_right(self._starts, at) :][:1] or [self.size]
-                self.fetch(at, min(stop[0], at + min(max(size, _LEAST), _MOST_AT_ONCE)))
+                self.fetch(at, min(stop[0], at + min(max(size, _LEAST), MOST_AT_ONCE)))
             start = self._starts[bisect_right(self._starts, at) - 1]
             return self._parts[start][at - start : at - start + size]
 
@@ -90,7 +86,7 @@ class _Content:
         if self.size < 0:
             # Descriptions are read as a whole, for which servers without ranges do.
             is_points = urlsplit(self.address).path.lower().endswith((".las", ".laz"))
-            self.fetch(0, _LEAST if is_points else _MOST_AT_ONCE)
+            self.fetch(0, _LEAST if is_points else MOST_AT_ONCE)
         return self.size
 
     def missing(self, ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -101,10 +97,10 @@ class _Content:
             while at < end and (held_to := self._held_to(at)) > at:
                 at = held_to
             while at < end:
-                if found and at - found[-1][1] <= _GAP and end - found[-1][0] <= _MOST_AT_ONCE:
+                if found and at - found[-1][1] <= _LEAST and end - found[-1][0] <= MOST_AT_ONCE:
                     at, found[-1] = end, (found[-1][0], end)
                 else:
-                    found.append((at, min(end, at + _MOST_AT_ONCE)))
+                    found.append((at, min(end, at + MOST_AT_ONCE)))
                     at = found[-1][1]
         return found
 
@@ -148,7 +144,7 @@ class _Content:
     def take_kept(self, version: str) -> bool:
         """Take the whole content from the folder; return whether it was kept there with this version."""
         with self.lock:
-            for _, data in KeptRanges(self.address, self.login, version, _WHOLE).read():
+            for _, data in KeptRanges(self.address, self.login, version).read():
                 self.size, self.version = len(data), version
                 self._keep(0, data)
             return self.size >= 0
@@ -157,7 +153,7 @@ class _Content:
         """Keep the whole content in the folder with a version, unless it is held in parts."""
         with self.lock:
             if len(data := self._parts.get(0, b"")) == self.size:
-                KeptRanges(self.address, self.login, version, _WHOLE).keep(0, data)
+                KeptRanges(self.address, self.login, version).keep(0, data)
 
     def _answer(self, start: int, stop: int, stopped: threading.Event) -> Reply:
         """Return the reply to a request that is sent until it is answered, and follows redirections."""
@@ -348,7 +344,7 @@ class WebStream(io.RawIOBase):
         """Return the next bytes; fewer than ``size`` at the end only."""
         left = max(0, len(self) - self._at)
         size = left if size is None or size < 0 else min(size, left)
-        if size > _MOST_READ:
+        if size > MOST_READ:
             raise ValueError(
                 f"{shown(without_query(self._content.address))} is damaged: {size} bytes should be in one piece."
             )
@@ -391,7 +387,7 @@ def fetch_files(files: Iterable[Path], monitor: Monitor, version: str = "") -> N
     on_web = cast("list[WebFile]", list(filter(is_on_web, files)))
     contents = [one for one in (_content(one.address, one.login) for one in on_web) if one.size < 0]
     contents = [one for one in contents if not one.take_kept(version)]
-    _fetch_at_once([(one, 0, _MOST_AT_ONCE) for one in contents], monitor)
+    _fetch_at_once([(one, 0, MOST_AT_ONCE) for one in contents], monitor)
     for one in contents:
         one.keep_whole(version)
     if contents and version:
@@ -405,12 +401,12 @@ def _fetch_at_once(wanted: list[tuple[_Content, int, int]], monitor: Monitor) ->
     try:
         while open_ones or wanted:
             monitor.progress(min(1.0, done / total))
-            room = _AT_ONCE - len(open_ones)
+            room = AT_ONCE - len(open_ones)
             pool = _threads(os.getpid())
             open_ones |= {pool.submit(one.fetch, start, stop, stopped) for one, start, stop in wanted[:room]}
             wanted = wanted[room:]
             transport().wait()
-            ended, open_ones = wait(open_ones, _LOOK, FIRST_COMPLETED)
+            ended, open_ones = wait(open_ones, BETWEEN_LOOKS, FIRST_COMPLETED)
             done += sum(one.result() for one in ended)
     finally:
         stopped.set()
@@ -419,7 +415,7 @@ def _fetch_at_once(wanted: list[tuple[_Content, int, int]], monitor: Monitor) ->
 @lru_cache(maxsize=1)
 def _threads(process: int) -> ThreadPoolExecutor:  # noqa: ARG001
     """Return the threads of all requests of a process: with each thread that ends, Qt deletes objects still in use."""
-    return ThreadPoolExecutor(_AT_ONCE, "web")
+    return ThreadPoolExecutor(AT_ONCE, "web")
 
 
 def file_at(path: Union[str, Path, WebFile]) -> Path:

@@ -11,8 +11,6 @@ from urllib.request import HTTPHandler, HTTPSHandler, OpenerDirector, ProxyHandl
 
 # Seconds after which a server that sends nothing is taken to have failed; the request is then repeated.
 TIMEOUT = 10.0
-# Bytes that are read from a connection between two looks at whether the run was cancelled.
-_PIECE = 2**16
 
 
 class NoAnswerError(Exception):
@@ -78,7 +76,7 @@ class _StandardLibrary:
     def _body(self, answer, most: int, is_stopped: Callable[[], bool]) -> bytes:
         found = bytearray()
         while len(found) < most and not is_stopped():
-            piece = answer.read(min(_PIECE, most - len(found)))
+            piece = answer.read1(most - len(found))
             if not piece:
                 break
             found += piece

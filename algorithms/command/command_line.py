@@ -18,6 +18,7 @@ from ..cloud.files import check_compression, read_cloud, write_cloud
 from ..cloud.outputs import all_or_nothing, check_output, check_place, os_errors_as_messages
 from ..cloud.web_addresses import is_address
 from ..cloud.web_file import file_at
+from ..criteria import NO_DATA
 from ..packages import absent
 from ..pipeline import CLOUD, Output, Pipeline
 from ..pipelines import PIPELINES
@@ -30,9 +31,6 @@ from .feature_files import check_format, read_layer, write_features
 
 # Exit codes: of what can't be done, and of what a user stopped (as shells have it: 128 + SIGINT).
 _FAILED, _STOPPED = 1, 130
-
-# Value of cells without any, as Esri's own grids have it; no height on Earth.
-_NO_HEIGHT = -9999.0
 
 
 def main(words: Optional[Sequence[str]] = None) -> int:
@@ -209,8 +207,8 @@ def _write_grid(surface: RasterSurface, place: _Place, path: Path) -> None:
     head = (
         f"ncols {columns}\nnrows {rows}\nxllcorner {west!r}\nyllcorner {south!r}\ncellsize {(north - south) / rows!r}\n"
     )
-    filled = np.where(np.isnan(surface.values), _NO_HEIGHT, surface.values)
-    np.savetxt(path, filled, fmt="%.6g", header=f"{head}NODATA_value {_NO_HEIGHT:g}", comments="")
+    filled = np.where(np.isnan(surface.values), NO_DATA, surface.values)
+    np.savetxt(path, filled, fmt="%.6g", header=f"{head}NODATA_value {NO_DATA}", comments="")
 
 
 def _say(text: str) -> None:

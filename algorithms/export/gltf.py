@@ -10,6 +10,7 @@ from typing import Any, Callable, Optional
 
 import numpy as np
 
+from ..criteria import NO_DATA
 from ..geometry.polygons import area_vector
 from ..models3d.face_triangles import triangulate_face
 from ..models3d.solids import GROUND, TERRAIN
@@ -21,9 +22,6 @@ from .exported_models import KINDS, Atlas, ExportedModel, Face, atlas_of
 _WALL_COLOR = (226, 216, 196)
 _RGB = (178, 72, 54), _WALL_COLOR, (150, 140, 125), (74, 134, 184), (112, 84, 62), (136, 148, 108), _WALL_COLOR
 COLORS = dict(zip(KINDS, _RGB))
-
-# Value of numbers that an object has no attribute for.
-_NO_DATA = -9999
 
 # From the axes of maps (east, north, up) to the axes of glTF (right, up, towards the viewer).
 _Y_UP = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
@@ -227,9 +225,9 @@ def _property(values: list, file: _File) -> tuple[dict[str, Any], dict[str, Any]
     present = [value for value in values if value is not None]
     if all(isinstance(value, (int, float)) for value in present):
         is_whole = all(isinstance(value, int) and abs(value) < 2**31 for value in present)
-        numbers = [_NO_DATA if value is None else value for value in values]
+        numbers = [NO_DATA if value is None else value for value in values]
         raw = np.array(numbers, "<i4" if is_whole else "<f8").tobytes()
-        kind = {"type": "SCALAR", "componentType": "INT32" if is_whole else "FLOAT64", "noData": _NO_DATA}
+        kind = {"type": "SCALAR", "componentType": "INT32" if is_whole else "FLOAT64", "noData": NO_DATA}
         return kind, {"values": file.view(raw)}
     texts = [("" if value is None else str(value)).encode() for value in values]
     offsets = np.cumsum([0, *map(len, texts)]).astype("<u4").tobytes()

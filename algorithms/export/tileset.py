@@ -10,14 +10,11 @@ from urllib.parse import quote
 
 import numpy as np
 
-from ..criteria import EQUATORIAL_RADIUS
+from ..criteria import EQUATORIAL_RADIUS, POLAR_RADIUS
 from ..models3d.solids import ROOF
 from ..stage import MapFrame, Piece
 from .exported_models import ExportedModel
 from .gltf import glb
-
-# Semi-minor axis (m) of the ellipsoid WGS 84.
-_POLAR_RADIUS = 6_356_752.314245
 
 
 def ellipsoid_positions(degrees: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -32,7 +29,7 @@ def ellipsoid_positions(degrees: np.ndarray, height: np.ndarray) -> np.ndarray:
     """
     longitude, latitude = np.radians(degrees).T
     up = _up(longitude, latitude)
-    surface = up * np.array([EQUATORIAL_RADIUS, EQUATORIAL_RADIUS, _POLAR_RADIUS]) ** 2
+    surface = up * np.array([EQUATORIAL_RADIUS, EQUATORIAL_RADIUS, POLAR_RADIUS]) ** 2
     return surface / np.sqrt((surface * up).sum(axis=1))[:, None] + height[:, None] * up
 
 

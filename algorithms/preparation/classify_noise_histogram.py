@@ -15,7 +15,14 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..stage import Monitor, stage, tunable
-from .height_histograms import AUTOMATIC_BIN, Histogram, automatic_bin_height, pooled_histogram, with_borrowed_ranges
+from .height_histograms import (
+    AUTOMATIC_BIN,
+    HISTOGRAM_POINTS,
+    Histogram,
+    automatic_bin_height,
+    pooled_histogram,
+    with_borrowed_ranges,
+)
 from .points_under_ground import UNDER_GROUND, under_ground
 
 
@@ -23,7 +30,6 @@ from .points_under_ground import UNDER_GROUND, under_ground
 class HISTOGRAM:
     """Limits of gaps in a histogram that separate noise from the scene."""
 
-    points_per_cell: int = rule(450, "points", "statistics: with the cells around, some 4000 points make a histogram")
     gap: int = rule(2, "bins", "physics: empty ones; chimneys, treetops and rock faces leave no such gap")
 
 
@@ -45,7 +51,7 @@ def classify_noise_histogram(
         None,
         "Side of the cells whose heights are counted, each together with the eight cells around it.",
         within="[0.1, 10_000] m",
-        automatic=f"cells of {HISTOGRAM.points_per_cell:g} points on average.",
+        automatic=f"cells that have {HISTOGRAM_POINTS:,} points with those around them, on average.",
         advanced=True,
     ),
     bin_height: Optional[float] = tunable(
@@ -125,7 +131,7 @@ def classify_noise_histogram(
         return made
     points = xyz.take(used, axis=0)
     spacing = sampling.spacing
-    cell_size = float(np.sqrt(HISTOGRAM.points_per_cell)) * spacing if cell_size is None else cell_size
+    cell_size = float(np.sqrt(HISTOGRAM_POINTS / 9)) * spacing if cell_size is None else cell_size
     bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
     monitor.resolved(cell_size=cell_size, bin_height=bin_height)
     monitor.progress(0.2)

@@ -13,15 +13,13 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage, tunable
 from .height_histograms import (
     AUTOMATIC_BIN,
+    HISTOGRAM_POINTS,
     Histogram,
     automatic_bin_height,
     own_histogram,
     pooled_histogram,
     with_borrowed_ranges,
 )
-
-# Average number of points of a cell: enough that the highest and lowest meter of a scene hold some at any density.
-_POINTS_PER_CELL = 4000
 
 
 @stage(
@@ -31,7 +29,7 @@ _POINTS_PER_CELL = 4000
     writes=("classification",),
     # The width of a cell at 1 point/m²; it is narrower in denser clouds. A cell without a full bin borrows from cells
     # around it, which may lie beyond that where a survey is run in tiles.
-    reach=lambda tunables: tunables["cell_size"] or _POINTS_PER_CELL**0.5,
+    reach=lambda tunables: tunables["cell_size"] or HISTOGRAM_POINTS**0.5,
     cost=0.3,
 )
 def classify_noise_histogram_2019(
@@ -43,7 +41,7 @@ def classify_noise_histogram_2019(
         None,
         "Side of the cells whose heights are counted.",
         within="[0.1, 10_000] m",
-        automatic=f"cells of {_POINTS_PER_CELL:,} points on average.",
+        automatic=f"cells of {HISTOGRAM_POINTS:,} points on average.",
         advanced=True,
     ),
     bin_height: Optional[float] = tunable(
@@ -102,7 +100,7 @@ def classify_noise_histogram_2019(
         return classes
     points = xyz[used]
     spacing = sampling.spacing
-    cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing if cell_size is None else cell_size
+    cell_size = float(np.sqrt(HISTOGRAM_POINTS)) * spacing if cell_size is None else cell_size
     bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
     monitor.resolved(cell_size=cell_size, bin_height=bin_height)
 

@@ -9,6 +9,9 @@ import numpy as np
 from ..geometry.grid import Grid
 from ..packages import spatial
 
+# Points of a histogram on average: enough that the highest and lowest meter of a scene hold some at any density.
+HISTOGRAM_POINTS = 4000
+
 # Automatic height of the bins, for the help.
 AUTOMATIC_BIN = "twice the point spacing, at least 1 m."
 

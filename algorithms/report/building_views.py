@@ -13,7 +13,7 @@ from .page import position, svg_image
 _WIDTH, _HEIGHT = 340, 240
 
 # Width of the surroundings of a building in its view, m.
-_AROUND = 4.0
+AROUND = 4.0
 
 # Colors of the sections along and across a building.
 _CUTS = ("#004488", "#aa4499")
@@ -31,14 +31,14 @@ class Views:
     def __init__(self, xyz: np.ndarray, is_building: np.ndarray) -> None:
         self.xyz, self.is_building = xyz, is_building
         # Cells by which the points around a building are found; any size gives the same points.
-        self._grid = fixed_grid_over(xyz, _AROUND)
+        self._grid = fixed_grid_over(xyz, AROUND)
         number = self._grid.number(xyz)
         self._order = np.argsort(number, kind="stable")
         self._number = number[self._order]
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return the rows of the points in a box in plan."""
-        steps = [np.arange(start, end + _AROUND, _AROUND) for start, end in zip(low, high)]
+        steps = [np.arange(start, end + AROUND, AROUND) for start, end in zip(low, high)]
         corners = np.stack(np.meshgrid(*(np.append(one[:-1], end) for one, end in zip(steps, high))), axis=-1)
         cells = np.unique(self._grid.number(corners.reshape(-1, 2)))
         starts, ends = (np.searchsorted(self._number, cells, side=side) for side in ("left", "right"))
@@ -49,7 +49,7 @@ class Views:
 
 def boxes_around(geometries: list) -> np.ndarray:
     """Return the boxes (k, 2, 2), m, that the views of some buildings (rings of each, m) show."""
-    boxes = [plan_box(np.asarray(rings[0])) + [[-_AROUND], [_AROUND]] for rings in geometries]
+    boxes = [plan_box(np.asarray(rings[0])) + [[-AROUND], [AROUND]] for rings in geometries]
     return np.array(boxes).reshape(-1, 2, 2)
 
 
@@ -90,7 +90,7 @@ def draw_sections(xyz: np.ndarray, kind: np.ndarray, ring: np.ndarray, colors: n
         cut = np.repeat([ends.mean(axis=0)], 2, axis=0)
         # At one point per square meter each roof has points in a section of 2 m.
         is_in = np.abs(turned[:, 1 - axis] - cut[0, 1 - axis]) <= 1.0
-        cut[:, axis] = ends[:, axis] + (-_AROUND, _AROUND)
+        cut[:, axis] = ends[:, axis] + (-AROUND, AROUND)
         lines.append((cut @ axes.T, color))
         seen = xyz[is_in, 2] if is_in.any() else xyz[:, 2]
         heights = np.array([seen.min() - 1.0, seen.max() + 1.0])

@@ -105,7 +105,7 @@ def test_servers_that_can_not_are_refused(provider, context, server, trouble, va
 
 def test_many_requests_at_once_end_well(server, folder, monkeypatch):
     # With threads of their own, or slots in Python, some of a hundred requests failed or ended the process.
-    monkeypatch.setattr(web_file, "_MOST_AT_ONCE", 2**14)
+    monkeypatch.setattr(web_file, "MOST_AT_ONCE", 2**14)
     expected = read_cloud(folder / "a.copc.laz").points
     for _ in range(10):
         web_file._known.clear()
@@ -114,7 +114,7 @@ def test_many_requests_at_once_end_well(server, folder, monkeypatch):
 
 
 def test_requests_are_sent_six_at_once(server, monkeypatch):
-    monkeypatch.setattr(web_file, "_MOST_AT_ONCE", 2**16)
+    monkeypatch.setattr(web_file, "MOST_AT_ONCE", 2**16)
     server.delay = 0.3
     start = time.monotonic()
     read_cloud(server.address("a.copc.laz"))

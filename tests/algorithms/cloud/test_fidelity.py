@@ -155,7 +155,7 @@ def test_waveforms_in_a_file_of_their_own_are_reported(
 
 
 def test_long_evlrs_are_copied_without_being_held(make_las, take_apart, tmp_path, monkeypatch):
-    monkeypatch.setattr("lidar_buildings.algorithms.cloud.header._KEPT_IN_MEMORY", 1000)
+    monkeypatch.setattr("lidar_buildings.algorithms.cloud.header.PIECE", 1000)
     path = make_las(evlrs=(evlr("someone", 9, bytes(range(250)) * 30), evlr("someone", 10, b"short" * 200)))
     write_cloud(read_cloud(path), tmp_path / "b.las")
     assert take_apart(tmp_path / "b.las")["evlrs"] == take_apart(path)["evlrs"]

@@ -24,7 +24,7 @@ import conftest, numpy as np
 from lidar_buildings.algorithms.cloud import web_cache, web_file
 from lidar_buildings.algorithms.cloud.files import read_cloud
 # Many ranges.
-web_file._MOST_AT_ONCE = 2**15
+web_file.MOST_AT_ONCE = 2**15
 web_cache._MOST = int(sys.argv[3])
 box = np.array(eval(sys.argv[4]))
 print(zlib.crc32(read_cloud(sys.argv[2], box=box).points.tobytes()))
