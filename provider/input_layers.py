@@ -29,6 +29,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime
 
 from ..algorithms.cloud.files import read_extent
+from ..algorithms.criteria import EQUATORIAL_RADIUS
 from ..algorithms.stage import InputLayer, Layer, LayerFeatures, Monitor, as_column
 from .given import Given
 from .places import Place, refuse_degrees
@@ -37,9 +38,6 @@ from .vectors import BETWEEN_CHECKS, SOURCE_TYPES, WKB, fields_of, qgis_features
 
 # How many different vertices a ring, a line and a point have at least.
 _FEWEST = {"Polygon": 3, "LineString": 2, "Point": 1}
-
-# Distance (m) from the origin of the cloud beyond which no vertex is: more than twice around the Earth.
-_FARTHEST = 1e8
 
 
 def input_layer_name(input_layer: InputLayer) -> str:
@@ -275,12 +273,12 @@ def _as_read(geometry: QgsGeometry, transform: QgsCoordinateTransform, count: in
 def _is_sound(vertices: np.ndarray, kind: str) -> bool:
     """Whether vertices (m, 2 or 3) are on the Earth, and enough of them differ for a geometry of a kind.
 
-    For GEOS a ring without vertices is valid.
+    For GEOS a ring without vertices is valid. No vertex is farther off than twice around the Earth.
     """
     left = vertices
     for _ in range(_FEWEST[kind] - 1):
         left = left[(left != left[:1]).any(axis=1)]
-    return len(left) > 0 and bool((np.abs(vertices) < _FARTHEST).all())
+    return len(left) > 0 and bool((np.abs(vertices) < 4 * np.pi * EQUATORIAL_RADIUS).all())
 
 
 def _vertices(wkb: bytes, place: Place) -> list:

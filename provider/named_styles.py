@@ -12,6 +12,7 @@ from qgis.core import (
     QgsMapLayer,
     QgsPointCloudLayer,
     QgsRasterLayer,
+    QgsRasterMinMaxOrigin,
     QgsRendererCategory,
     QgsRendererRange,
     QgsVectorLayer,
@@ -53,11 +54,9 @@ _LOW, _MIDDLE, _HIGH = "#4a6fa5", "#f5e6a1", "#b5202c"
 # Number of classes of a numeric attribute, about: their bounds are round.
 _CLASSES = 6
 
-# Share of the cells of a raster that are left out at each end of its colors: single masts would make all others pale.
-_CUT = 0.02
-
-# Most cells by which these ends are found: the number that QGIS samples by default.
-_SAMPLED_CELLS = 250_000
+# Shares of the heights up to which their colors reach, as QGIS has them by default: single masts, birds and low noise
+# would make all others pale.
+CUTS = (QgsRasterMinMaxOrigin.CUMULATIVE_CUT_LOWER, QgsRasterMinMaxOrigin.CUMULATIVE_CUT_UPPER)
 
 
 def add_named_styles(layer: QgsMapLayer) -> None:
@@ -122,7 +121,7 @@ def fit_ramp(layer: QgsRasterLayer) -> None:
     function = _ramp(layer)
     if function is None:
         return
-    _, high = layer.dataProvider().cumulativeCut(1, _CUT, 1 - _CUT, layer.extent(), _SAMPLED_CELLS)
+    _, high = layer.dataProvider().cumulativeCut(1, *CUTS, layer.extent(), int(QgsRasterLayer.SAMPLE_SIZE))
     items = function.colorRampItemList()
     if not items or not high > 0:
         return

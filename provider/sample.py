@@ -25,6 +25,7 @@ from ..algorithms.run import run_stage
 from ..algorithms.stages import STAGES
 from .errors import as_processing_errors
 from .named_clouds import SIMULATED_CRS, named
+from .named_styles import CUTS
 from .styles import Styler, show_in_3d
 
 # Side (m) of the town: with houses, a hall, a river with bridges, and plants.
@@ -32,9 +33,6 @@ _SIZE = 110.0
 
 # Its density (points/m²): files of about 2 MB.
 _DENSITY = 12.0
-
-# Percentiles of the elevations that have colors: birds and low noise would take most of them.
-_SHOWN = (1.0, 99.5)
 
 # Files in the folder of the sample: the town as a scanner sees it, the truth, and the project.
 TOWN, TRUTH, PROJECT = "town.copc.laz", "town_truth.copc.laz", "town.qgz"
@@ -98,7 +96,7 @@ def fill_project(project: QgsProject, folder: Path) -> None:
             layer.setCrs(crs)
         project.addMapLayer(layer)
     truth.loadNamedStyle(str(Styler.file("classification")))
-    _color_by_elevation(town, np.percentile(read_cloud(folder / TOWN).get("xyz")[:, 2], _SHOWN))
+    _color_by_elevation(town, np.quantile(read_cloud(folder / TOWN).get("xyz")[:, 2], CUTS))
     for layer in (truth, town):
         show_in_3d(layer)
     project.layerTreeRoot().findLayer(truth.id()).setItemVisibilityChecked(False)

@@ -22,6 +22,7 @@ from qgis.core import (
 )
 from qgis.gui import QgsProjectionSelectionDialog
 
+from ..algorithms.criteria import MAJORITY
 from ..algorithms.geometry.polygons import area_vector
 from .named_clouds import SIMULATED_CRS
 from .questions import push_with_button
@@ -34,9 +35,6 @@ _YAW = 35.0
 
 # The same in front of facades, seen nearly level.
 _PITCH_OF_FRONT = 75.0
-
-# Share of the area of polygons that looks to one side, from which on they are facades: walls of solids cancel out.
-_ONE_SIDED = 0.4
 
 # Features of a layer that are looked at: some hundred show how high it lies, and where it looks.
 _LOOKED_AT = 500
@@ -106,13 +104,13 @@ def heights_of(layers: list[QgsMapLayer]) -> tuple[float, float]:
 def view_angles(layers: list[QgsMapLayer]) -> tuple[float, float]:
     """Return pitch and yaw (°) of the camera: in front of facades, from aside of everything else.
 
-    Facades are upright polygons that look to one side, which the order of their corners says; walls of solids look to
-    all sides.
+    Facades are upright polygons. Most of their area looks to one side, which the order of their corners says; walls of
+    solids look to all sides.
     """
     fronts = np.array([normal for layer in layers for normal in _normals(layer)]).reshape(-1, 3)
     east, north, up = fronts.sum(axis=0).tolist()
     total = np.linalg.norm(fronts, axis=1).sum()
-    if not len(fronts) or math.hypot(east, north) < _ONE_SIDED * total or abs(up) > math.hypot(east, north):
+    if not len(fronts) or math.hypot(east, north) < MAJORITY * total or abs(up) > math.hypot(east, north):
         return _PITCH, _YAW
     return _PITCH_OF_FRONT, math.degrees(math.atan2(east, -north)) % 360.0
 

@@ -25,10 +25,9 @@ from .header import (
     Vlr,
 )
 from .laspy_library import need_lazrs
+from .laz import POINTS_PER_CHUNK
 from .points import AT_ONCE
 
-# A node with at most this many points has no children.
-_LEAF_POINTS = 65_536
 # Levels of the grid within a node: 2^7 = 128 cells along its side. One point of each is shown at the node's level.
 _GRID_LEVELS = 7
 # Bits per axis of a position in the root cube; three of them fill a 64-bit Morton code.
@@ -57,7 +56,7 @@ def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree
     """Sort points (n,), records of the header's scale and offset, into the nodes of an octree, coarse samples above.
 
     Each node takes one point, chosen at random, of every occupied cell of its grid, and passes the others on to its
-    children; with 65 536 points or fewer it takes all.
+    children. With no more points than a usual LAZ chunk it takes all.
     """
     low, side = _cube(points, header)
     codes = np.empty(len(points), np.uint64)
@@ -141,7 +140,7 @@ def _in_leaves(nodes: np.ndarray, level: int) -> np.ndarray:
     """Return the mask (n,) of points in nodes that hold all points not taken by a level above."""
     first = run_starts(nodes)
     counts = np.diff(np.append(first, len(nodes)))
-    return np.repeat((counts <= _LEAF_POINTS) | (level == _DEEPEST), counts)
+    return np.repeat((counts <= POINTS_PER_CHUNK) | (level == _DEEPEST), counts)
 
 
 def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

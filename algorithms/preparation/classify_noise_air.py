@@ -8,11 +8,7 @@ from ..cloud.asprs import PointClass
 from ..geometry.grid import plan_box
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import stage
-from .points_in_the_air import in_the_air
-
-# Width (m) of the surroundings that decide on a point: chains of points that connect it to the scene are searched
-# there.
-_REACH = 10.0
+from .points_in_the_air import REACH, in_the_air
 
 
 @stage(
@@ -20,7 +16,7 @@ _REACH = 10.0
     title="Classify noise in the air",
     tags="noise,outliers,birds,flock,dust,plume,high points,clean",
     writes=("classification",),
-    reach=_REACH,
+    reach=REACH,
 )
 def classify_noise_air(xyz, classification, *, sampling: CloudSampling = MEASURED, monitor=None):
     """Find loose points in the open air: birds, flocks, plumes of dust.

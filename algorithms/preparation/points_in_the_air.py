@@ -62,8 +62,9 @@ _TUBE_LENGTH = 12.0
 # Lines are tried from each point through as many of the nearest ones.
 _TUBE_NEIGHBORS = 24
 
-# Largest distance (m) between the two points that give a line.
-_TUBE_REACH = 16.0
+# Width (m) of the surroundings that decide on a point: chains of points that connect it to the scene, and the second
+# points of lines, are searched there.
+REACH = 16.0
 
 
 def link_length(spacing: float) -> float:
@@ -172,7 +173,7 @@ def _on_wires(points: np.ndarray) -> np.ndarray:
     if len(points) < _LINE_POINTS:
         return on_wire
     count = min(_TUBE_NEIGHBORS, len(points))
-    distance, near = spatial.cKDTree(points).query(points, count, distance_upper_bound=_TUBE_REACH)
+    distance, near = spatial.cKDTree(points).query(points, count, distance_upper_bound=REACH)
     for row in np.flatnonzero(np.isfinite(distance).sum(axis=1) >= _LINE_POINTS).tolist():
         others = near[row][np.isfinite(distance[row])]
         off = points[others] - points[row]

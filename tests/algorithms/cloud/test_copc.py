@@ -13,7 +13,7 @@ from lidar_buildings.tests.monitors import Listening
 
 @pytest.fixture
 def small_leaves(monkeypatch):
-    monkeypatch.setattr(copc, "_LEAF_POINTS", 2000)
+    monkeypatch.setattr(copc, "POINTS_PER_CHUNK", 2000)
     monkeypatch.setattr(copc, "_GRID_LEVELS", 4)
     monkeypatch.setattr(copc, "_DEEPEST", copc._BITS - 4)
     monkeypatch.setattr(copc, "AT_ONCE", 7000)
