@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..geometry.grid import plan_box
-from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import stage
 from .points_in_the_air import REACH, in_the_air
 
@@ -57,13 +56,11 @@ def classify_noise_air(xyz, classification, *, sampling: CloudSampling = MEASURE
     >>> int(classify_noise_air(bird, np.zeros(len(bird)))[-1])
     18
     """
-    xyz = sampling.from_corner(xyz)
     classes = classification.astype(np.uint8)
-    used = not_noise(classes)
-    if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
-        monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
+    points, used = sampling.without_noise(xyz, classes, monitor)
+    if not len(used):
         return classes
-    hanging = in_the_air(xyz[used], sampling.spacing, monitor)
+    hanging = in_the_air(points, sampling.spacing, monitor)
     classes[used[hanging]] = PointClass.HIGH_NOISE
     monitor.resolved(high_noise=int(hanging.sum()))
     return classes

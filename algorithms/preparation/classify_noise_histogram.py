@@ -6,12 +6,11 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
-from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
+from ..geometry.grid import Grid
 from ..packages import spatial
 from ..params import MIN_FREQUENCY
 from ..rules import rule, rules
-from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, with_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..stage import Monitor, stage, tunable
@@ -20,6 +19,7 @@ from .height_histograms import (
     HISTOGRAM_POINTS,
     Histogram,
     automatic_bin_height,
+    cells_and_levels,
     pooled_histogram,
     with_borrowed_ranges,
 )
@@ -123,13 +123,10 @@ def classify_noise_histogram(
     >>> int(classify_noise_histogram(bird, np.zeros(len(bird)))[-1])
     18
     """
-    xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
-    used = not_noise(made)
-    if not len(used) or not np.ptp(plan_box(xyz.take(used, axis=0)), axis=0).any():
-        monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
+    points, used = sampling.without_noise(xyz, made, monitor)
+    if not len(used):
         return made
-    points = xyz.take(used, axis=0)
     spacing = sampling.spacing
     cell_size = float(np.sqrt(HISTOGRAM_POINTS / 9)) * spacing if cell_size is None else cell_size
     bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
@@ -145,10 +142,7 @@ def classify_noise_histogram(
     if isolated:
         rest = np.flatnonzero(~(is_low | is_high))
         is_low[rest[under_ground(points.take(rest, axis=0), spacing, sampling.noise, monitor.part(0.7, 1.0))]] = True
-    made[used[is_low]] = PointClass.LOW_NOISE
-    made[used[is_high]] = PointClass.HIGH_NOISE
-    monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
-    return made
+    return with_noise(made, used[is_low], used[is_high], monitor)
 
 
 def _beyond_scene(
@@ -158,10 +152,7 @@ def _beyond_scene(
 
     None where no bin has enough points to be the scene.
     """
-    grid = fixed_grid_over(points, cell_size)
-    cell = grid.number(points)
-    level = lattice(points[:, 2], bin_height)
-    level -= level.min()
+    grid, cell, level = cells_and_levels(points, cell_size, bin_height)
     histogram = pooled_histogram(grid, cell, level)
     monitor.progress(0.6)
     clearance = max_clearance / bin_height

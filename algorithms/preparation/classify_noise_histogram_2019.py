@@ -6,16 +6,16 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
-from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
+from ..geometry.grid import Grid
 from ..params import MIN_FREQUENCY
-from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, with_noise
 from ..stage import stage, tunable
 from .height_histograms import (
     AUTOMATIC_BIN,
     HISTOGRAM_POINTS,
     Histogram,
     automatic_bin_height,
+    cells_and_levels,
     own_histogram,
     pooled_histogram,
     with_borrowed_ranges,
@@ -92,22 +92,16 @@ def classify_noise_histogram_2019(
     >>> int(classify_noise_histogram_2019(bird, np.zeros(len(bird)))[-1])
     18
     """
-    xyz = sampling.from_corner(xyz)
     classes = classification.astype(np.uint8)
-    used = not_noise(classes)
-    if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
-        monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
+    points, used = sampling.without_noise(xyz, classes, monitor)
+    if not len(used):
         return classes
-    points = xyz[used]
     spacing = sampling.spacing
     cell_size = float(np.sqrt(HISTOGRAM_POINTS)) * spacing if cell_size is None else cell_size
     bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
     monitor.resolved(cell_size=cell_size, bin_height=bin_height)
 
-    grid = fixed_grid_over(points, cell_size)
-    cell = grid.number(points)
-    level = lattice(points[:, 2], bin_height)
-    level -= level.min()
+    grid, cell, level = cells_and_levels(points, cell_size, bin_height)
     monitor.progress(0.3)
     cells, low, high = _bodies(grid, cell, level, min_frequency)
     if not len(cells):
@@ -115,10 +109,7 @@ def classify_noise_histogram_2019(
         return classes
     at = np.searchsorted(cells, cell)
     is_low, is_high = level < low[at], level > high[at]
-    classes[used[is_low]] = PointClass.LOW_NOISE
-    classes[used[is_high]] = PointClass.HIGH_NOISE
-    monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
-    return classes
+    return with_noise(classes, used[is_low], used[is_high], monitor)
 
 
 def _bodies(

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, plan_box
 from ..packages import spatial
-from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
+from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise, with_noise
 from ..stage import Monitor, stage, tunable
 from ..threads import ROWS_AT_ONCE, n_threads
 from .points_in_the_air import in_the_air, link_length
@@ -127,10 +126,7 @@ def classify_noise_statistical(
         is_high[rest[hanging]] = True
         rest = rest[~hanging]
         is_low[rest[under_ground(points[rest], spacing, sampling.noise, monitor.part(0.7, 1.0))]] = True
-    made[used[is_low]] = PointClass.LOW_NOISE
-    made[used[is_high]] = PointClass.HIGH_NOISE
-    monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
-    return made
+    return with_noise(made, used[is_low], used[is_high], monitor)
 
 
 def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.grid import Grid
+from ..geometry.grid import Grid, fixed_grid_over, lattice
 from ..packages import spatial
 
 # Points of a histogram on average: enough that the highest and lowest meter of a scene hold some at any density.
@@ -31,6 +31,12 @@ class Histogram:
     cell: np.ndarray  #: (k,), int64: number of the cell in its grid
     level: np.ndarray  #: (k,), int64: number of the bin of height, from 0
     count: np.ndarray  #: (k,), int64: points in the bin
+
+
+def cells_and_levels(points: np.ndarray, cell_size: float, bin_height: float) -> tuple[Grid, np.ndarray, np.ndarray]:
+    """Return square cells (m) over points (n, 3), and the numbers (n,) of the cell and of the bin of each point."""
+    grid, level = fixed_grid_over(points, cell_size), lattice(points[:, 2], bin_height)
+    return grid, grid.number(points), level - level.min()
 
 
 def pooled_histogram(grid: Grid, cell: np.ndarray, level: np.ndarray) -> Histogram:

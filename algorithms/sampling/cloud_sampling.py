@@ -12,6 +12,7 @@ from ..criteria import MILLIMETER
 from ..geometry.grid import plan_box
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
+from ..stage import Monitor
 from .closed_surface import seen_through_share
 from .density import effective_density, point_density
 from .height_resolution import height_resolution, rounding_deviation
@@ -119,6 +120,18 @@ class CloudSampling:
         for axis, start in enumerate(self.corner):
             moved[:, axis] -= start
         return moved
+
+    def without_noise(self, xyz: np.ndarray, classes: np.ndarray, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
+        """Return the points (m, 3) that are not noise, from the corner, m, and their rows (m,).
+
+        Without an extent in plan they are none, of which the monitor is warned.
+        """
+        used = not_noise(classes)
+        points = self.from_corner(xyz.take(used, axis=0))
+        if not len(used) or not np.ptp(plan_box(points), axis=0).any():
+            monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
+            return points[:0], used[:0]
+        return points, used
 
     def asks_for(self, box: np.ndarray, around: float = 0.0) -> bool:
         """Whether features in a box (2, 2), or up to ``around`` (m) from it, are asked for."""
@@ -282,3 +295,20 @@ def without_noise(classification: np.ndarray) -> np.ndarray:
 def not_noise(classification: np.ndarray) -> np.ndarray:
     """Return the rows (m,) of the points that are not noise, which stages work on: none where all are noise."""
     return np.flatnonzero(~np.isin(classification, NOISE))
+
+
+def with_noise(classes: np.ndarray, low: np.ndarray, high: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return the classes with the noise that was found, and report how many points it has.
+
+    Parameters
+    ----------
+    classes : ndarray of shape (n,), uint8
+        Classes, which are changed.
+    low, high : ndarray of shape (k,)
+        Rows of low and of high noise.
+    monitor : Monitor
+        Receives their numbers.
+    """
+    classes[low], classes[high] = PointClass.LOW_NOISE, PointClass.HIGH_NOISE
+    monitor.resolved(low_noise=len(low), high_noise=len(high))
+    return classes
