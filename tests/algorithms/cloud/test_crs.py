@@ -19,6 +19,7 @@ from lidar_buildings.algorithms.cloud.crs import (
     crs_records,
     header_with_crs,
     read_crs,
+    stated_wkt,
 )
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.header import WKT_BIT, Header, Vlr, read_header
@@ -284,3 +285,10 @@ def test_a_crs_that_can_not_be_stored_is_refused():
     for text in ("EPSG:28992+5709", "here", "EPSG:0", "ESRI:102100"):
         with pytest.raises(ValueError, match="can't be stored"):
             crs_records(text)
+
+
+@pytest.mark.parametrize(("length", "is_read"), [(60_000, True), (70_000, False)])
+def test_wkt_that_no_vlr_holds_is_damage(length, is_read):
+    wkt = f'LOCAL_CS["{"a" * length}"]'
+    header = Header(evlrs=[Vlr(b"LASF_Projection", 2112, wkt.encode())])
+    assert stated_wkt(header) == (wkt if is_read else "")

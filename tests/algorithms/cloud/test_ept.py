@@ -195,6 +195,14 @@ def test_a_number_of_points_that_is_not_that_of_the_node_is_refused(made, kind, 
         read_cloud(path, box=VIEW)
 
 
+def test_more_points_than_any_node_has_are_refused_before_it_is_read(made):
+    path = made("zstandard")
+    page = path.parent / "ept-hierarchy" / "0-0-0-0.json"
+    page.write_text(json.dumps({**json.loads(page.read_text()), "0-0-0-0": 10**9}))
+    with pytest.raises(ValueError, match="no page of the hierarchy"):
+        read_cloud(path)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_node_that_is_missing_or_cut_off_is_named(server, folder, made, kind):
     path = made(kind)
