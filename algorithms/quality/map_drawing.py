@@ -23,7 +23,9 @@ class _RULES:
     new_snap: float = rule(0.3, "widths of a change", "at which cuts along new walls pass vertices")
     thin: float = rule(0.025, "m", "area of a cell per length around it, below which it is a seam: a strip 5 cm wide")
     parallel: float = rule(0.17, "sine", "of the greatest angle between a new wall and the old one it continues, 10°")
-    overlap: float = rule(0.01, "m²", "that a polygon shares with what stays; with more, a wall was not cut")
+    overlap: float = rule(
+        0.001, "m", "area that a polygon shares with what stays per length of its outline, as maps of millimeters have"
+    )
 
 
 def draw_labels(
@@ -69,7 +71,7 @@ def _is_sound(polygons: list, count: int, lattice: Lattice, fixed: list, width: 
     # More than half the width of a change along the outline is a wall that was not cut.
     is_sized = abs(edges.area.sum() - count * lattice.step**2) <= 0.5 * width * around
     shared = overlaps(edges, as_polygons(fixed), Monitor())[2]
-    return is_sized and bool((shared <= _RULES.overlap).all()) and all(map(is_valid, polygons))
+    return is_sized and bool((shared <= _RULES.overlap * around).all()) and all(map(is_valid, polygons))
 
 
 def _drawn(

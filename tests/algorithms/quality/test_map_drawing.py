@@ -6,7 +6,7 @@ import pytest
 from lidar_buildings.algorithms.footprints.soft_shares import Lattice
 from lidar_buildings.algorithms.geometry.polygon_overlap import are_within
 from lidar_buildings.algorithms.geometry.rings import polygon_area, sides_of_rings
-from lidar_buildings.algorithms.quality.map_drawing import draw_labels
+from lidar_buildings.algorithms.quality.map_drawing import _is_sound, draw_labels
 
 
 def box(west, east):
@@ -32,7 +32,15 @@ def test_a_wall_that_the_map_has_twice_is_one_and_a_wider_gap_stays(gap, between
     assert 8 * 20 - sum(areas.values()) == pytest.approx(between, abs=0.01)
 
 
-@pytest.mark.parametrize(("overlap", "is_drawn"), [(0.0009, True), (0.0015, False)])
-def test_overlaps_of_the_map_up_to_a_hundredth_of_a_square_meter_stay(overlap, is_drawn):
-    """Walls of neighbors in a map of millimeters: 0.007 and 0.012 m² over 8 m."""
-    assert list(drawn(box(0, 10.1 + overlap), box(10.1, 20), is_fixed=True)) == ([1] if is_drawn else [])
+@pytest.mark.parametrize("overlap", [0.0009, 0.0015, 0.003])
+def test_a_house_is_drawn_where_the_map_has_it_some_millimeters_within_what_stays(overlap):
+    assert list(drawn(box(0, 10.1 + overlap), box(10.1, 20), is_fixed=True)) == [1]
+
+
+@pytest.mark.parametrize(("overlap", "is_sound"), [(0.004, True), (0.006, False)])
+def test_a_polygon_overlaps_what_stays_by_a_millimeter_of_its_outline_at_most(overlap, is_sound):
+    """The outline is 36 m long, the overlap 8 m."""
+    house, stays = box(0, 10), box(10 - overlap, 20)
+    lattice = Lattice.around(house[0], 0.5)
+    count = are_within(lattice.positions, sides_of_rings(house)).sum()
+    assert _is_sound([house], count, lattice, [stays], 1.0) == is_sound
