@@ -36,7 +36,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install new-stage pictures demo test test-slow test-all test-core test-pythons check lint bench fuzz docs package clean
+.PHONY: help install new-stage pictures demo test test-slow test-all test-core test-pythons test-qgis check lint bench fuzz docs package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -61,6 +61,9 @@ test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but re
 test-pythons: ## the tests of the core with the oldest and the newest Python and numpy, in Debian's own builds (in .pythons)
 	@scripts/other_python.sh bullseye 3.9 .pythons 'numpy==1.24.*' 'scipy==1.10.*' 'scikit-learn==1.2.*' 'laspy==2.5.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
 	@scripts/other_python.sh trixie 3.13 .pythons 'numpy>=2' scipy scikit-learn 'laspy<3' 'pysfcgal==2.3.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
+
+test-qgis: ## the tests of the plugin with QGIS 3.44, in a Debian system of its own (in .pythons; asks for root)
+	@scripts/other_qgis.sh trixie .pythons $(ON_ALL_CORES) -m "not slow" tests/provider tests/test_package.py
 
 check: $(VENV)/made ## what changed since main, in half a minute: ruff, mypy, the tests of the modules and their contract
 	@$(VENV)/bin/python scripts/check.py

@@ -97,9 +97,12 @@ def authority_here() -> Optional[Authority]:
 def _pyproj() -> Optional[Authority]:
     try:
         with _quietly():
-            return _Pyproj(importlib.import_module("pyproj"))
-    except ImportError:
+            pyproj = importlib.import_module("pyproj")
+            # A virtual environment may have pyproj without the data of PROJ: then it can make no system at all.
+            pyproj.CRS.from_epsg(4326)
+    except (ImportError, RuntimeError):
         return None
+    return _Pyproj(pyproj)
 
 
 @contextmanager
@@ -110,13 +113,13 @@ def _quietly() -> Iterator[None]:
         yield
 
 
-# More systems than a survey has.
 class _Pyproj:
     """Systems by pyproj, which reads no GeoKeys but the codes in them."""
 
     def __init__(self, pyproj: Any) -> None:
         self.pyproj = pyproj
 
+    # More systems than a survey has.
     @lru_cache(maxsize=256)  # noqa: B019 - there is one for the life of the process
     def define(self, text: str, keys: tuple[tuple[int, bytes], ...] = ()) -> Optional[Definition]:
         if not text:

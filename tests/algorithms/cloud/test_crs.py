@@ -81,6 +81,20 @@ def pyproj():
         return authority._Pyproj(pytest.importorskip("pyproj"))
 
 
+def test_pyproj_without_its_data_is_as_none(monkeypatch):
+    """In a virtual environment of Debian, pyproj does not find the data of PROJ and raises with every system."""
+    pyproj = pytest.importorskip("pyproj")
+    monkeypatch.setattr(authority, "_of_host", [])
+    monkeypatch.setattr(authority, "_pyproj", authority._pyproj.__wrapped__)
+    assert authority.authority_here() is not None
+
+    def no_data(code):
+        raise pyproj.exceptions.DataDirError("Valid PROJ data directory not found.")
+
+    monkeypatch.setattr(pyproj.CRS, "from_epsg", no_data)
+    assert authority.authority_here() is None
+
+
 @pytest.mark.parametrize("point_format", [1, 6])
 def test_wkt_counts_before_geokeys_but_in_old_formats_that_name_these(point_format):
     header = replace(geokeys((1024, 1), (3072, 2263), (3076, 9003)), layout=Layout(point_format))
