@@ -189,7 +189,8 @@ def _without_unit(text: str) -> str:
 
 def _with_heights(wkt: str, units: Units) -> str:
     """Return the WKT of a system with heights in their unit where it has others; "" where that can't be written."""
-    if units_of_wkt(wkt) == units or np.allclose(units_of_wkt(wkt), units, rtol=_SAME_UNIT):
+    own = units_of_wkt(wkt)
+    if own and np.allclose(own, units, rtol=_SAME_UNIT):
         return wkt
     plane = wkt[wkt.find("PROJCS[") :].partition(",VERT_CS[")[0]
     if not plane.startswith("PROJCS["):

@@ -306,3 +306,13 @@ def test_wkt_that_no_vlr_holds_is_damage(length, is_read):
     wkt = f'LOCAL_CS["{"a" * length}"]'
     header = Header(evlrs=[Vlr(b"LASF_Projection", 2112, wkt.encode())])
     assert stated_wkt(header) == (wkt if is_read else "")
+
+
+def test_geokeys_with_the_code_of_heights_in_place_of_a_plane_are_read():
+    class OfHeights(OneAuthority):
+        def define(self, text, keys=()):
+            return authority.Definition('VERT_CS["heights",UNIT["metre",1]]', "", "EPSG:5703", "")
+
+    header = Header(vlrs=crs_records("EPSG:5703")[0], layout=Layout(3))
+    crs = read_crs(header, OfHeights())
+    assert (crs.wkt, crs.factors.tolist()) == ("", [1, 1, 1])
