@@ -309,7 +309,7 @@ def _is_abandoned(folder: Path) -> bool:
     try:
         if folder.is_symlink() or time.time() - folder.stat().st_mtime < _UNLOCKED:
             return False
-        if not any(folder.iterdir()):
+        if not list(folder.iterdir()):
             return True
         of_computer = _NAME.fullmatch(folder.name)
         if of_computer and of_computer[1] != _computer():
