@@ -71,7 +71,9 @@ def in_frame(new: BuildingMap, fit: MapFit) -> list:
     """Return the rings of new outlines as the old map would draw them: shifted back, outer walls without overhang."""
     sides = new.polygons.edges
     way = sides[:, 1] - sides[:, 0]
-    outward = np.column_stack([way[:, 1], -way[:, 0]]) / np.hypot(*way.T)[:, None]
+    # A corner that comes twice makes a side without length: such an outline is shifted only.
+    length = np.hypot(*way.T)[:, None]
+    outward = np.column_stack([way[:, 1], -way[:, 0]]) / np.where(length > 0, length, 1.0)
     is_outer = ~are_in_polygons(sides.mean(axis=1) + _RULES.beyond * outward, new.polygons, Monitor())
     made, at = [], 0
     for rings in new.rings:
