@@ -17,7 +17,7 @@ from ..threads import NEIGHBORS_AT_ONCE, in_chunks
 # Fewest points of a plane with a deviation.
 LEAST_POINTS = 5
 
-# Fits of a plane that was voted for, tried or robust, each to the points near the one before.
+# Fits of a plane that was voted for or robust, each to the points near the one before.
 REFITS = 3
 
 # Directions of the local Hough transform, even on the half sphere: 13° apart, so that a plane between two of them
