@@ -47,7 +47,7 @@ NO_DATA = -9999
 # Semi-major axis (m) of the ellipsoids of WGS 84 and GRS 1980.
 EQUATORIAL_RADIUS = 6_378_137.0
 
-# Semi-minor axis (m) of the ellipsoid of WGS 84, and of that of GRS 1980 within 0.2 mm.
+# Semi-minor axis (m) of the ellipsoid of WGS 84; the one of GRS 1980 differs by less than 0.2 mm.
 POLAR_RADIUS = 6_356_752.314245
 
 # Directions that differ by less than this (°), of faces, slopes or edges, are the same way.

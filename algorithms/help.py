@@ -144,7 +144,7 @@ def with_picture(text: str, algorithm: str, folder: str) -> str:
     if algorithm not in captions():
         return text
     caption = html.escape(captions()[algorithm])
-    # So many pixels the help pane of a dialog has room for, at the width that it opens with; pages set their own.
+    # Width (pixels) of the help pane of a dialog as it opens; pages set their own.
     picture = f'<p><img src="{folder}/{algorithm}.png" width="220" alt="{caption}"></p>\n<p><i>{caption}</i></p>'
     summary, rest = text.split("\n", 1)
     return f"{summary}\n{picture}\n{rest}"
@@ -221,7 +221,7 @@ def _with_conditions(always: Iterable[str], written_if: dict[str, str]) -> str:
 
 
 def _chosen(stage: Stage) -> Optional[Tunable]:
-    """Return the tunable that says which of its dimensions a stage writes; None where it always writes all."""
+    """Return the tunable that says which of its dimensions a stage writes; None if it always writes all."""
     tunables = (tunable for tunable in stage.tunables.values() if tunable.type is tuple)
     return next((tunable for tunable in tunables if tunable.param.choices == stage.writes), None)
 

@@ -61,7 +61,7 @@ def input_layer_parameter(input_layer: InputLayer) -> QgsProcessingParameterDefi
 
 
 def find_input_layer(given: Given, input_layer: InputLayer) -> Optional[QgsProcessingFeatureSource]:
-    """Return the layer that a parameter gives; None where an optional one is not given.
+    """Return the layer that a parameter gives; None if an optional one is not given.
 
     Raises
     ------
@@ -178,7 +178,7 @@ class GivenLayer:
     context: QgsProcessingContext
 
     def brought_to(self, box: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> Optional[QgsRectangle]:
-        """Return the box of a cloud in the layer's CRS; None where the cloud has no area or can't be brought there."""
+        """Return the box of a cloud in the layer's CRS; None if the cloud has no area or can't be brought there."""
         if box.isEmpty():
             return None
         try:

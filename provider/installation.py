@@ -125,7 +125,7 @@ def _is_wanted(parent: Optional[QWidget], command: str) -> bool:
 
 
 def _run(parent: Optional[QWidget], program: str, arguments: list[str]) -> str:
-    """Run a program while a window shows that it is at work; return what it printed, or why it did not start."""
+    """Run a program while a window shows that it is at work; return its output, or the reason why it did not start."""
     waiting = QProgressDialog("Installing Python packages…", "Cancel", 0, 0, parent)
     waiting.setWindowTitle(SOFTWARE)
     waiting.setWindowModality(Qt.WindowModality.WindowModal)

@@ -180,7 +180,7 @@ def _has_file(cloud: QgsPointCloudLayer) -> bool:
 
 
 def _visible_part(cloud: QgsPointCloudLayer, canvas: Any) -> Optional[QgsReferencedRectangle]:
-    """Return the part of a cloud's extent in the map view, in the CRS of the map; None where that is all or nothing."""
+    """Return the part of a cloud's extent in the map view, in the CRS of the map; None if that is all or nothing."""
     view, crs = canvas.extent(), canvas.mapSettings().destinationCrs()
     try:
         change = QgsCoordinateTransform(cloud.crs(), crs, QgsProject.instance())

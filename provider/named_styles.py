@@ -87,7 +87,7 @@ def add_named_styles(layer: QgsMapLayer) -> None:
 
 
 def _renderer(layer: QgsVectorLayer, name: str):
-    """Return the renderer of polygons by an attribute; None where it has no values."""
+    """Return the renderer of polygons by an attribute; None if it has no values."""
     if name == "confidence":
         ranges = [
             QgsRendererRange(low, high, _symbol(color), f"{low:g} - {high:g}") for low, high, color in _CONFIDENCE

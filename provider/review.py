@@ -50,7 +50,7 @@ _ROUNDED = 0.001
 
 
 def changes_between(before: QgsVectorLayer, after: QgsVectorLayer) -> dict[str, int]:
-    """Return how many buildings a layer has as another one had them, how many drawn anew, new and gone."""
+    """Return the numbers of buildings that are as in another layer, drawn anew, new and gone."""
     in_plane = QgsFeatureRequest().setDestinationCrs(after.crs(), QgsProject.instance().transformContext())
     old = {one.id(): one.geometry() for one in before.getFeatures(in_plane)}
     index, matched = QgsSpatialIndex(before.getFeatures(in_plane)), set()
@@ -104,7 +104,7 @@ class Review:
         return list(self.layer.getFeatures(request.addOrderBy(CONFIDENCE)))
 
     def value(self, building: QgsFeature, name: str) -> Any:
-        """Return an attribute of a building, None where it has no value or the layer has no such attribute."""
+        """Return an attribute of a building, None if it has no value or the layer has no such attribute."""
         # Not by the fields of the feature: QGIS leaves out there what was added in this edit.
         at = self._index(name)
         return None if at < 0 or building[at] == NULL else building[at]
@@ -114,7 +114,7 @@ class Review:
         return self._index(name) >= 0
 
     def _index(self, name: str) -> int:
-        """Return where an attribute is, -1 for none; Shapefiles cut its name."""
+        """Return the index of an attribute, -1 if there is none; Shapefiles cut its name."""
         fields = self.layer.fields()
         return max(fields.lookupField(name), fields.lookupField(name[:_SHORT]))
 
@@ -218,7 +218,7 @@ class Review:
         self._outline_changed(fid, id=int(self.layer.maximumValue(self._index("id")) or 0) + 1)
 
     def _outline_changed(self, fid: int, **more: Any) -> None:
-        """Record that an outline was changed, and what it measures; not where that is undone or redone."""
+        """Record that an outline was changed, and its measures; do nothing if that is undone or redone."""
         # While a command is open nothing can be undone; where it is undone, it can.
         if self.layer.isEditCommandActive() and not self.layer.undoStack().canUndo():
             outline, unit = self.layer.getGeometry(fid), meters_per_unit(self.layer.crs())[0]

@@ -1,4 +1,4 @@
-"""A view in three dimensions of what a run made, from the side."""
+"""A view of the results of a run in three dimensions, from the side."""
 
 from __future__ import annotations
 

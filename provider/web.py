@@ -88,7 +88,7 @@ use_transport(QgisTransport())
 
 
 def web_file(source: str) -> Optional[Path]:
-    """Return the file on the web that a text or the source of a layer names, None where it names none.
+    """Return the file on the web that a text or the source of a layer names, None if it names none.
 
     With an authentication configuration of QGIS it is ``authcfg=… url=https://…``.
 
@@ -122,7 +122,7 @@ class Size(NamedTuple):
 def size_on_web(
     paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray] = None
 ) -> Optional[Size]:
-    """Return how much of some clouds is read from the web for a box and a spacing; None where nothing of them is there.
+    """Return the size of the parts of clouds that a box and a spacing need from the web, None if none is there.
 
     It costs a few requests, also of a large cloud with an octree. Files in folders are left out.
     """

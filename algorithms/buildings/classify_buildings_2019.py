@@ -164,7 +164,7 @@ def k_means(means: np.ndarray, monitor: Monitor) -> Split:
 
 
 def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
-    """Return the split of ascending mean entropies that can't be separated, and say so; None where they can."""
+    """Return the split of ascending mean entropies that can't be separated, and say so; None if they can."""
     # Means closer than this are equal; real clusters differ by 0.01 and more.
     if len(known) >= 2 and np.ptp(known) >= 1e-3:
         return None

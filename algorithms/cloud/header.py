@@ -16,7 +16,7 @@ from .laspy_library import need_laspy
 from .outputs import PIECE
 from .point_formats import FORMATS, Layout
 
-# The header of LAS 1.4, whose beginning is that of earlier versions; the "old" numbers of points have 32 bits.
+# The header of LAS 1.4, which begins like earlier versions; the "old" numbers of points have 32 bits.
 HEADER = np.dtype([
     ("signature", "S4"), ("source_id", "<u2"), ("encoding", "<u2"), ("guid", "V16"), ("major", "u1"), ("minor", "u1"),
     ("system", "S32"), ("software", "S32"), ("date", "V4"), ("size", "<u2"), ("points_at", "<u4"), ("n_vlrs", "<u4"),
@@ -114,7 +114,7 @@ class Header:
     layout: Layout = Layout(6)
     is_compressed: bool = False
     count: int = 0
-    #: (3,): units of the file per step; those of new clouds are more precise than any scanner
+    #: (3,): units of the file per step; steps of new clouds are finer than the noise of any scanner
     scale: np.ndarray = field(default_factory=lambda: np.full(3, 0.001))
     offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
     #: low, high, (3,): bounds in coordinates of the file

@@ -212,7 +212,7 @@ def _plain_record(record: bytes) -> bytes:
 
 
 def _head(record: bytes) -> np.ndarray:
-    """Return what a LASzip record has before its items, without a copy."""
+    """Return the head of a LASzip record, which comes before its items, as a view."""
     return np.frombuffer(record, _HEAD, 1)[0]
 
 

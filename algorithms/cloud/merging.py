@@ -18,7 +18,7 @@ from .vpc import merged_header
 
 
 def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optional[Monitor] = None) -> Cloud:
-    """Return one cloud of the points of all, cloud after cloud, with what stages have set in them.
+    """Return one cloud of the points of all, cloud after cloud, with the dimensions that stages have set.
 
     It has the finest scale, the smallest point format that holds the standard fields of all (colors and times that a
     cloud lacks are 0), and the extra dimensions of all. Where a cloud lacks one, its points have NaN, or 0 in a
@@ -30,7 +30,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     clouds : list of Cloud
         One or more, of one origin, which the result has too. They are not changed.
     xyz : ndarray of shape (n, 3), float64, or None
-        New coordinates of all points (m, relative to the common origin); None where none were moved.
+        New coordinates of all points (m, relative to the common origin); None if none were moved.
     monitor : Monitor, optional
         Receives warnings about parts that can't be merged.
 

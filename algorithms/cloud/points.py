@@ -87,7 +87,7 @@ def _names(paths: list[Path]) -> str:
 
 
 def _checked_header(path: Path) -> Header:
-    """Return the header of a file after its number of points and its bounds were held against what it holds."""
+    """Return the header of a file after its number of points and its bounds were checked against the file."""
     if is_ept(path):
         return Ept(path).header(_held_header)
     header = _held_header(path)
@@ -115,7 +115,7 @@ def _held_header(path: Path) -> Header:
 
 @lru_cache(maxsize=1024)
 def _measured(path: Path, size: int, changed: int) -> Optional[tuple[np.ndarray, np.ndarray]]:  # noqa: ARG001
-    """Return the bounds (3,) of the points of a file, low and high; None where those in its header can be.
+    """Return the bounds (3,) of the points of a file, low and high; None if those in its header can be.
 
     ``size`` and ``changed`` are the state of the file, for which the answer is kept.
     """

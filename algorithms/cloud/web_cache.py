@@ -37,7 +37,7 @@ class KeptRanges:
     version : str
         As the server names it; what has no version is not kept.
     size : int, optional
-        Bytes of the whole file; None where it is kept as a whole, with the version of what names it.
+        Bytes of the whole file; None if it is kept as a whole, with the version of what names it.
     """
 
     def __init__(self, address: str, login: str, version: str, size: Optional[int] = None) -> None:

@@ -78,7 +78,7 @@ class _Content:
             return self._parts[start][at - start : at - start + size]
 
     def _held_to(self, at: int) -> int:
-        """Return where the part ends that holds a position, the position itself where none does."""
+        """Return the end of the part that holds a position, or the position itself if no part does."""
         before = bisect_right(self._starts, at) - 1
         return max(at, self._starts[before] + len(self._parts[self._starts[before]])) if before >= 0 else at
 
@@ -186,7 +186,7 @@ class _Content:
 
 
 def _promised(reply: Reply) -> int:
-    """Return how many bytes a reply says to have, 0 where it does not say."""
+    """Return the number of bytes that a reply declares, 0 if it declares none."""
     first, _, last = reply.content_range.partition("/")[0].replace("bytes", "").strip().partition("-")
     return int(last) - int(first) + 1 if first.isdecimal() and last.isdecimal() else 0
 

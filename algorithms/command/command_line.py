@@ -29,7 +29,7 @@ from ..stages import STAGES, less_memory
 from .command_arguments import SHORT_NAMES, dashed, find_algorithm, parser_of
 from .feature_files import check_format, read_layer, write_features
 
-# Exit codes: of what can't be done, and of what a user stopped (as shells have it: 128 + SIGINT).
+# Exit codes of failures, and of runs that a user stopped (as shells have it: 128 + SIGINT).
 _FAILED, _STOPPED = 1, 130
 
 

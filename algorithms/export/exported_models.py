@@ -190,7 +190,7 @@ def textured(
 
 
 def _texture(face: Face, xyz: np.ndarray, colors: np.ndarray, texel: float) -> Optional[Texture]:
-    """Return the texture of a face, None where hardly any point is on it."""
+    """Return the texture of a face, None if hardly any point is on it."""
     normal = area_vector(face.rings[0])
     normal /= np.linalg.norm(normal)
     axes, corners = np.stack(axes_across(normal)), face.rings[0]

@@ -79,7 +79,7 @@ def glb(
 
 
 def shared_atlas(faces: Sequence[Face]) -> Optional[Atlas]:
-    """Return the images of faces in one, None where no face has one."""
+    """Return the images of faces in one, None if no face has one."""
     is_textured = any(face.texture is not None for face in faces)
     return atlas_of([_image_of(face) for face in faces]) if is_textured else None
 

@@ -74,7 +74,7 @@ def _strips(xyz: np.ndarray, label: np.ndarray, count: int, tolerance: float) ->
 
 
 def _deviations(xyz: np.ndarray, label: np.ndarray, count: int, column: np.ndarray) -> np.ndarray:
-    """Return how far (columns, planes) the points of columns lie off the planes (root mean square, m)."""
+    """Return the root mean square distance (columns, planes), m, of the points of columns from the planes."""
     number, group = np.unique(label, return_inverse=True)
     planes = planes_of(xyz, group, len(number))
     points = np.bincount(column)

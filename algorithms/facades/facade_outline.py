@@ -88,7 +88,7 @@ class Drawing:
 
 
 def outline_of(positions: np.ndarray, drawing: Drawing) -> Optional[Outline]:
-    """Return the boundary of points (n, 2), m along and up a plane; None where they have no area."""
+    """Return the boundary of points (n, 2), m along and up a plane; None if they have no area."""
     triangulation = triangulated(positions)
     if triangulation is None:
         return None

@@ -193,7 +193,7 @@ def facing_outside(
 
 
 def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float) -> tuple[float, float]:
-    """Return what points (n, 3) of a facade and those around it (m, 3) say of its outside.
+    """Return the side of a facade that is outside, from its points (n, 3) and the points around (m, 3).
 
     It is the evidence for the side to which the normal points, -1 to 1, and the area (m²) of the wall.
     """

@@ -171,7 +171,7 @@ def _opening(
     approach: Approach,
     min_size: float,
 ) -> Optional[Opening]:
-    """Return the opening that points behind a wall show, None where they show none."""
+    """Return the opening that points behind a wall show, None if they show none."""
     # There are too few points, or they are too close together, even with the sides moved out to the edges of the wall.
     if len(behind) < 4 or (np.ptp(behind[:, :2], axis=0) < min_size / 2).any():
         return None

@@ -58,7 +58,7 @@ _STEEPEST = 2.5
 
 @dataclass(frozen=True)
 class PointMeasures:
-    """What was measured of the points of a cloud; None where it was not."""
+    """Measures of the points of a cloud; None if not measured."""
 
     xyz: np.ndarray  #: (n, 3), float64: coordinates, m
     corner: np.ndarray  #: (2,), float64: easting and northing from which outlines are measured, m

@@ -1,4 +1,4 @@
-"""Input of models of buildings: classified points, footprints with an area, and how far points lie off planes."""
+"""Input of models of buildings: classified points, footprints with an area, and distances of points from planes."""
 
 from __future__ import annotations
 

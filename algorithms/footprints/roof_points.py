@@ -43,7 +43,7 @@ _NEAREST = 24
 # edge it is half. Measured on simulated roofs.
 _UNDER = 0.7
 
-# Least density of a roof, as a share of what the mean spacing gives: bushes that are taken for it are thinner.
+# Least density of a roof, as a share of the density by the mean spacing: bushes that are taken for it are thinner.
 _DENSE = 0.6
 
 

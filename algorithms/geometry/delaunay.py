@@ -81,7 +81,7 @@ def triangulate(plan: np.ndarray, monitor: Optional[Monitor] = None) -> Triangul
 
 
 def _by_tiles(plan: np.ndarray, monitor: Monitor) -> Optional[Triangulation]:
-    """Return the triangulation of positions made of the tiles' triangulations, None where these don't fit together."""
+    """Return the triangulation of positions made of the tiles' triangulations, None if these don't fit together."""
     different = np.unique(np.ascontiguousarray(plan, float).view(complex), return_index=True)[1]
     tiles = list(_tiles(plan, different))
     parts: list[Triangulation] = [None] * len(tiles)  # type: ignore[list-item]
@@ -196,7 +196,7 @@ def _open_sides(mesh: Triangulation) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def _mended(part: Triangulation, rows: np.ndarray) -> Optional[Triangulation]:
-    """Return a triangulation whose holes, between the positions ``rows``, are filled; None where a seam stays open."""
+    """Return a triangulation whose holes, between the positions ``rows``, are filled; None if a seam stays open."""
     patch = _by_qhull(part.plan[rows] - part.plan[rows[0]])
     facets = rows[patch.facets].astype(np.int32)
     sides = _open_sides(Triangulation(part.plan, facets, np.full_like(facets, -1)))[2]

@@ -120,7 +120,7 @@ def compute_building_heights(
     Returns
     -------
     buildings : LayerFeatures
-        The outlines in their order, with what was measured, then with the attributes of the map. Of these, names that
+        The outlines in their order, with their measures, then with the attributes of the map. Of these, names that
         are used become ``map_…``.
 
     Raises
@@ -235,7 +235,7 @@ class _Points:
         )
 
     def date(self, rows: np.ndarray) -> Optional[str]:
-        """Return the median day of some points, None where it is unknown."""
+        """Return the median day of some points, None if it is unknown."""
         if self.time is None:
             return None
         seconds = _ADJUSTED + int(np.median(self.time[rows]))

@@ -60,7 +60,7 @@ class Partition:
     cost: np.ndarray = field(repr=False)  #: (cells, m): what each plane costs in each cell, m² that are not explained
 
     def above(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return how far (n,), m, points (n, 3) are above planes, NaN outside, and the planes over or under them."""
+        """Return the heights (n,), m, of points (n, 3) above planes, NaN outside, and the planes over or under them."""
         plane = np.full(len(xyz), -1)
         for cell in np.flatnonzero(self.label >= 0):
             plane[self.cells.members[cell]] = self.label[cell]

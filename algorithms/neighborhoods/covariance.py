@@ -32,7 +32,7 @@ class Neighborhood(Protocol):
         """Raise ValueError when the neighborhood does not suit the cloud."""
 
     def rows_per_chunk(self, n_points: int) -> int:
-        """Return how many points are worked on at once."""
+        """Return the number of points that are worked on at once."""
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the neighborhoods of the points ``rows``, with extents if wanted."""
@@ -53,7 +53,7 @@ class Nearest:
         """Take every cloud."""
 
     def rows_per_chunk(self, n_points: int) -> int:
-        """Return how many points are worked on at once."""
+        """Return the number of points that are worked on at once."""
         return max(1, NEIGHBORS_AT_ONCE // min(self.count, n_points))
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
@@ -68,7 +68,7 @@ class Nearest:
 
 
 def nearest_offsets(tree: Any, rows: np.ndarray, count: int) -> tuple[np.ndarray, list]:
-    """Return the neighbors (m, k) of the points ``rows``, nearest first, and how far they are off in x, y, z.
+    """Return the neighbors (m, k) of the points ``rows``, nearest first, and their offsets in x, y, z.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ class Within:
             )
 
     def rows_per_chunk(self, n_points: int) -> int:
-        """Return how many points are worked on at once."""
+        """Return the number of points that are worked on at once."""
         return ROWS_AT_ONCE
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:

@@ -50,7 +50,7 @@ _ALIKE = 0.8
 # Most squared distances of a block: with ten multiplications each, up to 2^18 in all, OpenBLAS uses one thread.
 _PRODUCT = 26_000
 
-# Returns how many candidates blocks need, for their middles (b, 3), how far (b,) their points are from these, and the
+# Returns the number of candidates that blocks need, for their middles (b, 3), the reach (b,) of their points, and the
 # points of a block.
 _Candidates = Callable[[np.ndarray, np.ndarray, int], np.ndarray]
 
@@ -133,7 +133,7 @@ def nearest_shapes(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int,
 
 
 def reach_of_ties(count: int, size: int = 1) -> int:
-    """Return how many points nearest to a block of ``size`` hold the ``count`` nearest of each and those in a tie."""
+    """Return the number of points around a block of ``size`` that hold the ``count`` nearest of each, ties included."""
     return int(_SPARE * (np.sqrt(count) + np.sqrt(size)) ** 2)
 
 
@@ -291,7 +291,7 @@ def _limits(squares: np.ndarray, count: int, guess: np.ndarray) -> np.ndarray:
 
 
 def _counts(inside: np.ndarray) -> np.ndarray:
-    """Return how many of each row (r, c) are true, c < 65,536."""
+    """Return the number of true values of each row (r, c), c < 65,536."""
     return np.add.reduce(inside.view(np.uint8), axis=1, dtype=np.uint16)
 
 

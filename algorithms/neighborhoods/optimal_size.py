@@ -36,7 +36,7 @@ class Optimal:
             )
 
     def rows_per_chunk(self, n_points: int) -> int:
-        """Return how many points are worked on at once."""
+        """Return the number of points that are worked on at once."""
         return Nearest(self.high).rows_per_chunk(n_points)
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:

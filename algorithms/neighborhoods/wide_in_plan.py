@@ -45,7 +45,7 @@ class Wide:
         """Refuse nothing: the neighborhoods exist in every cloud."""
 
     def rows_per_chunk(self, n_points: int) -> int:
-        """Return how many points are worked on at once: running sums of nine moments take as much as the neighbors."""
+        """Return the number of points worked on at once: sums of nine moments take as much as the neighbors."""
         return max(1, Nearest(self._most).rows_per_chunk(n_points) // 4)
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
@@ -79,7 +79,7 @@ class Wide:
 
 
 def _plan_width(covariances: np.ndarray) -> np.ndarray:
-    """Return how wide for their length points with ``covariances`` (6, ...) are in plan; without length 0."""
+    """Return the ratio of width to length in plan of points with ``covariances`` (6, ...), 0 if they have no length."""
     xx, yy, _, xy = covariances[:4]
     middle, half = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     length, width = middle + half, np.maximum(middle - half, 0)

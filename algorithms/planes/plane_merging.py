@@ -46,7 +46,7 @@ def joined_planes(
     planes : Planes
         The planes that are large enough.
     plane : ndarray of shape (n,), int64
-        The nearest of them to each point in the order of the boxes, from 0; -1 where none is within the tolerance.
+        The nearest of them to each point in the order of the boxes, from 0; -1 if none is within the tolerance.
     """
     on_plane = np.flatnonzero(label)
     box = boxes.box()
@@ -145,7 +145,7 @@ class NearestPlanes:
     box : ndarray of shape (n,), int64
         Box of each point, in the order of the boxes.
     plane : ndarray of shape (n,), int64
-        Number of its plane; -1 where none is within the tolerance.
+        Number of its plane; -1 if none is within the tolerance.
     """
 
     def __init__(self, boxes: Boxes, planes: Planes, tolerance: float) -> None:

@@ -143,7 +143,7 @@ def more_than_chance(found, left, by_chance: float, trials: int) -> np.ndarray:
 
 
 def _chunks(most: np.ndarray) -> np.ndarray:
-    """Return where chunks start and the last ends, each as long as its last element of ``most`` (m,) allows."""
+    """Return the starts of chunks and the end of the last, each as long as its last element of ``most`` (m,) allows."""
     starts = [0]
     while starts[-1] < len(most):
         start = starts[-1]

@@ -83,7 +83,7 @@ def merge_clouds(
     Returns
     -------
     xyz : ndarray of shape (n, 3), float64, or None
-        Coordinates (m) of all clouds, one after the other; None where nothing was moved.
+        Coordinates (m) of all clouds, one after the other; None if nothing was moved.
     point_source_id : ndarray of shape (n,), uint16
         The number of the cloud: 1 for the first, 2 for the second.
     previous_source_id : ndarray of shape (n,), uint16, or None
@@ -223,7 +223,7 @@ def _nearest_rotation(name: str, matrix: np.ndarray) -> np.ndarray:
 
 
 def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor) -> np.ndarray:
-    """Return a cloud (n, 3) in its new position, and log how far it was moved."""
+    """Return a cloud (n, 3) in its new position, and log the length of its motion."""
     moved = transform(xyz)
     middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
     shift = float(np.linalg.norm(transform(middle) - middle))

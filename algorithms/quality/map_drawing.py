@@ -24,7 +24,7 @@ class _RULES:
     thin: float = rule(0.025, "m", "area of a cell per length around it, below which it is a seam: a strip 5 cm wide")
     parallel: float = rule(0.17, "sine", "of the greatest angle between a new wall and the old one it continues, 10°")
     overlap: float = rule(
-        0.001, "m", "area that a polygon shares with what stays per length of its outline, as maps of millimeters have"
+        0.001, "m", "area shared with buildings that stay, per length of the outline: maps have millimeters"
     )
 
 

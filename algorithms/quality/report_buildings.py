@@ -120,7 +120,7 @@ def report_buildings(
 
 
 def summary_of(values: dict) -> str:
-    """Return what was found, in a sentence."""
+    """Return the result in a sentence."""
     count = values["buildings"]
     noun = "building" if count == 1 else "buildings"
     found = f"{count:,} {noun}, {values['area']:,.0f} m²"

@@ -231,7 +231,7 @@ class CylinderSearch:
         return (np.abs(distance - cylinder.radius) <= tolerance) & (facing >= FACING)
 
     def _grown(self, rows: np.ndarray, cylinder: Cylinder, seed: np.ndarray) -> Optional[Found]:
-        """Return the cylinder that a seed grows to along its axis, None where its points do not fit a cylinder."""
+        """Return the cylinder that a seed grows to along its axis, None if its points do not fit a cylinder."""
         along = cylinder.local(self.xyz[seed])[0]
         ends = cylinder.center + np.outer([along.min(), along.max()], cylinder.axis)
         thinned_spacing = max(self.spacing, THINNING * cylinder.radius)

@@ -124,7 +124,7 @@ class SphereSearch:
     def _fitted(
         self, rows: np.ndarray, center: np.ndarray, radius: float, low: float, high: float
     ) -> Optional[tuple[np.ndarray, float]]:
-        """Return the least-squares sphere of the points around a start, None where its radius is out of range."""
+        """Return the least-squares sphere of the points around a start, None if its radius is out of range."""
         for reach in (CENTER_BIN * low, 2 * self.tolerance, self.tolerance):
             points = rows[self._is_on(rows, center, radius, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:

@@ -150,7 +150,7 @@ class HoughPlanes:
         return plane
 
     def _votes(self, xyz: np.ndarray) -> np.ndarray:
-        """Return how many of the points (k, 3) lie on the plane of each bin (m, levels)."""
+        """Return the number of points (k, 3) on the plane of each bin (m, levels)."""
         directions = self.directions.normal
         votes = np.zeros(len(directions) * self.levels, np.int64)
         step = max(1, PAIRS_AT_ONCE // len(directions))

@@ -52,7 +52,7 @@ SHAPE_TOLERANCE = tunable(
 
 
 def reach_of_radius(max_radius: Optional[float]) -> float:
-    """Return how far (m) from a point of a shape others decide on it, for the largest radius (m), None if automatic.
+    """Return the reach (m) of points that decide on a point of a shape, by the largest radius (m; None if automatic).
 
     Within half a radius of a point lie a sixth of the circumference of a cylinder and a sixteenth of the area of a
     sphere.

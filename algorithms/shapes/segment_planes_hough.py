@@ -205,7 +205,7 @@ def segment_planes_hough(
 
 @dataclass(frozen=True)
 class _Search:
-    """Windows, tolerance and bins (m; slopes in °), and points of a normal; None where only points vote."""
+    """Windows, tolerance and bins (m; slopes in °), and points of a normal; None if only points vote."""
 
     window_size: float
     tolerance: float

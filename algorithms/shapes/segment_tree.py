@@ -270,7 +270,7 @@ def _measured(
 
 
 def _fitted(xyz: np.ndarray, chord: np.ndarray, reach: float) -> Optional[float]:
-    """Return the radius (m) of a cylinder through points (k, 3), m, of a piece; None where they lie on none.
+    """Return the radius (m) of a cylinder through points (k, 3), m, of a piece; None if they lie on none.
 
     ``reach`` is the median distance (m) of the points from the middle line of the branch, and ``chord`` (3,), m, is
     a vector along it. Where one side of a branch is seen, that line lies on the bark of this side.

@@ -88,7 +88,7 @@ def find_stems(xyz: np.ndarray, level: np.ndarray, monitor: Monitor) -> list[tup
 
 
 def _stem(xyz: np.ndarray) -> Optional[Cylinder]:
-    """Return the upright cylinder of the points of a slice, None where they are no stem."""
+    """Return the upright cylinder of the points of a slice, None if they are no stem."""
     if np.ptp(xyz[:, 2]) < _CROSSED * 2 * _HALF_SLICE:
         return None
     middle = xyz.mean(axis=0)

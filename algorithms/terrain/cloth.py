@@ -263,7 +263,7 @@ class Cloth:
         state.height[where] = own
 
     def _land_and_fall(self, front: _Front, motion: np.ndarray) -> None:
-        """Let particles land, note how far they moved in their steps, and fall on, unless they made the last one."""
+        """Let particles land, record the lengths of their steps, and let those that have steps left fall on."""
         # The first diagonal is the last step's.
         moved = self._land(self._order.own(front)).reshape(front.diagonals, -1).max(axis=1)[::-1]
         steps = slice(front.last_step - front.diagonals + 1, front.last_step + 1)
@@ -281,7 +281,7 @@ class Cloth:
         height += moved * self._state.movable[where]
 
     def _land(self, where: slice) -> np.ndarray:
-        """End the step of the particles stored there: those below the floor land on it; return how far each moved."""
+        """End the step of the particles stored there: those below the floor land on it; return the motion of each."""
         state = self._state
         height, floor, movable = state.height[where], state.floor[where], state.movable[where]
         moved = np.abs(height - state.before[where]) * movable

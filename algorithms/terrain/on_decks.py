@@ -21,7 +21,7 @@ class ON_DECK:
         2.0, "m", "physics: from points over a deck to the nearest one of it that is seen; vehicles hide the others"
     )
     rough: float = rule(
-        0.25, "m", "crown, camber and railings: how far objects reach below a deck, and how wide its side is in plan"
+        0.25, "m", "crown, camber and railings: depth of objects below a deck, and width of its side in plan"
     )
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
 
@@ -51,7 +51,7 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -ON_DECK.rough
     around &= (points[:, :2] <= deck[:, :2].max(axis=0) + ON_DECK.hidden).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
-    # The point spacing of decks in plan, by how far around their points the neighbors lie.
+    # The point spacing of decks in plan, from the distances of neighbors.
     radius = float(np.median(tree.query(deck[:, :2], k=[LEAST_NEIGHBORS + 1])[0]))
     near = link_distance(radius * float(np.sqrt(np.pi / LEAST_NEIGHBORS)))
     distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, ON_DECK.hidden))

@@ -145,7 +145,7 @@ def work_on_block(task: BlockTask) -> Path:
 
 
 def _window(task: BlockTask, box: np.ndarray, monitor: Monitor) -> Optional[Window]:
-    """Return the points in a box, None where the block itself has none of them."""
+    """Return the points in a box, None if the block itself has none of them."""
     window = task.survey.window(box, monitor)
     if window is None or not inside(_positions(task.survey, window), task.block.box).any():
         return None

@@ -24,7 +24,7 @@ from .processes import ANSWER, FOLDER, PACKAGE, CannotStart, Processes, WorkerEn
 # Seconds between two messages about tasks that are done or waited for.
 BETWEEN_MESSAGES = 10.0
 
-# The message where a cluster has forgotten what it was given.
+# The message if a cluster has dropped its work.
 _DROPPED = (
     "The Dask scheduler has ended or dropped the work; start it and the same run again, which goes on from there."
 )
@@ -143,7 +143,7 @@ class _Remote(Executor):
         return self._executor.submit(pickle.loads, pickle.dumps(_Call(fn, *args)))
 
     def at_work(self) -> str:
-        """Return who is at work, in words."""
+        """Return the workers at work, in words."""
         if self._client.status != "running":
             return "the Dask scheduler does not answer"
         count = len(self._client.scheduler_info()["workers"])
@@ -176,7 +176,7 @@ def run_all(
     stop : Path
         A file by which running work stops; it is made when the user cancels.
     monitor : Monitor
-        Receives the share of tasks that are done, and the tasks waited for where none is done for a while.
+        Receives the share of tasks that are done, and messages while no task ends.
     on_done : callable
         Is called with the position of every task that is done.
 
@@ -242,5 +242,5 @@ def _why_failed(error: BaseException) -> str:
 
 
 def _at_work(executor: Executor) -> str:
-    """Return who is at work for an executor of :class:`Workers`, in words."""
+    """Return the workers at work for an executor of :class:`Workers`, in words."""
     return executor.at_work() if isinstance(executor, (Processes, _Remote)) else "this process is at work"

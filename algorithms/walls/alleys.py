@@ -32,7 +32,7 @@ def find_alley(outline: WallOutline, limits: Limits) -> Optional[WallLine]:
 
 
 def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
-    """Return the line halfway between two that are nearly parallel, None where they are not."""
+    """Return the line halfway between two that are nearly parallel, None if they are not."""
     sign = np.sign(one.direction @ other.direction)
     if abs(one.direction @ other.direction) < np.cos(MOST):
         return None
@@ -62,7 +62,7 @@ def _is_alley(alley: WallLine, walls: tuple[WallLine, WallLine], outline: WallOu
 
 
 def _chords(line: WallLine, rings: list[np.ndarray]) -> np.ndarray:
-    """Return where a line runs inside rings (k, 2): from and to, m along its direction."""
+    """Return the pieces of a line inside rings (k, 2): start and end, m along its direction."""
     crossings = []
     for ring in rings:
         across, along = line.across(ring), (ring - line.point) @ line.direction

@@ -40,7 +40,7 @@ class OutlineCells:
     """The cells that all lines of a building make, and the cost of an outline of some of them.
 
     An outline is given by the cells that are ``inside`` (cells,). Its cost is a sum over cells, edges and crossings.
-    The ``overhang`` is how far the roof juts out over the ``walls`` (n, 2), m.
+    The ``overhang`` is the distance (m) by which the roof juts out over the ``walls`` (n, 2).
     """
 
     def __init__(

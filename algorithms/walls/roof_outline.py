@@ -40,7 +40,7 @@ class RoofOutline:
 
 
 def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
-    """Return the outline of a roof with points (n, 2) at a mean distance ``spacing`` (m), None where it has no area."""
+    """Return the outline of a roof with points (n, 2) at a mean distance ``spacing`` (m), None if it has no area."""
     spacing = max(spacing, LEAST_SPACING)
     area = _LEAST_AREA * spacing**2
     shares, pieces, directions = pieces_alone(roof, spacing, area)

@@ -96,7 +96,7 @@ class WallLine:
         return self.excess(noise) / spread if spread > 0 else np.inf
 
     def across(self, xy: np.ndarray) -> np.ndarray:
-        """Return how far (m) points (n, 2) lie to the left of the line."""
+        """Return the distances (m) of points (n, 2) to the left of the line."""
         return (xy - self.point) @ self.normal
 
     def turned(self, direction: np.ndarray, xy: np.ndarray) -> WallLine:

@@ -56,7 +56,7 @@ def outline_walls(
     is_party: Callable[[np.ndarray], np.ndarray],
     monitor: Monitor,
 ) -> Optional[WallOutline]:
-    """Return the outline of a building's walls, None where no wall is seen.
+    """Return the outline of a building's walls, None if no wall is seen.
 
     Parameters
     ----------
