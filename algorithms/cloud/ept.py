@@ -298,6 +298,7 @@ def _nodes(ept: Ept, keys: list[tuple], counts: Any = ()) -> Nodes:
 def _page(file: Path) -> dict[tuple, int]:
     """Return the numbers of points by the keys of one page of a hierarchy."""
     content = read_json(file)
+    # A point takes a byte at least, so that a node has no more of them than bytes are read.
     is_sound = isinstance(content, dict) and all(
         _KEY.fullmatch(key) and type(count) is int and PAGE <= count <= MOST_READ for key, count in content.items()
     )

@@ -193,9 +193,9 @@ def facing_outside(
 
 
 def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float) -> tuple[float, float]:
-    """Return the side of a facade that is outside, from its points (n, 3) and the points around (m, 3).
+    """Return the evidence for the outside of a facade, from its points (n, 3) and the points around (m, 3).
 
-    It is the evidence for the side to which the normal points, -1 to 1, and the area (m²) of the wall.
+    It is -1 to 1, for the side to which the normal points, and comes with the area (m²) of the wall.
     """
     own, positions = frame.local(own), frame.local(near)
     low = own[:, :2].min(axis=0)

@@ -8,7 +8,6 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..criteria import MAJORITY
 from ..geometry.rings import signed_area
 from ..report.building_views import Views, boxes_around, draw_views
 from ..report.charts import BLUE, GRAY, RED, YELLOW, draw_bars
@@ -21,8 +20,11 @@ from ..stage import InputLayer, LayerFeatures, Measure, Report, feature_names, s
 # Of 514 buildings of seven real clouds, 45 had less than this confidence, 15 of the 16 false ones among them.
 SURE = 0.7
 
+# Confidence below which a building is as likely as not.
+_EVEN = 0.5
+
 # Colors of the map by confidence.
-_COLORS = {"unknown": GRAY, f"{SURE} and more": BLUE, f"{MAJORITY} to {SURE}": YELLOW, f"below {MAJORITY}": RED}
+_COLORS = {"unknown": GRAY, f"{SURE} and more": BLUE, f"{_EVEN} to {SURE}": YELLOW, f"below {_EVEN}": RED}
 
 # Doubtful buildings that the page shows one by one: as many as fit two printed pages.
 _SHOWN = 10
@@ -160,7 +162,7 @@ class _Facts:
 
     def kinds(self) -> list[str]:
         """Return the kind of each building on the map."""
-        bounds = [np.isnan(self.confidence), self.confidence >= SURE, self.confidence >= MAJORITY]
+        bounds = [np.isnan(self.confidence), self.confidence >= SURE, self.confidence >= _EVEN]
         return np.select(bounds, list(_COLORS)[:3], list(_COLORS)[3]).tolist()
 
     def captions(self, rows: np.ndarray) -> list[str]:

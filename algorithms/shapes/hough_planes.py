@@ -143,7 +143,7 @@ class HoughPlanes:
             normal = self.directions.normal[direction]
             on_plane = self._refined(xyz[free], normal, (level + 1) * self.distance_bin - self.reach)
             if not self._is_plane(on_plane.sum(), len(free)):
-                return plane
+                break
             plane[free[on_plane]] = number
             votes -= self._votes(xyz[free[on_plane]])
             free = free[~on_plane]
@@ -167,12 +167,12 @@ class HoughPlanes:
         bins = self.directions.bin_of(normals[free]) if len(free) else free
         for number in itertools.count(1):
             if len(free) < LEAST_POINTS:
-                return plane
+                break
             direction = self._direction(bins)
             is_alike = np.abs(normals[free] @ direction) >= self.cosine
             alike = free[is_alike]
             if len(alike) < LEAST_POINTS:
-                return plane
+                break
             signs = np.sign(normals[alike] @ direction)
             normal = unit((normals[alike] * signs[:, None]).sum(axis=0))
             level = ((xyz[alike] @ normal + self.reach) / self.distance_bin).astype(np.int64)
