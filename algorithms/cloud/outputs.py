@@ -258,8 +258,7 @@ class _Entry:
         for path, new in made.items():
             if path.is_dir():
                 raise IsADirectoryError(errno.EISDIR, "a folder is in its place", str(path))
-            if os.path.lexists(path):
-                _keep(path, aside / path.name, new)
+            if _kept(path, aside / path.name, new):
                 undo.callback((aside / path.name).replace, path)
             else:
                 undo.callback(_remove, path, new.stat().st_ino)
@@ -270,19 +269,24 @@ class _Entry:
         self._working.remove()
 
 
-def _keep(path: Path, aside: Path, new: Path) -> None:
+def _kept(path: Path, aside: Path, new: Path) -> bool:
     """Keep a file under a second name until the new one, which gets its permissions, replaces it.
 
-    Its own name stays taken all the time if possible. A link is kept as such: what it leads to is not touched.
+    Its own name stays taken all the time if possible. A link is kept as such: what it leads to is not touched. Return
+    whether there was a file; another program may remove it at any time.
     """
-    if path.is_symlink():
-        path.replace(aside)
-        return
-    shutil.copymode(path, new)
     try:
-        os.link(path, aside)
-    except OSError:
-        path.replace(aside)
+        if path.is_symlink():
+            path.replace(aside)
+            return True
+        shutil.copymode(path, new)
+        try:
+            os.link(path, aside)
+        except OSError:
+            path.replace(aside)
+    except FileNotFoundError:
+        return False
+    return True
 
 
 def _remove(path: Path, inode: int) -> None:

@@ -307,6 +307,23 @@ def test_a_link_is_there_again_where_its_run_fails(folder, tmp_path):
     assert (tmp_path / "diary.txt").read_text() == "mine"
 
 
+def test_an_older_file_may_vanish_while_it_is_replaced(folder, monkeypatch):
+    """Processes that share a folder of what was read from the web remove the oldest while others write the same."""
+    target = folder / "a.bin"
+    target.write_bytes(b"old")
+    link = os.link
+
+    def vanishes(path, *rest):
+        Path(path).unlink()
+        link(path, *rest)
+
+    monkeypatch.setattr(os, "link", vanishes)
+    with replacing(target) as stream:
+        stream.write(b"new")
+    assert [path.name for path in folder.iterdir()] == ["a.bin"]
+    assert target.read_bytes() == b"new"
+
+
 def test_a_link_to_the_folder_is_followed(folder, tmp_path):
     (tmp_path / "here").symlink_to(folder)
     with replacing(tmp_path / "here" / "a.laz") as stream:
