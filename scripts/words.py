@@ -52,8 +52,8 @@ _WORD = re.compile(r"[A-Za-z][\w'-]*")
 # Code and formulas are read as one word, which may begin a sentence.
 _CODE = re.compile(r"`[^`]*`|\$[^$]*\$")
 
-# Lines of docstrings that are no prose: underlines of sections, parameters, examples.
-_NO_PROSE = re.compile(r"-{3,}|[\w, *`]+ : |>>>")
+# Lines of docstrings that are no prose: underlines of sections, parameters, names of tunables, examples.
+_NO_PROSE = re.compile(r"-{3,}|[\w, *`]+ : |[a-z]\w*$|>>>")
 
 # Lines that begin a paragraph of their own in docstrings: these, references, items, formulas.
 _OWN = re.compile(_NO_PROSE.pattern + r"|\.\. |[-*] |\$\$")

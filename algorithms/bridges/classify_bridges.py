@@ -41,12 +41,7 @@ def classify_bridges(
     min_height: float = BRIDGE_HEIGHT,
     max_width: float = BRIDGE_WIDTH,
     min_bridge_area: float = BRIDGE_AREA,
-    search: str = tunable(
-        _EVERYWHERE,
-        "Where bridges are looked for: everywhere, or only around level surfaces over a gap in the ground with "
-        "ground at their height at both ends, in a fraction of the time.",
-        choices=(_EVERYWHERE, _OVER_GAPS),
-    ),
+    search: str = tunable(_EVERYWHERE, choices=(_EVERYWHERE, _OVER_GAPS)),
     noise: Optional[float] = SURFACE_NOISE,
     density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
@@ -72,6 +67,12 @@ def classify_bridges(
     -------
     classification : ndarray of shape (n,), uint8
         The same with bridge deck (17); unchanged where no bridges are looked for.
+
+    Other Parameters
+    ----------------
+    search
+        Where bridges are looked for: everywhere, or only around level surfaces over a gap in the ground with ground at
+        their height at both ends, in a fraction of the time.
 
     Raises
     ------

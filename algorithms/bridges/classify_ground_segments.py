@@ -38,15 +38,8 @@ def classify_ground_segments(
     min_height: float = BRIDGE_HEIGHT,
     max_width: float = BRIDGE_WIDTH,
     min_bridge_area: float = BRIDGE_AREA,
-    min_area: float = tunable(
-        10.0, "Area of the smallest segment of the bare earth.", label="Minimum ground area", within="[1, 100_000] m²"
-    ),
-    max_object_area: float = tunable(
-        50_000.0,
-        "Area of the largest object: larger segments are bare earth, also where they are raised along their "
-        "border, as islands and quarters between canals are.",
-        within="[1, 10_000_000] m²",
-    ),
+    min_area: float = tunable(10.0, label="Minimum ground area", within="[1, 100_000] m²"),
+    max_object_area: float = tunable(50_000.0, within="[1, 10_000_000] m²"),
     noise: Optional[float] = SURFACE_NOISE,
     density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
@@ -73,6 +66,14 @@ def classify_ground_segments(
     -------
     classification : ndarray of shape (n,), uint8
         Ground (2), bridge deck (17); other points keep their class, or are unclassified (1).
+
+    Other Parameters
+    ----------------
+    min_area
+        Area of the smallest segment of the bare earth.
+    max_object_area
+        Area of the largest object: larger segments are bare earth, also where they are raised along their border, as
+        islands and quarters between canals are.
 
     Notes
     -----

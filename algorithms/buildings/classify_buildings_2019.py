@@ -43,12 +43,7 @@ def classify_buildings_2019(
     n_neighbors: Optional[int] = nearest_points(
         f"the points of the minimum building area (Ar_min d), at least {PLANE_POINTS}."
     ),
-    two_classes: str = tunable(
-        "k-means",
-        "How the mean entropies are separated: 'k-means' is scikit-learn's, from ten random starts; 'exact' tries "
-        "every gap between them.",
-        choices=("k-means", "exact"),
-    ),
+    two_classes: str = tunable("k-means", choices=("k-means", "exact")),
     density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -86,6 +81,12 @@ def classify_buildings_2019(
         The measure nearest to its limit, see :func:`~..cloud.reasons.packed_evidence`; 0 outside clusters.
     report : Report
         Counts and the two mean entropies, and a page that shows what decided.
+
+    Other Parameters
+    ----------------
+    two_classes
+        How the mean entropies are separated: 'k-means' is scikit-learn's, from ten random starts; 'exact' tries every
+        gap between them.
 
     Notes
     -----

@@ -58,30 +58,14 @@ def complete_buildings(
     *,
     gap: Optional[float] = tunable(
         None,
-        "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
         label="Gap to close",
         within=f"[0, {2 * SCENE.ground_within}] m",
         automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to {2 * SCENE.ground_within:g} m.",
     ),
-    roof_clearance: float = tunable(
-        1.0, "Points up to this far above the roof belong to it.", label="Clearance above the roof", within="[0, 20] m"
-    ),
-    structure_height: float = tunable(
-        4.0,
-        "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
-        "dormers, masts). Trees cover more.",
-        label="Structures on the roof",
-        within="[0, 100] m",
-    ),
+    roof_clearance: float = tunable(1.0, label="Clearance above the roof", within="[0, 20] m"),
+    structure_height: float = tunable(4.0, label="Structures on the roof", within="[0, 100] m"),
     min_area: float = MIN_BUILDING_AREA,
-    min_roof_share: float = tunable(
-        0.6,
-        "Share of the points at about the height of a building's roof, within the clearance above and below, that "
-        "must lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched "
-        "images it is not examined.",
-        label="Minimum share of roof surfaces",
-        within="[0, 1]",
-    ),
+    min_roof_share: float = tunable(0.6, label="Minimum share of roof surfaces", within="[0, 1]"),
     density: Optional[float] = POINT_DENSITY,
     source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
@@ -124,6 +108,20 @@ def complete_buildings(
         Points added to a building get the mean of its roofs, rejected roofs at most 0.5; None where not given.
     reason : ndarray of shape (n,), uint8, or None
         Why points were added to a building and roofs rejected; other points keep theirs. None where not given.
+
+    Other Parameters
+    ----------------
+    gap
+        Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).
+    roof_clearance
+        Points up to this far above the roof belong to it.
+    structure_height
+        Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, dormers,
+        masts). Trees cover more.
+    min_roof_share
+        Share of the points at about the height of a building's roof, within the clearance above and below, that must
+        lie on roof surfaces. In crowns with a smooth side it is less. 0 accepts any; in clouds of matched images it is
+        not examined.
 
     Raises
     ------

@@ -73,20 +73,9 @@ def refine_buildings(
     intensity=None,
     reviewed=None,
     *,
-    learn: bool = tunable(
-        True,
-        "Learn what buildings of this cloud look like, and correct points near their edges that look otherwise. "
-        "Without it nothing is changed.",
-        label="Learn from the scene",
-    ),
-    min_doubtful_share: float = tunable(
-        # Significance: 1.8 % at most in seven forests, as they come and thinned; 6 % for a shed amid eight trees.
-        0.05,
-        "In a scene without a sure building, doubtful ones are left out where they hold less than this share of the "
-        "raised points: of thousands of crowns some look like roofs by chance. 0 keeps them.",
-        label="Least share of doubtful buildings",
-        within="[0, 1]",
-    ),
+    learn: bool = tunable(True, label="Learn from the scene"),
+    # Significance: 1.8 % at most in seven forests, as they come and thinned; 6 % for a shed amid eight trees.
+    min_doubtful_share: float = tunable(0.05, label="Least share of doubtful buildings", within="[0, 1]"),
     density: Optional[float] = POINT_DENSITY,
     source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
@@ -140,6 +129,15 @@ def refine_buildings(
     building_probability : ndarray of shape (n,), float32, or None
         Probability of building, 0 to 1, smooth over neighbors; 0 for ground, water, bridge decks and points lower than
         0.2 m, NaN for noise. None where nothing was learned.
+
+    Other Parameters
+    ----------------
+    learn
+        Learn what buildings of this cloud look like, and correct points near their edges that look otherwise. Without
+        it nothing is changed.
+    min_doubtful_share
+        In a scene without a sure building, doubtful ones are left out where they hold less than this share of the
+        raised points: of thousands of crowns some look like roofs by chance. 0 keeps them.
 
     Notes
     -----

@@ -82,19 +82,8 @@ def export_models(
     terrain=None,
     cityjson=None,
     *,
-    geoid_height: float = tunable(
-        0.0,
-        "For 3D Tiles, height of the geoid over the ellipsoid WGS 84, which is added to elevations: about 43 m in "
-        "the Netherlands, 36 to 50 m in Germany, -32 m in New York. Without it models lie under or over the "
-        "terrain of a globe by as much.",
-        within="[-120, 120] m",
-    ),
-    texel_size: float = tunable(
-        0.25,
-        "Side of the texels of images on roofs, walls and terrain, where a point cloud with colors is given; about "
-        "the distance between its points.",
-        within="[0.01, 10] m",
-    ),
+    geoid_height: float = tunable(0.0, within="[-120, 120] m"),
+    texel_size: float = tunable(0.25, within="[0.01, 10] m"),
     monitor=None,
 ):
     """Write models of buildings for browsers and other programs, from the layers of a run or from CityJSON.
@@ -121,6 +110,16 @@ def export_models(
     -------
     glb, page, tileset, obj, surfaces : list of ExportedModel
         The models for the files.
+
+    Other Parameters
+    ----------------
+    geoid_height
+        For 3D Tiles, height of the geoid over the ellipsoid WGS 84, which is added to elevations: about 43 m in the
+        Netherlands, 36 to 50 m in Germany, -32 m in New York. Without it models lie under or over the terrain of a
+        globe by as much.
+    texel_size
+        Side of the texels of images on roofs, walls and terrain, where a point cloud with colors is given; about the
+        distance between its points.
 
     Raises
     ------

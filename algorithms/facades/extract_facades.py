@@ -72,30 +72,18 @@ def extract_facades(
     gps_time=None,
     point_source_id=None,
     *,
-    search_in: str = tunable(
-        ALL_POINTS,
-        "All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from "
-        "the scanner, behind cars, trees and people. Facade lines need the GPS time of the points.",
-        choices=(ALL_POINTS, FACADE_LINES),
-    ),
+    search_in: str = tunable(ALL_POINTS, choices=(ALL_POINTS, FACADE_LINES)),
     tolerance: Optional[float] = tunable(
         None,
-        "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
-        "strips and separates shallower recesses.",
         within="(0, 1] m",
-        automatic=f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and of "
-        f"{_RELIEF:g} m, the relief of walls.",
+        automatic=(
+            f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and of "
+            f"{_RELIEF:g} m, the relief of walls."
+        ),
     ),
     max_tilt: float = FACADE_TILT,
-    min_area: float = tunable(
-        2.0, "Area of the smallest facade, where it has points.", label="Minimum facade area", within="[0.1, 10_000] m²"
-    ),
-    min_height: float = tunable(
-        2.5,
-        "Height of the lowest facade; cars and hedges are lower than walls.",
-        label="Minimum facade height",
-        within="[0, 100] m",
-    ),
+    min_area: float = tunable(2.0, label="Minimum facade area", within="[0.1, 10_000] m²"),
+    min_height: float = tunable(2.5, label="Minimum facade height", within="[0, 100] m"),
     max_gap: float = FACADE_GAP,
     corner_distance: float = CORNER_DISTANCE,
     boundary: str = BOUNDARY,
@@ -127,6 +115,19 @@ def extract_facades(
         Facades from 1, from west to east; 0 if unassigned.
     facades : LayerFeatures
         Polygons with Z, counterclockwise seen from outside, with the fields ``FACADE_FIELDS``.
+
+    Other Parameters
+    ----------------
+    search_in
+        All points, or those on facade lines: the steep pieces of a vehicle's scan lines that lie farthest from the
+        scanner, behind cars, trees and people. Facade lines need the GPS time of the points.
+    tolerance
+        Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more strips and
+        separates shallower recesses.
+    min_area
+        Area of the smallest facade, where it has points.
+    min_height
+        Height of the lowest facade; cars and hedges are lower than walls.
 
     Raises
     ------

@@ -63,12 +63,8 @@ def extract_openings(
     xyz,
     segment_id,
     *,
-    max_depth: float = tunable(
-        0.8,
-        "How far behind the wall points may belong to its openings; deeper recesses are parts of the building.",
-        within="[0.05, 10] m",
-    ),
-    min_size: float = tunable(0.4, "Least width and height of a window or door.", within="[0.05, 10] m"),
+    max_depth: float = tunable(0.8, within="[0.05, 10] m"),
+    min_size: float = tunable(0.4, within="[0.05, 10] m"),
     max_tilt: float = FACADE_TILT,
     max_gap: float = FACADE_GAP,
     corner_distance: float = CORNER_DISTANCE,
@@ -95,6 +91,13 @@ def extract_openings(
         Polygons with Z; openings are their holes.
     openings : LayerFeatures
         Polygons with Z in the planes of the facades, with the fields ``OPENING_FIELDS``.
+
+    Other Parameters
+    ----------------
+    max_depth
+        How far behind the wall points may belong to its openings; deeper recesses are parts of the building.
+    min_size
+        Least width and height of a window or door.
 
     Notes
     -----

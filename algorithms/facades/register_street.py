@@ -57,10 +57,8 @@ def register_street(
     reference_classification,
     footprints,
     *,
-    max_shift: float = tunable(
-        3.0, "How far the street scan may be off the airborne cloud, along either axis.", within="[0, 20] m"
-    ),
-    min_size: float = tunable(0.4, "Least width and height of a window or door.", within="[0.05, 10] m"),
+    max_shift: float = tunable(3.0, within="[0, 20] m"),
+    min_size: float = tunable(0.4, within="[0.05, 10] m"),
     monitor=None,
 ):
     """Find facades, windows and doors in a street scan and move them onto the airborne cloud.
@@ -87,6 +85,13 @@ def register_street(
         As of "Extract openings", in the frame of the airborne cloud.
     report : Report
         The shift, its residual and what it rests on.
+
+    Other Parameters
+    ----------------
+    max_shift
+        How far the street scan may be off the airborne cloud, along either axis.
+    min_size
+        Least width and height of a window or door.
 
     Raises
     ------

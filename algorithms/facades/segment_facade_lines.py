@@ -64,27 +64,12 @@ def segment_facade_lines(
     point_source_id=None,
     *,
     line_duration: Optional[float] = tunable(
-        None,
-        "Time of one turn of the scanner's mirror.",
-        within="(0, 60] s",
-        automatic="the median time between two views of the sky, which give no points.",
+        None, within="(0, 60] s", automatic="the median time between two views of the sky, which give no points."
     ),
-    tolerance: float = tunable(
-        0.05,
-        "Distance within which points lie on a line segment: a few standard deviations of the noise and of the "
-        "relief of walls.",
-        within="(0, 1] m",
-    ),
-    max_ground_height: float = tunable(
-        0.5, "Level segments at most this high over the lowest one of their line are ground (d0).", within="[0, 10] m"
-    ),
-    facade_distance: float = tunable(
-        1.5,
-        "Steep segments at most this much nearer to the scanner than the farthest one on their side of the line "
-        "are of the facade (h0).",
-        within="[0, 50] m",
-    ),
-    min_points: int = tunable(5, "Points of the shortest segment; shorter ones are stray points.", within="[3, 1000]"),
+    tolerance: float = tunable(0.05, within="(0, 1] m"),
+    max_ground_height: float = tunable(0.5, within="[0, 10] m"),
+    facade_distance: float = tunable(1.5, within="[0, 50] m"),
+    min_points: int = tunable(5, within="[3, 1000]"),
     monitor=None,
 ):
     """Divide a vehicle's scan lines into straight segments, and label ground, facades and other objects.
@@ -108,6 +93,21 @@ def segment_facade_lines(
         Segments from 1, by scanner, line and time; 0 for stray points.
     lines : LayerFeatures
         A line with Z from the first to the last point of each segment, with the fields ``LINE_FIELDS``.
+
+    Other Parameters
+    ----------------
+    line_duration
+        Time of one turn of the scanner's mirror.
+    tolerance
+        Distance within which points lie on a line segment: a few standard deviations of the noise and of the relief of
+        walls.
+    max_ground_height
+        Level segments at most this high over the lowest one of their line are ground (d0).
+    facade_distance
+        Steep segments at most this much nearer to the scanner than the farthest one on their side of the line are of
+        the facade (h0).
+    min_points
+        Points of the shortest segment; shorter ones are stray points.
 
     Raises
     ------

@@ -117,41 +117,18 @@ N_NEIGHBORS = tunable(
 def compute_features(
     xyz,
     *,
-    neighborhood: str = tunable(
-        "nearest",
-        "Points that describe a point: a number of nearest ones, all within a radius, or as many nearest ones as "
-        "show the clearest shape (least eigenentropy), chosen for each point.",
-        choices=("nearest", "radius", "optimal"),
-    ),
+    neighborhood: str = tunable("nearest", choices=("nearest", "radius", "optimal")),
     n_neighbors: int = N_NEIGHBORS,
     radius: Optional[float] = tunable(
         None,
-        "Radius of the sphere around a point; used by the neighborhood 'radius'.",
         within="(0, inf) m",
         automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
     ),
-    min_neighbors: int = tunable(
-        MIN_NEIGHBORS,
-        "Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.",
-        label="Minimum nearest points",
-        within="[3, 1000]",
-    ),
-    max_neighbors: int = tunable(
-        MAX_NEIGHBORS,
-        "Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.",
-        label="Maximum nearest points",
-        within="[3, 1000]",
-    ),
-    neighbors_step: int = tunable(
-        1,
-        "Step between the neighborhoods that 'optimal' tries; larger steps are faster and coarser.",
-        label="Step of nearest points",
-        within="[1, 100]",
-        advanced=True,
-    ),
+    min_neighbors: int = tunable(MIN_NEIGHBORS, label="Minimum nearest points", within="[3, 1000]"),
+    max_neighbors: int = tunable(MAX_NEIGHBORS, label="Maximum nearest points", within="[3, 1000]"),
+    neighbors_step: int = tunable(1, label="Step of nearest points", within="[1, 100]", advanced=True),
     features: tuple[str, ...] = tunable(
         ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
-        "What to compute; each becomes a dimension of the cloud.",
         choices=tuple(_FEATURES),
     ),
     sampling: CloudSampling = MEASURED,
@@ -191,6 +168,22 @@ def compute_features(
         ``optimal_neighbors`` (int32) points of the neighborhood: chosen for 'optimal', found within a radius.
         NaN where a neighborhood has fewer than three points or all of them coincide, and for the features of the
         plan where all lie above one another; the number of points is defined everywhere.
+
+    Other Parameters
+    ----------------
+    neighborhood
+        Points that describe a point: a number of nearest ones, all within a radius, or as many nearest ones as show the
+        clearest shape (least eigenentropy), chosen for each point.
+    radius
+        Radius of the sphere around a point; used by the neighborhood 'radius'.
+    min_neighbors
+        Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.
+    max_neighbors
+        Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.
+    neighbors_step
+        Step between the neighborhoods that 'optimal' tries; larger steps are faster and coarser.
+    features
+        What to compute; each becomes a dimension of the cloud.
 
     Raises
     ------

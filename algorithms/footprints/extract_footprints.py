@@ -61,28 +61,10 @@ def extract_footprints(
     reviewed=None,
     *,
     min_area: float = MIN_BUILDING_AREA,
-    min_hole_area: float = tunable(
-        5.0, "Smaller holes are filled, larger ones are courtyards.", within="[0, 10_000] m²"
-    ),
-    regularize: bool = tunable(
-        True,
-        "Make walls straight and, where they nearly are, parallel or square to each other.",
-        label="Regularize outlines",
-    ),
-    tolerance: Optional[float] = tunable(
-        None,
-        "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
-        within="[0.01, 100] m",
-        automatic=_AUTOMATIC_TOLERANCE,
-        advanced=True,
-    ),
-    merge_touching: bool = tunable(
-        False,
-        "Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house "
-        "of a row of three or more, where valleys between the roofs, steps or walls above them show the party "
-        "walls.",
-        label="Merge touching buildings",
-    ),
+    min_hole_area: float = tunable(5.0, within="[0, 10_000] m²"),
+    regularize: bool = tunable(True, label="Regularize outlines"),
+    tolerance: Optional[float] = tunable(None, within="[0.01, 100] m", automatic=_AUTOMATIC_TOLERANCE, advanced=True),
+    merge_touching: bool = tunable(False, label="Merge touching buildings"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -118,6 +100,18 @@ def extract_footprints(
         One valid polygon per building part that is not connected with others, or per house of a row, in the order
         of cluster numbers; no two overlap. Attributes without the dimension they come from are NaN. No polygons where
         there is no building.
+
+    Other Parameters
+    ----------------
+    min_hole_area
+        Smaller holes are filled, larger ones are courtyards.
+    regularize
+        Make walls straight and, where they nearly are, parallel or square to each other.
+    tolerance
+        Scale of simplification: bays and steps up to about this depth are left out where they are short.
+    merge_touching
+        Outline buildings that touch as one block. Otherwise each has its own footprint, and so has each house of a row
+        of three or more, where valleys between the roofs, steps or walls above them show the party walls.
 
     Notes
     -----

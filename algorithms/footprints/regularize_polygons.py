@@ -61,10 +61,11 @@ def regularize_polygons(
     *,
     tolerance: Optional[float] = tunable(
         None,
-        "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
         within="[0.1, 20] m",
-        automatic=f"{TOLERANCE_SPACINGS:g} times the length of the edges, or less where walls deviate less from "
-        f"straight lines, at least {TOLERANCE_SPACINGS * LEAST_SPACING:.2g} m.",
+        automatic=(
+            f"{TOLERANCE_SPACINGS:g} times the length of the edges, or less where walls deviate less from "
+            f"straight lines, at least {TOLERANCE_SPACINGS * LEAST_SPACING:.2g} m."
+        ),
     ),
     monitor=None,
 ):
@@ -84,6 +85,11 @@ def regularize_polygons(
     -------
     regularized : LayerFeatures
         The new outlines in their order, with the attributes of the polygons; names that are used become ``map_…``.
+
+    Other Parameters
+    ----------------
+    tolerance
+        Scale of simplification: bays and steps up to about this depth are left out where they are short.
 
     Raises
     ------

@@ -54,12 +54,8 @@ def classify_segments(
     height_above_ground=None,
     selection=None,
     *,
-    code: int = tunable(2, "Class that the points of picked segments get.", label="Class", within="[0, 255]"),
-    numbers: str = tunable(
-        "",
-        "Pick these segments: numbers and ranges, separated by commas (3, 7, 12-15); empty: any number.",
-        label="Numbers of segments",
-    ),
+    code: int = tunable(2, label="Class", within="[0, 255]"),
+    numbers: str = tunable("", label="Numbers of segments"),
     min_area: Optional[float] = _limit("of at least this area, seen from above", "[0, inf) m²"),
     max_area: Optional[float] = _limit("of at most this area, seen from above", "[0, inf) m²"),
     min_height: Optional[float] = _limit("with at least this mean height above the ground", "[-10_000, 10_000] m"),
@@ -100,6 +96,13 @@ def classify_segments(
         The class in picked segments; other points keep theirs.
     segments : LayerFeatures
         Outline of the largest piece of each segment, seen from above, in the order of their numbers.
+
+    Other Parameters
+    ----------------
+    code
+        Class that the points of picked segments get.
+    numbers
+        Pick these segments: numbers and ranges, separated by commas (3, 7, 12-15); empty: any number.
 
     Raises
     ------

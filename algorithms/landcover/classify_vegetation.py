@@ -71,24 +71,11 @@ def classify_vegetation(
     number_of_returns=None,
     reason=None,
     *,
-    look_for: bool = tunable(
-        True, "If not, no class changes. For models that contain this step.", label="Look for vegetation"
-    ),
-    heights: str = tunable(
-        "2 m and 5 m",
-        "Height above the ground from which vegetation is medium (4), and that from which it is high (5); below "
-        "both it is low (3). The last two are of the French and the Australian surveys.",
-        label="Heights of medium and high vegetation",
-        choices=tuple(HEIGHTS),
-    ),
-    min_height: float = tunable(
-        0.1,
-        "Points at least this high above the ground are vegetation; all others are unclassified.",
-        within="[0, 10] m",
-    ),
+    look_for: bool = tunable(True, label="Look for vegetation"),
+    heights: str = tunable("2 m and 5 m", label="Heights of medium and high vegetation", choices=tuple(HEIGHTS)),
+    min_height: float = tunable(0.1, within="[0, 10] m"),
     medium_height: Optional[float] = tunable(
         None,
-        "Height above the ground from which vegetation is medium (4).",
         label="Medium vegetation from",
         within="[0, 100] m",
         automatic="the lower one of the heights chosen above.",
@@ -96,7 +83,6 @@ def classify_vegetation(
     ),
     high_height: Optional[float] = tunable(
         None,
-        "Height above the ground from which vegetation is high (5).",
         label="High vegetation from",
         within="[0, 100] m",
         automatic="the higher one of the heights chosen above.",
@@ -128,6 +114,20 @@ def classify_vegetation(
     -------
     classification : ndarray of shape (n,), uint8
         Low, medium and high vegetation 3, 4 and 5; 1 for points that were examined and are not vegetation.
+
+    Other Parameters
+    ----------------
+    look_for
+        If not, no class changes. For models that contain this step.
+    heights
+        Height above the ground from which vegetation is medium (4), and that from which it is high (5); below both it
+        is low (3). The last two are of the French and the Australian surveys.
+    min_height
+        Points at least this high above the ground are vegetation; all others are unclassified.
+    medium_height
+        Height above the ground from which vegetation is medium (4).
+    high_height
+        Height above the ground from which vegetation is high (5).
 
     Raises
     ------

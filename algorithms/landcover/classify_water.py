@@ -52,12 +52,8 @@ def classify_water(
     classification,
     return_number=None,
     *,
-    look_for: bool = tunable(
-        True, "If not, no class changes. For models that contain this step.", label="Look for water"
-    ),
-    min_area: float = tunable(
-        50.0, "Area of the smallest water body to be found.", label="Minimum water area", within="[10, 1_000_000] m²"
-    ),
+    look_for: bool = tunable(True, label="Look for water"),
+    min_area: float = tunable(50.0, label="Minimum water area", within="[10, 1_000_000] m²"),
     noise: Optional[float] = SURFACE_NOISE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -82,6 +78,13 @@ def classify_water(
     -------
     classification : ndarray of shape (n,), uint8
         The same with water (9) for points of 0, 1 and 2 on it. Earlier water (9) elsewhere stays.
+
+    Other Parameters
+    ----------------
+    look_for
+        If not, no class changes. For models that contain this step.
+    min_area
+        Area of the smallest water body to be found.
 
     Raises
     ------

@@ -46,10 +46,8 @@ def classify_wires(
     classification,
     height_above_ground,
     *,
-    look_for: bool = tunable(
-        True, "If not, no class changes. For models that contain this step.", label="Look for wires"
-    ),
-    min_height: float = tunable(4.0, "Height above the ground of the lowest wires.", within="[1, 100] m"),
+    look_for: bool = tunable(True, label="Look for wires"),
+    min_height: float = tunable(4.0, within="[1, 100] m"),
     noise: Optional[float] = SURFACE_NOISE,
     seed: int = SEED.with_default(0),
     sampling: CloudSampling = MEASURED,
@@ -77,6 +75,13 @@ def classify_wires(
     -------
     classification : ndarray of shape (n,), uint8
         The same with wires (14) and masts (15).
+
+    Other Parameters
+    ----------------
+    look_for
+        If not, no class changes. For models that contain this step.
+    min_height
+        Height above the ground of the lowest wires.
 
     Notes
     -----

@@ -32,13 +32,7 @@ def keep_classes(
     classification,
     earlier_class=None,
     *,
-    keep: str = tunable(
-        _NONE,
-        "Which classes of a cloud that comes classified stay as they are: none, ground (2), ground and buildings "
-        "(6), or all but 0 and 1. Where ground or buildings are kept, no others are looked for.",
-        label="Keep existing classes",
-        choices=tuple(_KEPT),
-    ),
+    keep: str = tunable(_NONE, label="Keep existing classes", choices=tuple(_KEPT)),
     monitor=None,
 ):
     """Remember classes of a cloud that comes classified, for 'Restore classes' to put them back.
@@ -58,6 +52,12 @@ def keep_classes(
     -------
     earlier_class : ndarray of shape (n,), uint8, or None
         The classes that are kept, 0 elsewhere; None where there is nothing to remember or to forget.
+
+    Other Parameters
+    ----------------
+    keep
+        Which classes of a cloud that comes classified stay as they are: none, ground (2), ground and buildings (6), or
+        all but 0 and 1. Where ground or buildings are kept, no others are looked for.
 
     References
     ----------

@@ -37,19 +37,8 @@ def recode_classes(
     xyz,
     classification,
     *,
-    codes: str = tunable(
-        _ASPRS,
-        "Class codes that are written: the codes of ASPRS, which all other steps read, or of the Dutch, the "
-        "French or the American survey.",
-        label="Codes to write",
-        choices=tuple(CODES),
-    ),
-    mapping: str = tunable(
-        "",
-        "Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges "
-        "before the equals sign, entries separated by semicolons; empty for none.",
-        label="Own codes",
-    ),
+    codes: str = tunable(_ASPRS, label="Codes to write", choices=tuple(CODES)),
+    mapping: str = tunable("", label="Own codes"),
     monitor=None,
 ):
     """Replace class codes by an agency's, or by one's own.
@@ -67,6 +56,15 @@ def recode_classes(
     -------
     classification : ndarray of shape (n,), uint8
         The codes.
+
+    Other Parameters
+    ----------------
+    codes
+        Class codes that are written: the codes of ASPRS, which all other steps read, or of the Dutch, the French or the
+        American survey.
+    mapping
+        Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges before
+        the equals sign, entries separated by semicolons; empty for none.
 
     Raises
     ------

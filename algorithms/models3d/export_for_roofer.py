@@ -36,11 +36,7 @@ def export_for_roofer(
     classification,
     footprints,
     *,
-    margin: float = tunable(
-        10.0,
-        "Points up to this distance from the box of a footprint are kept, so that its ground is among them.",
-        within="[0, 1000] m",
-    ),
+    margin: float = tunable(10.0, within="[0, 1000] m"),
     monitor=None,
 ):
     """Write the points of buildings and ground around footprints, and the footprints, as the program roofer reads them.
@@ -64,6 +60,11 @@ def export_for_roofer(
         The points that are kept, in their order.
     roofprints : LayerFeatures
         The footprints in plan, each with a name of its own; those without an area are left out.
+
+    Other Parameters
+    ----------------
+    margin
+        Points up to this distance from the box of a footprint are kept, so that its ground is among them.
 
     Raises
     ------

@@ -70,7 +70,7 @@ def reconstruct_block(
     facades,
     openings,
     *,
-    min_plane_area: float = tunable(1.5, "Area of the smallest roof plane, seen from above.", within="[0.1, 1000] m²"),
+    min_plane_area: float = tunable(1.5, within="[0.1, 1000] m²"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -101,6 +101,11 @@ def reconstruct_block(
     cityjson : list of NamedModel
         The same for one file: CityJSON 2.0 with levels of detail 1.2, 1.3, 2.2 and, with ``Window`` and ``Door``
         surfaces, 3.
+
+    Other Parameters
+    ----------------
+    min_plane_area
+        Area of the smallest roof plane, seen from above.
 
     Raises
     ------

@@ -62,15 +62,8 @@ def reconstruct_gables(
     classification,
     segment_id,
     *,
-    min_area: float = tunable(
-        4.0, "Area of the smallest roof plane of a gable.", label="Minimum plane area", within="[0.5, 10_000] m²"
-    ),
-    max_gap: float = tunable(
-        1.5,
-        "Points of both roof planes come this near to each other.",
-        label="Largest gap at the ridge",
-        within="(0, 10] m",
-    ),
+    min_area: float = tunable(4.0, label="Minimum plane area", within="[0.5, 10_000] m²"),
+    max_gap: float = tunable(1.5, label="Largest gap at the ridge", within="(0, 10] m"),
     monitor=None,
 ):
     """Reconstruct gable houses: ten vertices from two roof planes and the heights of eaves and ground.
@@ -95,6 +88,13 @@ def reconstruct_gables(
         from outside, with the fifteen parameters of the house.
     cityjson : list of NamedModel
         The same for one file: a closed solid for each house, CityJSON 2.0 or CityJSONSeq, level of detail 2.2.
+
+    Other Parameters
+    ----------------
+    min_area
+        Area of the smallest roof plane of a gable.
+    max_gap
+        Points of both roof planes come this near to each other.
 
     Notes
     -----

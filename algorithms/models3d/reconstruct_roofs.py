@@ -86,47 +86,14 @@ def reconstruct_roofs(
     classification,
     footprints,
     *,
-    level_of_detail: str = tunable(
-        "2.2",
-        "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.0: the large planes of "
-        "the roof, without dormers, chimneys and parts of under 10 m²; 2.2: all planes. 2.3: also eaves that overhang "
-        "walls where these were seen. Files have the simpler levels too, 2.0 only where it is chosen.",
-        choices=LEVELS,
-    ),
-    min_plane_area: float = tunable(
-        1.5, "Area of the smallest roof plane, seen from above; dormers have 2 m² and more.", within="[0.1, 1000] m²"
-    ),
-    min_step: float = tunable(
-        3.0, "At level 1.3, parts of a roof that step by less are one part.", within="[0, 100] m"
-    ),
-    top_percentile: float = tunable(
-        70.0,
-        "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
-        label="Percentile of level tops",
-        within="[0, 100] %",
-        advanced=True,
-    ),
-    terrain_tolerance: float = tunable(
-        0.0,
-        "Largest height of ground points above or below a terrain of triangles, on which the walls end; 0.2 m is "
-        "usual. 0: no terrain, and a level ground under each building.",
-        within="[0, 10] m",
-    ),
-    max_slope: float = tunable(STEEPEST, "Slope of the steepest roof plane.", within="[1, 85]°", advanced=True),
-    tolerance: Optional[float] = tunable(
-        None,
-        "Distance at which a point lies on a plane. A larger one gives fewer planes.",
-        within="[0.01, 5] m",
-        automatic=TOLERANCE_TEXT,
-        advanced=True,
-    ),
-    id_field: str = tunable(
-        "",
-        "Attribute of the footprints that names buildings in all results. With it, the layer of buildings and "
-        "CityJSON keep all attributes of the footprints. If empty, buildings are named by the attribute 'id' or "
-        "'fid', or numbered, and in CityJSON also by their position, so that files can be merged.",
-        label="Identifier",
-    ),
+    level_of_detail: str = tunable("2.2", choices=LEVELS),
+    min_plane_area: float = tunable(1.5, within="[0.1, 1000] m²"),
+    min_step: float = tunable(3.0, within="[0, 100] m"),
+    top_percentile: float = tunable(70.0, label="Percentile of level tops", within="[0, 100] %", advanced=True),
+    terrain_tolerance: float = tunable(0.0, within="[0, 10] m"),
+    max_slope: float = tunable(STEEPEST, within="[1, 85]°", advanced=True),
+    tolerance: Optional[float] = tunable(None, within="[0.01, 5] m", automatic=TOLERANCE_TEXT, advanced=True),
+    id_field: str = tunable("", label="Identifier"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -155,6 +122,30 @@ def reconstruct_roofs(
         Triangles of the terrain around the buildings, with their outlines as edges; none without a tolerance.
     cityjson, obj : list of NamedModel
         The same for one file: CityJSON 2.0 or CityJSONSeq with all levels and semantic surfaces, and Wavefront OBJ.
+
+    Other Parameters
+    ----------------
+    level_of_detail
+        1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.0: the large planes of the
+        roof, without dormers, chimneys and parts of under 10 m²; 2.2: all planes. 2.3: also eaves that overhang walls
+        where these were seen. Files have the simpler levels too, 2.0 only where it is chosen.
+    min_plane_area
+        Area of the smallest roof plane, seen from above; dormers have 2 m² and more.
+    min_step
+        At level 1.3, parts of a roof that step by less are one part.
+    top_percentile
+        At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.
+    terrain_tolerance
+        Largest height of ground points above or below a terrain of triangles, on which the walls end; 0.2 m is usual.
+        0: no terrain, and a level ground under each building.
+    max_slope
+        Slope of the steepest roof plane.
+    tolerance
+        Distance at which a point lies on a plane. A larger one gives fewer planes.
+    id_field
+        Attribute of the footprints that names buildings in all results. With it, the layer of buildings and CityJSON
+        keep all attributes of the footprints. If empty, buildings are named by the attribute 'id' or 'fid', or
+        numbered, and in CityJSON also by their position, so that files can be merged.
 
     Raises
     ------

@@ -49,30 +49,13 @@ def classify_noise_histogram(
     min_frequency: int = MIN_FREQUENCY,
     cell_size: Optional[float] = tunable(
         None,
-        "Side of the cells whose heights are counted, each together with the eight cells around it.",
         within="[0.1, 10_000] m",
         automatic=f"cells that have {HISTOGRAM_POINTS:,} points with those around them, on average.",
         advanced=True,
     ),
-    bin_height: Optional[float] = tunable(
-        None,
-        "Height of the bins; at least two empty ones separate noise from the scene.",
-        within="[0.01, 1000] m",
-        automatic=AUTOMATIC_BIN,
-        advanced=True,
-    ),
-    max_clearance: float = tunable(
-        200.0,
-        "Height over the scene, or depth under it, beyond which everything is noise, however many points it has: "
-        "clouds, aircraft, flocks. Cables over a deep valley may need more.",
-        within="[1, 100_000] m",
-        advanced=True,
-    ),
-    isolated: bool = tunable(
-        True,
-        "Also find single points and a few together under the ground (multipath), within the heights of the scene.",
-        label="Isolated points under the ground",
-    ),
+    bin_height: Optional[float] = tunable(None, within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True),
+    max_clearance: float = tunable(200.0, within="[1, 100_000] m", advanced=True),
+    isolated: bool = tunable(True, label="Isolated points under the ground"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -93,6 +76,18 @@ def classify_noise_histogram(
     -------
     ndarray of shape (n,), uint8
         The classes, 7 and 18 for the noise that was found, all others as they were.
+
+    Other Parameters
+    ----------------
+    cell_size
+        Side of the cells whose heights are counted, each together with the eight cells around it.
+    bin_height
+        Height of the bins; at least two empty ones separate noise from the scene.
+    max_clearance
+        Height over the scene, or depth under it, beyond which everything is noise, however many points it has: clouds,
+        aircraft, flocks. Cables over a deep valley may need more.
+    isolated
+        Also find single points and a few together under the ground (multipath), within the heights of the scene.
 
     Notes
     -----

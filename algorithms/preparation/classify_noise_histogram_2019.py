@@ -38,15 +38,9 @@ def classify_noise_histogram_2019(
     *,
     min_frequency: int = MIN_FREQUENCY,
     cell_size: Optional[float] = tunable(
-        None,
-        "Side of the cells whose heights are counted.",
-        within="[0.1, 10_000] m",
-        automatic=f"cells of {HISTOGRAM_POINTS:,} points on average.",
-        advanced=True,
+        None, within="[0.1, 10_000] m", automatic=f"cells of {HISTOGRAM_POINTS:,} points on average.", advanced=True
     ),
-    bin_height: Optional[float] = tunable(
-        None, "Height of the bins.", within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True
-    ),
+    bin_height: Optional[float] = tunable(None, within="[0.01, 1000] m", automatic=AUTOMATIC_BIN, advanced=True),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -66,6 +60,13 @@ def classify_noise_histogram_2019(
     -------
     ndarray of shape (n,), uint8
         The classes, 7 and 18 for the noise that was found, all others as they were.
+
+    Other Parameters
+    ----------------
+    cell_size
+        Side of the cells whose heights are counted.
+    bin_height
+        Height of the bins.
 
     Notes
     -----

@@ -32,25 +32,9 @@ def classify_noise_statistical(
     xyz,
     classification,
     *,
-    n_neighbors: int = tunable(
-        8,
-        "Nearest points whose mean distance is taken, the point itself not counted.",
-        label="Neighbors",
-        within="[1, 200]",
-    ),
-    deviations: float = tunable(
-        6.0,
-        "How far a point's mean distance may lie over the mean of the whole cloud. Smaller values remove more, "
-        "and sparse parts of the scene with it.",
-        label="Standard deviations",
-        within="[0, 100]",
-    ),
-    isolated: bool = tunable(
-        True,
-        "Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), "
-        "within the heights of the scene.",
-        label="Isolated points",
-    ),
+    n_neighbors: int = tunable(8, label="Neighbors", within="[1, 200]"),
+    deviations: float = tunable(6.0, label="Standard deviations", within="[0, 100]"),
+    isolated: bool = tunable(True, label="Isolated points"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -71,6 +55,17 @@ def classify_noise_statistical(
     -------
     ndarray of shape (n,), uint8
         The classes, 7 and 18 for the noise that was found, all others as they were.
+
+    Other Parameters
+    ----------------
+    n_neighbors
+        Nearest points whose mean distance is taken, the point itself not counted.
+    deviations
+        How far a point's mean distance may lie over the mean of the whole cloud. Smaller values remove more, and sparse
+        parts of the scene with it.
+    isolated
+        Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), within
+        the heights of the scene.
 
     Notes
     -----

@@ -29,7 +29,7 @@ def clip_cloud(
     xyz,
     polygons: Optional[LayerFeatures] = None,
     *,
-    outside: bool = tunable(False, "Keep the points outside all polygons instead.", label="Keep outside"),
+    outside: bool = tunable(False, label="Keep outside"),
     monitor=None,
 ):
     """Keep the points that lie in polygons, within an extent, or both; all their dimensions stay.
@@ -48,6 +48,11 @@ def clip_cloud(
     -------
     selected : ndarray of shape (m,), int64
         Positions of the points that are kept, ascending.
+
+    Other Parameters
+    ----------------
+    outside
+        Keep the points outside all polygons instead.
 
     Raises
     ------

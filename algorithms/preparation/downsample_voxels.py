@@ -54,12 +54,7 @@ def downsample_voxels(
     gps_time=None,
     return_number=None,
     *,
-    voxel_size: float = tunable(
-        0.1,
-        "Side of the cubes that are left with one point each. Take more than the noise of the scanner and less "
-        "than the smallest object of interest.",
-        within="[0.001, 1000] m",
-    ),
+    voxel_size: float = tunable(0.1, within="[0.001, 1000] m"),
     monitor=None,
 ):
     """Leave one point in every occupied voxel: the center of gravity of its points.
@@ -89,6 +84,12 @@ def downsample_voxels(
         The most frequent class of each voxel, the lowest of those that are equally frequent. None without classes.
     voxel_count : ndarray of shape (m,), uint32
         Points in each voxel.
+
+    Other Parameters
+    ----------------
+    voxel_size
+        Side of the cubes that are left with one point each. Take more than the noise of the scanner and less than the
+        smallest object of interest.
 
     Raises
     ------

@@ -27,39 +27,13 @@ def filter_points(
     height_above_ground=None,
     values=None,
     *,
-    classes: str = tunable(
-        "", "Keep points of these classes: numbers and ranges, separated by commas (2, 6-9); empty keeps every class."
-    ),
-    min_height: Optional[float] = tunable(
-        None,
-        "Keep points at least this high above the ground: 0.3 m removes ground and grass.",
-        within="[-10_000, 10_000] m",
-        empty=_NO_LIMIT,
-    ),
-    max_height: Optional[float] = tunable(
-        None,
-        "Greatest height above the ground of the points kept: 2.5 m leaves everything lower than roofs.",
-        within="[-10_000, 10_000] m",
-        empty=_NO_LIMIT,
-    ),
-    dimension: str = tunable(
-        "", "Any dimension of the cloud, by name (Intensity, NormalZ, Z), whose range is to be limited."
-    ),
-    low: Optional[float] = tunable(
-        None,
-        "Keep points that have at least this in the dimension.",
-        label="Minimum value",
-        within=f"[{-_LARGEST}, {_LARGEST}]",
-        empty=_NO_LIMIT,
-    ),
-    high: Optional[float] = tunable(
-        None,
-        "Keep points that have at most this in the dimension.",
-        label="Maximum value",
-        within=f"[{-_LARGEST}, {_LARGEST}]",
-        empty=_NO_LIMIT,
-    ),
-    invert: bool = tunable(False, "Keep the points that any of the limits leaves out, and leave out the others."),
+    classes: str = tunable(""),
+    min_height: Optional[float] = tunable(None, within="[-10_000, 10_000] m", empty=_NO_LIMIT),
+    max_height: Optional[float] = tunable(None, within="[-10_000, 10_000] m", empty=_NO_LIMIT),
+    dimension: str = tunable(""),
+    low: Optional[float] = tunable(None, label="Minimum value", within=f"[{-_LARGEST}, {_LARGEST}]", empty=_NO_LIMIT),
+    high: Optional[float] = tunable(None, label="Maximum value", within=f"[{-_LARGEST}, {_LARGEST}]", empty=_NO_LIMIT),
+    invert: bool = tunable(False),
     monitor=None,
 ):
     """Keep the points that are of some classes, between two heights above the ground, and in a range of any dimension.
@@ -82,6 +56,23 @@ def filter_points(
     -------
     selected : ndarray of shape (m,), int64
         Positions of the points that are kept, ascending.
+
+    Other Parameters
+    ----------------
+    classes
+        Keep points of these classes: numbers and ranges, separated by commas (2, 6-9); empty keeps every class.
+    min_height
+        Keep points at least this high above the ground: 0.3 m removes ground and grass.
+    max_height
+        Greatest height above the ground of the points kept: 2.5 m leaves everything lower than roofs.
+    dimension
+        Any dimension of the cloud, by name (Intensity, NormalZ, Z), whose range is to be limited.
+    low
+        Keep points that have at least this in the dimension.
+    high
+        Keep points that have at most this in the dimension.
+    invert
+        Keep the points that any of the limits leaves out, and leave out the others.
 
     Raises
     ------

@@ -56,14 +56,7 @@ def merge_clouds(
     xyz,
     point_source_id,
     *,
-    transforms: str = tunable(
-        "",
-        "Positions of the clouds after the first, in their order and separated by semicolons; empty for a cloud that "
-        "stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order, "
-        "counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, "
-        "row by row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the "
-        "second cloud, leaves the third and moves the fourth as the file says.",
-    ),
+    transforms: str = tunable(""),
     monitor=None,
 ):
     """Make one cloud of several, each but the first turned and moved if need be; PointSourceId identifies them.
@@ -88,6 +81,15 @@ def merge_clouds(
         The number of the cloud: 1 for the first, 2 for the second.
     previous_source_id : ndarray of shape (n,), uint16, or None
         What ``point_source_id`` was before; None if it was 0 everywhere.
+
+    Other Parameters
+    ----------------
+    transforms
+        Positions of the clouds after the first, in their order and separated by semicolons; empty for a cloud that
+        stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order,
+        counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, row by
+        row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the second cloud,
+        leaves the third and moves the fourth as the file says.
 
     Raises
     ------

@@ -89,7 +89,6 @@ def assess_buildings(
     ignored_classes: str = IGNORED_CLASSES,
     cell_size: Optional[float] = tunable(
         None,
-        "Side of the cells that are compared from above.",
         within="[0.05, 100] m",
         automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
     ),
@@ -122,6 +121,11 @@ def assess_buildings(
         what buildings that were found lack or have too much.
     report : Report
         Percentages and counts, and a page with a map. A percentage of nothing is NaN.
+
+    Other Parameters
+    ----------------
+    cell_size
+        Side of the cells that are compared from above.
 
     Raises
     ------

@@ -55,11 +55,7 @@ def assess_classes(
     reference_classification,
     *,
     ignored_classes: str = IGNORED_CLASSES.with_default("64-67"),
-    merged_classes: str = tunable(
-        "0, 1; 3-5; 7, 18; 13-16",
-        "Classes that count as one: numbers and ranges separated by commas, and one such group from the next by a "
-        "semicolon; empty merges none.",
-    ),
+    merged_classes: str = tunable("0, 1; 3-5; 7, 18; 13-16"),
     monitor=None,
 ):
     """Compare all classes with a reference: confusion matrix, accuracy, kappa, and figures of each class.
@@ -82,6 +78,12 @@ def assess_classes(
     -------
     Report
         Percentages, and a page with the matrix and a map. A percentage of nothing is NaN.
+
+    Other Parameters
+    ----------------
+    merged_classes
+        Classes that count as one: numbers and ranges separated by commas, and one such group from the next by a
+        semicolon; empty merges none.
 
     Raises
     ------

@@ -121,23 +121,15 @@ def assess_footprints(
     reference_map,
     area=None,
     *,
-    compared: str = tunable(
-        AROUND,
-        "Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it "
-        "may cover a part of the survey. Everywhere: all footprints, of which those without a building are "
-        "invented.",
-        label="Footprints compared",
-        choices=(AROUND, EVERYWHERE),
-    ),
-    min_overlap: float = tunable(
-        0.5, "Share of a building that the other layer must cover for the building to be in it.", within="(0, 1]"
-    ),
+    compared: str = tunable(AROUND, label="Footprints compared", choices=(AROUND, EVERYWHERE)),
+    min_overlap: float = tunable(0.5, within="(0, 1]"),
     tolerance: Optional[float] = tunable(
         None,
-        "Corners farther apart are not the same corner.",
         within="(0, 100] m",
-        automatic="three times the median distance of a corner from the nearest one of the other layer, pairs by "
-        "chance left out, 1 to 3 m.",
+        automatic=(
+            "three times the median distance of a corner from the nearest one of the other layer, pairs by "
+            "chance left out, 1 to 3 m."
+        ),
         advanced=True,
     ),
     monitor=None,
@@ -163,6 +155,16 @@ def assess_footprints(
         All buildings of the reference, then the footprints that are not in it.
     report : Report
         Counts and medians, and a page with charts and a map. Measures without any value to compute them from are NaN.
+
+    Other Parameters
+    ----------------
+    compared
+        Around the reference: footprints that overlap a building of the reference or lie amid its buildings; it may
+        cover a part of the survey. Everywhere: all footprints, of which those without a building are invented.
+    min_overlap
+        Share of a building that the other layer must cover for the building to be in it.
+    tolerance
+        Corners farther apart are not the same corner.
 
     Raises
     ------

@@ -109,16 +109,8 @@ def assess_models(
     classification,
     roofs,
     *,
-    min_plane_area: float = tunable(
-        2.0, "Smaller planes of the points, seen from above, are not reported as missing.", within="[0.1, 1000] m²"
-    ),
-    tolerance: Optional[float] = tunable(
-        None,
-        "Distance at which a point lies on a face or plane.",
-        within="[0.01, 5] m",
-        automatic=TOLERANCE_TEXT,
-        advanced=True,
-    ),
+    min_plane_area: float = tunable(2.0, within="[0.1, 1000] m²"),
+    tolerance: Optional[float] = tunable(None, within="[0.01, 5] m", automatic=TOLERANCE_TEXT, advanced=True),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -144,6 +136,13 @@ def assess_models(
         A point per building, with its distances.
     report : Report
         Distances and counts of all, and a page. Figures without points are NaN.
+
+    Other Parameters
+    ----------------
+    min_plane_area
+        Smaller planes of the points, seen from above, are not reported as missing.
+    tolerance
+        Distance at which a point lies on a face or plane.
 
     Raises
     ------

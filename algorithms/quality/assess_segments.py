@@ -38,15 +38,8 @@ def assess_segments(
     reference_xyz,
     reference_segment_id,
     *,
-    min_overlap: float = tunable(
-        0.8,
-        "Share of the points of a segment that must lie in the other one, more than 0.5, so that each segment has "
-        "one counterpart at most. 0.8 is usual.",
-        within="(0.5, 1]",
-    ),
-    min_points: int = tunable(
-        1, "Smaller segments, of the input and of the reference, are ignored.", within=f"[1, {10**9}]"
-    ),
+    min_overlap: float = tunable(0.8, within="(0.5, 1]"),
+    min_points: int = tunable(1, within=f"[1, {10**9}]"),
     monitor=None,
 ):
     """Compare segments with a reference: which are correct, cut up, run together, missed or invented.
@@ -71,6 +64,14 @@ def assess_segments(
     -------
     Report
         Counts of segments, percentages of points, and a page with a map. A percentage of nothing is NaN.
+
+    Other Parameters
+    ----------------
+    min_overlap
+        Share of the points of a segment that must lie in the other one, more than 0.5, so that each segment has one
+        counterpart at most. 0.8 is usual.
+    min_points
+        Smaller segments, of the input and of the reference, are ignored.
 
     Raises
     ------

@@ -95,17 +95,14 @@ def compare_corners(
     footprints,
     old_map=None,
     *,
-    min_overlap: float = tunable(
-        0.5,
-        "Share of a building's area that the other map must cover for the building to be the same.",
-        within="(0, 1]",
-    ),
+    min_overlap: float = tunable(0.5, within="(0, 1]"),
     tolerance: Optional[float] = tunable(
         None,
-        "Corners farther apart, after the shift between the maps is removed, are not the same corner.",
         within="(0, 100] m",
-        automatic="three times the median distance of a corner from the nearest one of the other map, pairs by "
-        "chance left out, 1 to 3 m.",
+        automatic=(
+            "three times the median distance of a corner from the nearest one of the other map, pairs by "
+            "chance left out, 1 to 3 m."
+        ),
     ),
     monitor=None,
 ):
@@ -129,6 +126,13 @@ def compare_corners(
         All buildings of the old map, found or missed, then the new ones.
     report : Report
         Counts and distances, and a page with charts. What there is nothing to compute from is NaN.
+
+    Other Parameters
+    ----------------
+    min_overlap
+        Share of a building's area that the other map must cover for the building to be the same.
+    tolerance
+        Corners farther apart, after the shift between the maps is removed, are not the same corner.
 
     Raises
     ------

@@ -103,24 +103,22 @@ def compare_surveys(
     footprints,
     earlier,
     *,
-    min_overlap: float = tunable(
-        0.5,
-        "Share of the smaller building that both surveys must have for two buildings to be the same.",
-        within="(0, 1]",
-    ),
+    min_overlap: float = tunable(0.5, within="(0, 1]"),
     outline_tolerance: Optional[float] = tunable(
         None,
-        "An outline has changed if it is farther than this from the earlier one somewhere.",
         within="[0, 100] m",
-        automatic=f"{MEDIANS:g} times the median distance between the outlines of both surveys, "
-        f"{LEAST_TOLERANCE:g} to {MOST_TOLERANCE:g} m.",
+        automatic=(
+            f"{MEDIANS:g} times the median distance between the outlines of both surveys, "
+            f"{LEAST_TOLERANCE:g} to {MOST_TOLERANCE:g} m."
+        ),
     ),
     height_tolerance: Optional[float] = tunable(
         None,
-        "A height has changed if it differs by more.",
         within="[0, 100] m",
-        automatic=f"{MEDIANS:g} times the median difference between the heights of both surveys, "
-        f"{RULES.least_height:g} to {RULES.most_height:g} m.",
+        automatic=(
+            f"{MEDIANS:g} times the median difference between the heights of both surveys, "
+            f"{RULES.least_height:g} to {RULES.most_height:g} m."
+        ),
     ),
     monitor=None,
 ):
@@ -142,6 +140,15 @@ def compare_surveys(
         All buildings of the new survey, then those that are gone.
     report : Report
         Counts, and a page with a map. What there is nothing to compute from is NaN.
+
+    Other Parameters
+    ----------------
+    min_overlap
+        Share of the smaller building that both surveys must have for two buildings to be the same.
+    outline_tolerance
+        An outline has changed if it is farther than this from the earlier one somewhere.
+    height_tolerance
+        A height has changed if it differs by more.
 
     Raises
     ------

@@ -140,16 +140,13 @@ def update_map(
     min_area: float = MIN_BUILDING_AREA,
     least_width: Optional[float] = tunable(
         None,
-        "Narrower strips that were added or removed are errors of the map or of the points.",
         within="[0.5, 20] m",
-        automatic=f"{MEDIANS:g} times the median distance between the walls of the map and the new ones, "
-        f"{LEAST_TOLERANCE:g} to {MOST_TOLERANCE:g} m.",
+        automatic=(
+            f"{MEDIANS:g} times the median distance between the walls of the map and the new ones, "
+            f"{LEAST_TOLERANCE:g} to {MOST_TOLERANCE:g} m."
+        ),
     ),
-    id_field: str = tunable(
-        "",
-        "Attribute that identifies a building; new ones get new values of it. Empty: 'id' or 'fid'; where the map has "
-        "neither, all buildings are numbered in a new 'id'.",
-    ),
+    id_field: str = tunable(""),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -186,6 +183,14 @@ def update_map(
         Those that are gone, with their attributes.
     report : Report
         Counts, and a page with a map.
+
+    Other Parameters
+    ----------------
+    least_width
+        Narrower strips that were added or removed are errors of the map or of the points.
+    id_field
+        Attribute that identifies a building; new ones get new values of it. Empty: 'id' or 'fid'; where the map has
+        neither, all buildings are numbered in a new 'id'.
 
     Raises
     ------

@@ -28,22 +28,15 @@ def segment_clusters(
     segment_id=None,
     *,
     radius: Optional[float] = tunable(
-        None,
-        "Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.",
-        within="(0, 100] m",
-        automatic=f"{GAP_SPACINGS:g} times the point spacing.",
+        None, within="(0, 100] m", automatic=f"{GAP_SPACINGS:g} times the point spacing."
     ),
     min_points: Optional[int] = tunable(
         None,
-        "Points within the radius, the point itself among them, that make a point the core of a cluster; "
-        "larger leaves out thin objects.",
         within="[1, 1_000_000]",
         automatic="a quarter of the points of a level surface within the radius, as at the corner of a roof.",
     ),
     min_height: float = MIN_CLUSTER_HEIGHT,
-    segments_only: bool = tunable(
-        False, "Gather only points that have a SegmentID, such as those on planes; it must be known."
-    ),
+    segments_only: bool = tunable(False),
     density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -68,6 +61,16 @@ def segment_clusters(
     -------
     cluster_id : ndarray of shape (n,), int32
         Clusters from 1, in the order of their first cores; 0 if unassigned.
+
+    Other Parameters
+    ----------------
+    radius
+        Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.
+    min_points
+        Points within the radius, the point itself among them, that make a point the core of a cluster; larger leaves
+        out thin objects.
+    segments_only
+        Gather only points that have a SegmentID, such as those on planes; it must be known.
 
     Raises
     ------

@@ -44,34 +44,22 @@ def segment_planes_ransac(
     *,
     voxel_size: Optional[float] = tunable(
         None,
-        "Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.",
         within="[0.1, 20] m",
-        automatic=f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
-        f"tolerances, {_SMALLEST_VOXEL:g} to {_LARGEST_VOXEL:g} m.",
+        automatic=(
+            f"wide enough for {_POINTS_IN_VOXEL:g} points of a surface and for {_TOLERANCES_IN_VOXEL:g} "
+            f"tolerances, {_SMALLEST_VOXEL:g} to {_LARGEST_VOXEL:g} m."
+        ),
     ),
     tolerance: Optional[float] = tunable(
-        None,
-        "Distance within which a point lies on a plane.",
-        within="(0, 10] m",
-        automatic=f"{ON_PLANE:.2g} times the roughness: {ROUGHNESS}.",
+        None, within="(0, 10] m", automatic=f"{ON_PLANE:.2g} times the roughness: {ROUGHNESS}."
     ),
-    min_slope: float = tunable(0.0, "Slope of the flattest plane that is kept; 70° keeps walls.", within="[0, 90]°"),
-    max_slope: float = tunable(60.0, "Slope of the steepest plane that is kept; 90° keeps walls.", within="[0, 90]°"),
-    min_area: float = tunable(
-        2.0, "Area of the smallest plane, measured on it.", label="Minimum plane area", within="[0, 10_000] m²"
-    ),
+    min_slope: float = tunable(0.0, within="[0, 90]°"),
+    max_slope: float = tunable(60.0, within="[0, 90]°"),
+    min_area: float = tunable(2.0, label="Minimum plane area", within="[0, 10_000] m²"),
     min_height: float = MIN_CLUSTER_HEIGHT,
-    max_planes: int = tunable(
-        4, "Planes that are looked for in one voxel.", label="Planes per voxel", within="[1, 20]", advanced=True
-    ),
-    trials: int = tunable(
-        100, "Planes through three points that are tried for each plane.", within="[1, 10_000]", advanced=True
-    ),
-    normals: bool = tunable(
-        False,
-        "Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written.",
-        label="Write normals",
-    ),
+    max_planes: int = tunable(4, label="Planes per voxel", within="[1, 20]", advanced=True),
+    trials: int = tunable(100, within="[1, 10_000]", advanced=True),
+    normals: bool = tunable(False, label="Write normals"),
     seed: int = SEED,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -97,6 +85,25 @@ def segment_planes_ransac(
         Planes from 1, in the order of their first points; 0 if unassigned.
     normal : ndarray of shape (n, 3), float32, or None
         Upward normals of the planes, NaN on none; None unless asked for.
+
+    Other Parameters
+    ----------------
+    voxel_size
+        Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.
+    tolerance
+        Distance within which a point lies on a plane.
+    min_slope
+        Slope of the flattest plane that is kept; 70° keeps walls.
+    max_slope
+        Slope of the steepest plane that is kept; 90° keeps walls.
+    min_area
+        Area of the smallest plane, measured on it.
+    max_planes
+        Planes that are looked for in one voxel.
+    trials
+        Planes through three points that are tried for each plane.
+    normals
+        Give each point the normal of its plane (NormalX, NormalY, NormalZ); otherwise these are not written.
 
     Raises
     ------

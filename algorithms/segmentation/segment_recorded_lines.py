@@ -45,39 +45,27 @@ def segment_recorded_lines(
     return_number=None,
     number_of_returns=None,
     *,
-    surfaces: str = tunable(
-        "planar",
-        "Pieces join a region near the plane of all its points (planar), as published, or near the plane of the "
-        "pieces next to them (smooth), so that terrain, domes and ramps are one.",
-        choices=("planar", "smooth"),
-    ),
+    surfaces: str = tunable("planar", choices=("planar", "smooth")),
     tolerance: Optional[float] = tunable(
         None,
-        "Distance from the straight line through a piece, and of its ends from the plane of a region.",
         within="(0, 100] m",
-        automatic=f"{DIFFERENCE:.2g} times the root of the sum of the squares of the surface noise and {BENDS:g} point "
-        "spacings.",
+        automatic=(
+            f"{DIFFERENCE:.2g} times the root of the sum of the squares of the surface noise and {BENDS:g} point "
+            "spacings."
+        ),
     ),
     line_distance: Optional[float] = tunable(
-        None,
-        "Distance of neighboring points on adjacent scan lines at most.",
-        within="(0, 1000] m",
-        automatic=f"{_LINES:g} times the mean distance of scan lines.",
+        None, within="(0, 1000] m", automatic=f"{_LINES:g} times the mean distance of scan lines."
     ),
     max_gap: Optional[float] = tunable(
         None,
-        "Scan lines end where two points in a row are farther apart.",
         label="Widest gap",
         within="(0, 1000] m",
         automatic=f"the larger of {_STEP_GAPS:g} median steps between points and {_LINES:g} distances of scan lines.",
     ),
-    min_overlap: float = tunable(
-        0.5, "Share of the shorter of two pieces of a seed that lies next to the other.", within="[0, 1]"
-    ),
-    min_piece: int = tunable(
-        5, "Straight pieces with fewer points join nothing.", label="Minimum points of a piece", within="[3, 10_000]"
-    ),
-    min_points: int = tunable(30, "Segments with fewer points get no id.", within="[1, 10_000_000]"),
+    min_overlap: float = tunable(0.5, within="[0, 1]"),
+    min_piece: int = tunable(5, label="Minimum points of a piece", within="[3, 10_000]"),
+    min_points: int = tunable(30, within="[1, 10_000_000]"),
     noise: Optional[float] = SURFACE_NOISE,
     density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
@@ -111,6 +99,24 @@ def segment_recorded_lines(
     -------
     segment_id : ndarray of shape (n,), int32
         Segments from 1, by the size of their seeds; 0 if unassigned.
+
+    Other Parameters
+    ----------------
+    surfaces
+        Pieces join a region near the plane of all its points (planar), as published, or near the plane of the pieces
+        next to them (smooth), so that terrain, domes and ramps are one.
+    tolerance
+        Distance from the straight line through a piece, and of its ends from the plane of a region.
+    line_distance
+        Distance of neighboring points on adjacent scan lines at most.
+    max_gap
+        Scan lines end where two points in a row are farther apart.
+    min_overlap
+        Share of the shorter of two pieces of a seed that lies next to the other.
+    min_piece
+        Straight pieces with fewer points join nothing.
+    min_points
+        Segments with fewer points get no id.
 
     Notes
     -----

@@ -36,17 +36,10 @@ def segment_regions(
     *,
     thresholds: str = THRESHOLDS,
     plan_distance: Optional[float] = tunable(
-        None,
-        "Points closer than this in plan, and close enough in height, belong together (T_Dxy; the paper has 0.6 m "
-        "at 12.5 and 1.4 m at 4 points/m²).",
-        label="Planimetric distance",
-        within="(0, 100] m",
-        automatic="twice the point spacing.",
+        None, label="Planimetric distance", within="(0, 100] m", automatic="twice the point spacing."
     ),
     height_distance: Optional[float] = tunable(
         None,
-        "Points whose heights differ by less than this, and that are close enough in plan, belong together (T_Dh; "
-        "the paper has 0.2 m at 12.5 and 0.3 m at 4 points/m²).",
         label="Height difference",
         within="(0, 100] m",
         automatic="10 times the measured surface noise, 0.2 to 0.3 m.",
@@ -77,6 +70,15 @@ def segment_regions(
     -------
     cluster_id : ndarray of shape (n,), int32
         Clusters from 1, in the order of their first points; 0 if unassigned.
+
+    Other Parameters
+    ----------------
+    plan_distance
+        Points closer than this in plan, and close enough in height, belong together (T_Dxy; the paper has 0.6 m at 12.5
+        and 1.4 m at 4 points/m²).
+    height_distance
+        Points whose heights differ by less than this, and that are close enough in plan, belong together (T_Dh; the
+        paper has 0.2 m at 12.5 and 0.3 m at 4 points/m²).
 
     Raises
     ------

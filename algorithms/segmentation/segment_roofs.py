@@ -61,20 +61,13 @@ def segment_roofs(
     *,
     min_height: Optional[float] = tunable(
         None,
-        "Mean height above ground of the lowest roof and of other clusters.",
         within="[0, 100] m",
-        automatic=f"{LASER.lowest_roof:g} m; {IMAGES.lowest_roof:g} m in clouds of matched images, where edges "
-        "are rounded.",
+        automatic=(
+            f"{LASER.lowest_roof:g} m; {IMAGES.lowest_roof:g} m in clouds of matched images, where edges are rounded."
+        ),
     ),
-    min_area: float = tunable(
-        2.0, "Area of the smallest roof surface, seen from above.", label="Minimum roof area", within="[0.1, 10_000] m²"
-    ),
-    max_slope: float = tunable(
-        75.0,
-        "Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the "
-        "trees that they touch; outlines then get less even.",
-        within="[0, 90]°",
-    ),
+    min_area: float = tunable(2.0, label="Minimum roof area", within="[0.1, 10_000] m²"),
+    max_slope: float = tunable(75.0, within="[0, 90]°"),
     noise: Optional[float] = SURFACE_NOISE,
     density: Optional[float] = POINT_DENSITY,
     source: str = POINT_SOURCE,
@@ -104,6 +97,16 @@ def segment_roofs(
         Roof surfaces (same numbers as segment_id), then clusters of everything else; 0 if unassigned.
     reason : ndarray of shape (n,), uint8
         Raised points of surfaces that go on into the ground have one, see :class:`~..cloud.reasons.Reason`.
+
+    Other Parameters
+    ----------------
+    min_height
+        Mean height above ground of the lowest roof and of other clusters.
+    min_area
+        Area of the smallest roof surface, seen from above.
+    max_slope
+        Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the trees
+        that they touch; outlines then get less even.
 
     Notes
     -----

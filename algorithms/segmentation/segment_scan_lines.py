@@ -34,43 +34,23 @@ def segment_scan_lines(
     xyz,
     classification,
     *,
-    directions: int = tunable(4, "Directions of artificial scan lines, evenly spread.", within="[2, 16]"),
+    directions: int = tunable(4, within="[2, 16]"),
     line_width: Optional[float] = tunable(
-        None,
-        "Width of an artificial scan line.",
-        within="(0, 1000] m",
-        automatic=f"{_WIDTH_SPACINGS:g} times the point spacing.",
+        None, within="(0, 1000] m", automatic=f"{_WIDTH_SPACINGS:g} times the point spacing."
     ),
     distance: Optional[float] = tunable(
-        None,
-        "Points of a line that are closer in space may belong together; larger passes over wider obstacles.",
-        within="(0, 1000] m",
-        automatic=f"{_DISTANCE_SPACINGS:g} times the point spacing.",
+        None, within="(0, 1000] m", automatic=f"{_DISTANCE_SPACINGS:g} times the point spacing."
     ),
-    max_slope: float = tunable(
-        30.0,
-        "Points of a line belong together if the line between them is no steeper; 90 leaves the criterion out.",
-        within="[0, 90]°",
-    ),
+    max_slope: float = tunable(30.0, within="[0, 90]°"),
     max_step: Optional[float] = tunable(
         None,
-        "Points of a line also belong together if their heights differ by no more than this.",
         label="Height step",
         within="[0, 100] m",
         automatic=f"{DIFFERENCE:.2g} standard deviations of the surface noise.",
     ),
-    max_obstacle: float = tunable(
-        0.0,
-        "A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without "
-        "points. The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every "
-        "obstacle.",
-        label="Widest obstacle",
-        within="[0, 1000] m",
-    ),
-    min_piece: int = tunable(
-        5, "Pieces of a line with fewer points join nothing.", label="Minimum points of a piece", within="[2, 10_000]"
-    ),
-    min_points: int = tunable(20, "Segments with fewer points get no id.", within="[1, 10_000_000]"),
+    max_obstacle: float = tunable(0.0, label="Widest obstacle", within="[0, 1000] m"),
+    min_piece: int = tunable(5, label="Minimum points of a piece", within="[2, 10_000]"),
+    min_points: int = tunable(20, within="[1, 10_000_000]"),
     noise: Optional[float] = SURFACE_NOISE,
     density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
@@ -94,6 +74,26 @@ def segment_scan_lines(
     -------
     segment_id : ndarray of shape (n,), int32
         Segments from 1 in the order of their first points; 0 if unassigned.
+
+    Other Parameters
+    ----------------
+    directions
+        Directions of artificial scan lines, evenly spread.
+    line_width
+        Width of an artificial scan line.
+    distance
+        Points of a line that are closer in space may belong together; larger passes over wider obstacles.
+    max_slope
+        Points of a line belong together if the line between them is no steeper; 90 leaves the criterion out.
+    max_step
+        Points of a line also belong together if their heights differ by no more than this.
+    max_obstacle
+        A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without points.
+        The ends on both sides must meet the criteria of slope and height step. 0: pieces end at every obstacle.
+    min_piece
+        Pieces of a line with fewer points join nothing.
+    min_points
+        Segments with fewer points get no id.
 
     Notes
     -----

@@ -33,59 +33,32 @@ def segment_surfaces(
     xyz,
     classification,
     *,
-    seeds: str = tunable(
-        "least squares",
-        "How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points "
-        "around are of one surface; robust least squares leaves outliers out. The local Hough transform finds "
-        "planes among outliers and at edges, in 4 times the time.",
-        choices=("least squares", "robust", "hough"),
-    ),
-    planarity: str = tunable(
-        "local",
-        "Local: points are accepted near the plane of the surface around the nearest of its points, so that "
-        "smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). "
-        "None: at any distance from a plane.",
-        choices=("local", "global", "none"),
-    ),
-    smooth_normals: bool = tunable(
-        False, "Points are accepted only if their normals are like the normal of the surface next to them."
-    ),
-    proximity: str = tunable(
-        "radius",
-        "Points are near if they are among the nearest within the radius, or joined by an edge of the "
-        "triangulation in plan that is no longer (for clouds with one surface above each position).",
-        choices=("radius", "edges"),
-    ),
+    seeds: str = tunable("least squares", choices=("least squares", "robust", "hough")),
+    planarity: str = tunable("local", choices=("local", "global", "none")),
+    smooth_normals: bool = tunable(False),
+    proximity: str = tunable("radius", choices=("radius", "edges")),
     radius: Optional[float] = tunable(
-        None,
-        "Reach of the neighborhood in which planes are fitted, and of growth.",
-        within="(0, 1000] m",
-        automatic=f"{GAP_SPACINGS:g} times the point spacing on surfaces.",
+        None, within="(0, 1000] m", automatic=f"{GAP_SPACINGS:g} times the point spacing on surfaces."
     ),
-    neighbors: int = tunable(
-        PLANE_NEIGHBORS, "Nearest points within the radius that are used, the point included.", within="[6, 200]"
-    ),
+    neighbors: int = tunable(PLANE_NEIGHBORS, within="[6, 200]"),
     tolerance: Optional[float] = tunable(
         None,
-        "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
-        "surfaces.",
         within="(0, 100] m",
-        automatic=f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and {BENDS:g} point "
-        "spacings.",
+        automatic=(
+            f"{DEVIATIONS:g} times the root of the sum of the squares of the surface noise and {BENDS:g} point "
+            "spacings."
+        ),
     ),
-    max_angle: float = tunable(
-        15.0,
-        "Largest angle between the normals of a point and of the surface, with smooth normals only.",
-        within="(0, 90]°",
-    ),
-    min_points: int = tunable(20, "Surfaces with fewer points get no id.", within="[1, 10_000_000]"),
+    max_angle: float = tunable(15.0, within="(0, 90]°"),
+    min_points: int = tunable(20, within="[1, 10_000_000]"),
     noise: Optional[float] = tunable(
         None,
-        "Standard deviation of the points across a smooth surface.",
         label="Surface noise",
         within="(0, 10] m",
-        automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
-        "where that is less.",
+        automatic=(
+            "measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
+            "where that is less."
+        ),
         advanced=True,
     ),
     density: Optional[float] = POINT_DENSITY,
@@ -110,6 +83,35 @@ def segment_surfaces(
     -------
     segment_id : ndarray of shape (n,), int32
         Surfaces from 1; 0 if unassigned.
+
+    Other Parameters
+    ----------------
+    seeds
+        How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points around are of
+        one surface; robust least squares leaves outliers out. The local Hough transform finds planes among outliers and
+        at edges, in 4 times the time.
+    planarity
+        Local: points are accepted near the plane of the surface around the nearest of its points, so that smooth curved
+        surfaces are one. Global: near the plane of all points of the surface (plane growing). None: at any distance
+        from a plane.
+    smooth_normals
+        Points are accepted only if their normals are like the normal of the surface next to them.
+    proximity
+        Points are near if they are among the nearest within the radius, or joined by an edge of the triangulation in
+        plan that is no longer (for clouds with one surface above each position).
+    radius
+        Reach of the neighborhood in which planes are fitted, and of growth.
+    neighbors
+        Nearest points within the radius that are used, the point included.
+    tolerance
+        Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved
+        surfaces.
+    max_angle
+        Largest angle between the normals of a point and of the surface, with smooth normals only.
+    min_points
+        Surfaces with fewer points get no id.
+    noise
+        Standard deviation of the points across a smooth surface.
 
     Notes
     -----

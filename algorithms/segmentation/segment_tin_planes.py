@@ -38,18 +38,13 @@ def segment_tin_planes(
     *,
     tolerance: Optional[float] = tunable(
         None,
-        "Two surfaces merge if neither lies farther than this from their common plane (root mean square).",
         within="(0, 100] m",
-        automatic=f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {BENDS:g} "
-        "point spacings.",
+        automatic=(
+            f"{_WITHIN:g} times the root of the sum of the squares of the surface noise and {BENDS:g} point spacings."
+        ),
     ),
-    max_edge: Optional[float] = tunable(
-        None,
-        "Triangles with a longer edge belong to no surface: they lie across walls and gaps.",
-        within="(0, 10_000] m",
-        automatic=f"{_EDGE_SPACINGS:g} point spacings.",
-    ),
-    min_area: float = tunable(2.0, "Area of the smallest surface, along the surface.", within="[0, 1_000_000] m²"),
+    max_edge: Optional[float] = tunable(None, within="(0, 10_000] m", automatic=f"{_EDGE_SPACINGS:g} point spacings."),
+    min_area: float = tunable(2.0, within="[0, 1_000_000] m²"),
     noise: Optional[float] = SURFACE_NOISE,
     density: Optional[float] = POINT_DENSITY,
     sampling: CloudSampling = MEASURED,
@@ -73,6 +68,15 @@ def segment_tin_planes(
     segment_id : ndarray of shape (n,), int32
         Planes from 1 in the order of their first points; 0 if unassigned. A point has the plane with
         most of its triangles, by area.
+
+    Other Parameters
+    ----------------
+    tolerance
+        Two surfaces merge if neither lies farther than this from their common plane (root mean square).
+    max_edge
+        Triangles with a longer edge belong to no surface: they lie across walls and gaps.
+    min_area
+        Area of the smallest surface, along the surface.
 
     Notes
     -----

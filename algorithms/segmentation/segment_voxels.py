@@ -50,52 +50,16 @@ def segment_voxels(
     classification,
     *,
     voxel_size: Optional[float] = tunable(
-        None,
-        "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
-        within="[0.001, 1000] m",
-        automatic=f"{CELL_SPACINGS:g} times the point spacing on surfaces.",
+        None, within="[0.001, 1000] m", automatic=f"{CELL_SPACINGS:g} times the point spacing on surfaces."
     ),
-    neighbors: str = tunable(
-        "26",
-        "Voxels that belong together: those that share a face (6), a face or an edge (18), or a face, an edge or a "
-        "corner (26).",
-        choices=("6", "18", "26"),
-    ),
-    count_filter: str = tunable(
-        "none",
-        "Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left "
-        "out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and "
-        "the maximum widens, and the median removes single voxels.",
-        label="Filter of counts",
-        choices=("none", *FILTERS),
-        advanced=True,
-    ),
-    operation: str = tunable(
-        "none",
-        "Applied before voxels are connected: erosion shrinks and dilation enlarges objects, opening removes thin "
-        "parts, closing fills narrow gaps.",
-        choices=("none", *_OPERATIONS),
-    ),
-    element: str = tunable(
-        "26",
-        "Neighbors that the operation reaches with each step: 6, 18 or 26.",
-        label="Structuring element",
-        choices=("6", "18", "26"),
-        advanced=True,
-    ),
-    steps: int = tunable(1, "How many times the operation erodes or dilates.", within="[1, 100]", advanced=True),
-    min_count: int = tunable(
-        1,
-        "Voxels with fewer points, after the filter, count as empty: more suppress scattered points.",
-        label="Minimum points of a voxel",
-        within="[1, 1_000_000]",
-    ),
-    min_points: int = tunable(1, "Segments with fewer points get no id.", within="[1, 1_000_000]"),
-    thin: bool = tunable(
-        False,
-        "Thin the voxels of the layer to lines in the middle of the objects; the segments of the points stay.",
-        label="Skeleton only",
-    ),
+    neighbors: str = tunable("26", choices=("6", "18", "26")),
+    count_filter: str = tunable("none", label="Filter of counts", choices=("none", *FILTERS), advanced=True),
+    operation: str = tunable("none", choices=("none", *_OPERATIONS)),
+    element: str = tunable("26", label="Structuring element", choices=("6", "18", "26"), advanced=True),
+    steps: int = tunable(1, within="[1, 100]", advanced=True),
+    min_count: int = tunable(1, label="Minimum points of a voxel", within="[1, 1_000_000]"),
+    min_points: int = tunable(1, within="[1, 1_000_000]"),
+    thin: bool = tunable(False, label="Skeleton only"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -121,6 +85,31 @@ def segment_voxels(
     voxels : LayerFeatures
         Centers of voxels, from west to east, then south to north, then upward. With *Skeleton only* the centers of the
         skeleton; distances are measured before thinning.
+
+    Other Parameters
+    ----------------
+    voxel_size
+        Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.
+    neighbors
+        Voxels that belong together: those that share a face (6), a face or an edge (18), or a face, an edge or a corner
+        (26).
+    count_filter
+        Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left out. Mean
+        and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and the maximum
+        widens, and the median removes single voxels.
+    operation
+        Applied before voxels are connected: erosion shrinks and dilation enlarges objects, opening removes thin parts,
+        closing fills narrow gaps.
+    element
+        Neighbors that the operation reaches with each step: 6, 18 or 26.
+    steps
+        How many times the operation erodes or dilates.
+    min_count
+        Voxels with fewer points, after the filter, count as empty: more suppress scattered points.
+    min_points
+        Segments with fewer points get no id.
+    thin
+        Thin the voxels of the layer to lines in the middle of the objects; the segments of the points stay.
 
     Raises
     ------

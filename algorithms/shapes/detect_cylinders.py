@@ -40,20 +40,9 @@ def detect_cylinders(
     min_radius: Optional[float] = MIN_RADIUS,
     max_radius: Optional[float] = MAX_RADIUS,
     tolerance: Optional[float] = SHAPE_TOLERANCE,
-    min_seen: float = tunable(
-        0.2,
-        "Least share of the circumference that must have points, 0 to 1. A cylinder of which less is seen has an "
-        "uncertain radius.",
-        label="Minimum share seen",
-        within="[0.05, 1]",
-    ),
-    min_points: int = tunable(40, "Points of the smallest cylinder.", within=f"[{LEAST_POINTS}, 1_000_000]"),
-    max_gap: float = tunable(
-        1.0,
-        "Longest part of an axis without points, behind a flange or in the shadow of another object, across which "
-        "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always separates them.",
-        within="[0, 100] m",
-    ),
+    min_seen: float = tunable(0.2, label="Minimum share seen", within="[0.05, 1]"),
+    min_points: int = tunable(40, within=f"[{LEAST_POINTS}, 1_000_000]"),
+    max_gap: float = tunable(1.0, within="[0, 100] m"),
     search_in: str = SEARCH_IN,
     n_neighbors: Optional[int] = NORMAL_POINTS,
     sampling: CloudSampling = MEASURED,
@@ -89,6 +78,17 @@ def detect_cylinders(
         2 on cylinders.
     axes : LayerFeatures
         The axis of each cylinder as a line with heights.
+
+    Other Parameters
+    ----------------
+    min_seen
+        Least share of the circumference that must have points, 0 to 1. A cylinder of which less is seen has an
+        uncertain radius.
+    min_points
+        Points of the smallest cylinder.
+    max_gap
+        Longest part of an axis without points, behind a flange or in the shadow of another object, across which pieces
+        of one radius in one line are put together; 0 leaves them apart. An end cap always separates them.
 
     Raises
     ------

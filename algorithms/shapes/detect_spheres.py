@@ -194,23 +194,12 @@ def detect_spheres(
     segment_id=None,
     shape=None,
     *,
-    method: str = tunable(
-        CENTER_FIRST,
-        "With center first, points vote for a center, and the voters of the best center for a radius. With four "
-        "dimensions, they vote for both together, which takes more memory.",
-        choices=METHODS,
-    ),
+    method: str = tunable(CENTER_FIRST, choices=METHODS),
     min_radius: Optional[float] = MIN_RADIUS,
     max_radius: Optional[float] = MAX_RADIUS,
     tolerance: Optional[float] = SHAPE_TOLERANCE,
-    min_seen: float = tunable(
-        0.15,
-        "Least share of the sphere that must have points, 0 to 1. A sphere of which less is seen has an uncertain "
-        "radius.",
-        label="Minimum share seen",
-        within="[0.05, 1]",
-    ),
-    min_points: int = tunable(40, "Points of the smallest sphere.", within=f"[{LEAST_POINTS}, 1_000_000]"),
+    min_seen: float = tunable(0.15, label="Minimum share seen", within="[0.05, 1]"),
+    min_points: int = tunable(40, within=f"[{LEAST_POINTS}, 1_000_000]"),
     search_in: str = SEARCH_IN,
     n_neighbors: Optional[int] = NORMAL_POINTS,
     sampling: CloudSampling = MEASURED,
@@ -241,6 +230,16 @@ def detect_spheres(
         3 on spheres.
     centers : LayerFeatures
         The center of each sphere as a point with its height.
+
+    Other Parameters
+    ----------------
+    method
+        With center first, points vote for a center, and the voters of the best center for a radius. With four
+        dimensions, they vote for both together, which takes more memory.
+    min_seen
+        Least share of the sphere that must have points, 0 to 1. A sphere of which less is seen has an uncertain radius.
+    min_points
+        Points of the smallest sphere.
 
     Raises
     ------

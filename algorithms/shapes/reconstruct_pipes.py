@@ -42,12 +42,7 @@ def reconstruct_pipes(
     axes,
     centers=None,
     *,
-    radius: float = tunable(
-        0.05,
-        "Radius of lines and points that have no attribute 'radius', such as wires.",
-        label="Radius without attribute",
-        within="[0.001, 100] m",
-    ),
+    radius: float = tunable(0.05, label="Radius without attribute", within="[0.001, 100] m"),
     monitor=None,
 ):
     """Draw cylinders around their axes and spheres around their centers, as polygons in space.
@@ -66,6 +61,11 @@ def reconstruct_pipes(
     -------
     pipes : LayerFeatures
         The faces.
+
+    Other Parameters
+    ----------------
+    radius
+        Radius of lines and points that have no attribute 'radius', such as wires.
 
     Notes
     -----

@@ -65,41 +65,24 @@ def segment_planes_hough(
     segment_id=None,
     shape=None,
     *,
-    method: str = tunable(
-        "points",
-        "With points, each point votes for all planes through it. With normals, the normal of each point votes "
-        "for a direction, then the point for a distance, which needs surfaces smooth enough for normals.",
-        choices=METHODS,
-    ),
+    method: str = tunable("points", choices=METHODS),
     search_in: str = SEARCH_IN,
     tolerance: Optional[float] = tunable(
         None,
-        "Distance within which a point lies on a plane.",
         within="(0, 10] m",
-        automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
-        f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
+        automatic=(
+            f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
+            f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings."
+        ),
     ),
     distance_bin: Optional[float] = _DISTANCE_BIN,
     slope_bin: Optional[float] = _SLOPE_BIN,
     window_size: Optional[float] = tunable(
-        None,
-        "Side of the cubes in which planes are looked for; planes that continue in the next cube are joined.",
-        within="(0, 100] m",
-        automatic="wide enough for 40 points of a surface and for 20 tolerances.",
+        None, within="(0, 100] m", automatic="wide enough for 40 points of a surface and for 20 tolerances."
     ),
-    max_gap: Optional[float] = tunable(
-        None,
-        "Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part "
-        "coplanar surfaces.",
-        within="(0, 1000] m",
-        automatic="3 times the point spacing on surfaces.",
-    ),
+    max_gap: Optional[float] = tunable(None, within="(0, 1000] m", automatic="3 times the point spacing on surfaces."),
     min_area: Optional[float] = tunable(
-        None,
-        "Area of the smallest surface, measured on it.",
-        label="Minimum plane area",
-        within="[0, 10_000] m²",
-        automatic="half the side of a window, squared.",
+        None, label="Minimum plane area", within="[0, 10_000] m²", automatic="half the side of a window, squared."
     ),
     n_neighbors: Optional[int] = NORMAL_POINTS,
     sampling: CloudSampling = MEASURED,
@@ -137,6 +120,21 @@ def segment_planes_hough(
         1 on planes.
     planes : LayerFeatures
         The largest piece of each plane as a polygon with heights.
+
+    Other Parameters
+    ----------------
+    method
+        With points, each point votes for all planes through it. With normals, the normal of each point votes for a
+        direction, then the point for a distance, which needs surfaces smooth enough for normals.
+    tolerance
+        Distance within which a point lies on a plane.
+    window_size
+        Side of the cubes in which planes are looked for; planes that continue in the next cube are joined.
+    max_gap
+        Points of a plane at most this far apart are of one surface; gaps wider than this, or than a window, part
+        coplanar surfaces.
+    min_area
+        Area of the smallest surface, measured on it.
 
     Raises
     ------

@@ -72,26 +72,12 @@ def segment_tree(
     *,
     voxel_size: Optional[float] = tunable(
         None,
-        "Side of a voxel: about the thickness of the thinnest branches. Smaller voxels show thinner branches and "
-        "need denser points.",
         within="[0.005, 10] m",
         automatic=f"{CELL_SPACINGS:g} times the point spacing on surfaces, at least {_LEAST_VOXEL:g} m.",
     ),
-    min_count: int = tunable(
-        2,
-        "Voxels with fewer points are left out: wood has several points to a voxel, leaves have single ones.",
-        label="Minimum points of a voxel",
-        within="[1, 1000]",
-    ),
-    max_gap: Optional[float] = tunable(
-        None,
-        "Widest gap in a stem or branch that is crossed.",
-        within="[0, 10] m",
-        automatic=f"{_GAP_VOXELS:g} voxels.",
-    ),
-    min_length: float = tunable(
-        0.3, "Length of the shortest branch; points of shorter ones are leaves.", within="[0, 100] m"
-    ),
+    min_count: int = tunable(2, label="Minimum points of a voxel", within="[1, 1000]"),
+    max_gap: Optional[float] = tunable(None, within="[0, 10] m", automatic=f"{_GAP_VOXELS:g} voxels."),
+    min_length: float = tunable(0.3, within="[0, 100] m"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -115,6 +101,18 @@ def segment_tree(
         Numbers from 1, stems before their branches; 0 is leaves and everything else.
     branches : LayerFeatures
         Middles of stems and branches, from the base to the tip.
+
+    Other Parameters
+    ----------------
+    voxel_size
+        Side of a voxel: about the thickness of the thinnest branches. Smaller voxels show thinner branches and need
+        denser points.
+    min_count
+        Voxels with fewer points are left out: wood has several points to a voxel, leaves have single ones.
+    max_gap
+        Widest gap in a stem or branch that is crossed.
+    min_length
+        Length of the shortest branch; points of shorter ones are leaves.
 
     Raises
     ------

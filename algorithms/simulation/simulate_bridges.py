@@ -30,17 +30,11 @@ _DECK_FIELDS = (
 )
 def simulate_bridges(
     *,
-    kind: str = tunable(
-        _ALL,
-        "A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a "
-        "cutting, a bridge over a valley, a fly-over with ramps. Without a bridge: the portals of a tunnel, a "
-        "jetty, a ramp that ends at a wall. 'all' places one of each side by side.",
-        choices=(_ALL, *KINDS),
-    ),
-    angle: float = tunable(0.0, "Angle of the decks to the perpendicular of the obstacle.", within="[0, 50]°"),
+    kind: str = tunable(_ALL, choices=(_ALL, *KINDS)),
+    angle: float = tunable(0.0, within="[0, 50]°"),
     density: float = PULSE_DENSITY,
-    cars: bool = tunable(True, "Cars on the decks."),
-    trees: bool = tunable(True, "Trees on the land."),
+    cars: bool = tunable(True),
+    trees: bool = tunable(True),
     range_noise: float = RANGE_NOISE,
     seed: int = SEED,
     monitor=None,
@@ -61,6 +55,19 @@ def simulate_bridges(
         Number of the deck, car or tree; 0 for ground and water.
     decks : LayerFeatures
         Outlines of the decks.
+
+    Other Parameters
+    ----------------
+    kind
+        A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a cutting,
+        a bridge over a valley, a fly-over with ramps. Without a bridge: the portals of a tunnel, a jetty, a ramp that
+        ends at a wall. 'all' places one of each side by side.
+    angle
+        Angle of the decks to the perpendicular of the obstacle.
+    cars
+        Cars on the decks.
+    trees
+        Trees on the land.
 
     Raises
     ------

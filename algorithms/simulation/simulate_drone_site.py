@@ -29,41 +29,18 @@ _FIELDS = footprint_fields("gable, hip, flat, L, row, shed or hall")[:3]
 )
 def simulate_drone_site(
     *,
-    size: float = tunable(150.0, "Side of the site, a square from (0, 0).", within="[40, 400] m"),
-    density: float = tunable(
-        40.0, "Point density on open ground, in plan.", label="Point density", within="[5, 400] points/m²"
-    ),
-    slope: float = tunable(4.0, "Mean slope of the ground.", within="[0, 20]°"),
-    terrace_height: float = tunable(1.5, "Rise of each terrace.", label="Height of terraces", within="[0, 3] m"),
-    buildings: float = tunable(16.0, "Houses per hectare of streets and plots.", within=f"[0, {MAX_BUILDINGS}] per ha"),
-    trees: float = tunable(30.0, "Trees in gardens.", within="[0, 200] per ha"),
-    halls: int = tunable(
-        2,
-        "Halls with flat roofs and parapets, 10 to 100 m long, if space permits.",
-        label="Flat halls",
-        within="[0, 20]",
-    ),
-    unevenness: float = tunable(
-        0.12,
-        "Standard deviation of the ground from the smooth slope, due to gardens, curbs and ruts.",
-        label="Unevenness of the ground",
-        within="[0, 0.5] m",
-    ),
-    rounding: float = tunable(
-        0.5, "Mean distance over which eaves and ridges are rounded.", label="Rounding of edges", within="[0, 2] m"
-    ),
-    waves: float = tunable(
-        0.03, "Standard deviation of errors that are correlated between neighboring points.", within="[0, 0.3] m"
-    ),
-    walls: float = tunable(
-        0.6,
-        "Point density on walls, as a share of the density on open ground.",
-        label="Share of walls",
-        within="[0, 1]",
-    ),
-    noise: float = tunable(
-        0.01, "Standard deviation of uncorrelated errors, the same in every direction.", within="[0, 0.2] m"
-    ),
+    size: float = tunable(150.0, within="[40, 400] m"),
+    density: float = tunable(40.0, label="Point density", within="[5, 400] points/m²"),
+    slope: float = tunable(4.0, within="[0, 20]°"),
+    terrace_height: float = tunable(1.5, label="Height of terraces", within="[0, 3] m"),
+    buildings: float = tunable(16.0, within=f"[0, {MAX_BUILDINGS}] per ha"),
+    trees: float = tunable(30.0, within="[0, 200] per ha"),
+    halls: int = tunable(2, label="Flat halls", within="[0, 20]"),
+    unevenness: float = tunable(0.12, label="Unevenness of the ground", within="[0, 0.5] m"),
+    rounding: float = tunable(0.5, label="Rounding of edges", within="[0, 2] m"),
+    waves: float = tunable(0.03, within="[0, 0.3] m"),
+    walls: float = tunable(0.6, label="Share of walls", within="[0, 1]"),
+    noise: float = tunable(0.01, within="[0, 0.2] m"),
     seed: int = SEED,
     monitor=None,
 ):
@@ -87,6 +64,33 @@ def simulate_drone_site(
         Number of the object, the same for all points of a building; 0 for ground.
     footprints : LayerFeatures
         Outlines of the walls of all buildings.
+
+    Other Parameters
+    ----------------
+    size
+        Side of the site, a square from (0, 0).
+    density
+        Point density on open ground, in plan.
+    slope
+        Mean slope of the ground.
+    terrace_height
+        Rise of each terrace.
+    buildings
+        Houses per hectare of streets and plots.
+    trees
+        Trees in gardens.
+    halls
+        Halls with flat roofs and parapets, 10 to 100 m long, if space permits.
+    unevenness
+        Standard deviation of the ground from the smooth slope, due to gardens, curbs and ruts.
+    rounding
+        Mean distance over which eaves and ridges are rounded.
+    waves
+        Standard deviation of errors that are correlated between neighboring points.
+    walls
+        Point density on walls, as a share of the density on open ground.
+    noise
+        Standard deviation of uncorrelated errors, the same in every direction.
 
     Raises
     ------

@@ -17,25 +17,14 @@ from .street_site import build_site
 )
 def simulate_flight(
     *,
-    height: float = tunable(
-        8.0, "Greatest height of the drone above the street.", label="Flight height", within="[2, 25] m"
-    ),
-    duration: float = tunable(
-        190.0,
-        "Time from take-off to landing: a fifth each for climb and landing, the rest for one turn. "
-        "Longer flights have more points.",
-        within="[5, 600] s",
-    ),
-    scanners: str = tunable(
-        "both",
-        "Scanners to simulate. Two runs with one scanner each give two clouds of the same flight, which can be merged.",
-        choices=("both", *SCANNERS),
-    ),
-    trees: int = tunable(4, "Trees along the street.", within="[0, 22]"),
-    slope: float = tunable(1.5, "Slope of the plane ground.", within="[0, 10]°"),
+    height: float = tunable(8.0, label="Flight height", within="[2, 25] m"),
+    duration: float = tunable(190.0, within="[5, 600] s"),
+    scanners: str = tunable("both", choices=("both", *SCANNERS)),
+    trees: int = tunable(4, within="[0, 22]"),
+    slope: float = tunable(1.5, within="[0, 10]°"),
     line_rate: float = LINE_RATE,
     angular_step: float = ANGULAR_STEP,
-    max_range: float = tunable(30.0, "Maximum range of the scanners.", within="[1, 40] m", advanced=True),
+    max_range: float = tunable(30.0, within="[1, 40] m", advanced=True),
     range_noise: float = RANGE_NOISE.with_default(0.03),
     seed: int = SEED,
     monitor=None,
@@ -61,6 +50,22 @@ def simulate_flight(
         1 for the horizontal scanner, 2 for the vertical one.
     segment_id : ndarray of shape (n,), int32
         Number of the object, the same for all points of a building; 0 for ground.
+
+    Other Parameters
+    ----------------
+    height
+        Greatest height of the drone above the street.
+    duration
+        Time from take-off to landing: a fifth each for climb and landing, the rest for one turn. Longer flights have
+        more points.
+    scanners
+        Scanners to simulate. Two runs with one scanner each give two clouds of the same flight, which can be merged.
+    trees
+        Trees along the street.
+    slope
+        Slope of the plane ground.
+    max_range
+        Maximum range of the scanners.
 
     Raises
     ------

@@ -51,21 +51,12 @@ _CENTER_FIELDS = tuple(field for field in _AXIS_FIELDS if field.name not in {"ki
 )
 def simulate_plant(
     *,
-    pipes: int = tunable(200, "Straight pipes with diameters of 5 to 60 cm, on racks.", within="[1, 2000]"),
-    tanks: int = tunable(
-        3, "Upright tanks with diameters of 5 to 30 m; their sides and roofs are visible.", within="[0, 20]"
-    ),
-    spheres: int = tunable(4, "Spherical vessels with diameters of 1 to 3 m.", within="[0, 50]"),
-    clutter: bool = tunable(
-        True, "Add objects other than pipes: supports, gratings and clutter.", label="Beams, gratings and clutter"
-    ),
-    density: float = tunable(
-        4000.0,
-        "Density on surfaces up to 6 m from the scanner; it decreases beyond. The floor has a twentieth of it.",
-        label="Point density",
-        within="[100, 100_000] points/m²",
-    ),
-    noise: float = tunable(0.002, "Standard deviation of measured ranges.", within="[0, 0.1] m"),
+    pipes: int = tunable(200, within="[1, 2000]"),
+    tanks: int = tunable(3, within="[0, 20]"),
+    spheres: int = tunable(4, within="[0, 50]"),
+    clutter: bool = tunable(True, label="Beams, gratings and clutter"),
+    density: float = tunable(4000.0, label="Point density", within="[100, 100_000] points/m²"),
+    noise: float = tunable(0.002, within="[0, 0.1] m"),
     seed: int = SEED,
     monitor=None,
 ):
@@ -89,6 +80,21 @@ def simulate_plant(
         Axes of pipes and tanks with points.
     centers : LayerFeatures
         Centers of spheres with points.
+
+    Other Parameters
+    ----------------
+    pipes
+        Straight pipes with diameters of 5 to 60 cm, on racks.
+    tanks
+        Upright tanks with diameters of 5 to 30 m; their sides and roofs are visible.
+    spheres
+        Spherical vessels with diameters of 1 to 3 m.
+    clutter
+        Add objects other than pipes: supports, gratings and clutter.
+    density
+        Density on surfaces up to 6 m from the scanner; it decreases beyond. The floor has a twentieth of it.
+    noise
+        Standard deviation of measured ranges.
 
     Raises
     ------

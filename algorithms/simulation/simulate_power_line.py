@@ -37,11 +37,11 @@ _WIRES = ((-0.8, 0.2), (0.0, 0.2), (0.8, 0.2), (0.2, 1.4), (0.2, 1.7), (0.2, 2.0
 )
 def simulate_power_line(
     *,
-    size: float = tunable(200.0, "Side of the site, a square from (0, 0).", within="[80, 1000] m"),
+    size: float = tunable(200.0, within="[80, 1000] m"),
     density: float = PULSE_DENSITY,
-    span: float = tunable(120.0, "Distance between the towers of the transmission line.", within="[50, 500] m"),
-    angle: float = tunable(15.0, "Direction of both lines, counterclockwise from east.", within="[0, 90]°"),
-    trees: float = tunable(20.0, "Trees outside the forest.", within="[0, 200] per ha"),
+    span: float = tunable(120.0, within="[50, 500] m"),
+    angle: float = tunable(15.0, within="[0, 90]°"),
+    trees: float = tunable(20.0, within="[0, 200] per ha"),
     forest: float = FOREST.with_default(0.15),
     range_noise: float = RANGE_NOISE,
     seed: int = SEED,
@@ -61,6 +61,17 @@ def simulate_power_line(
         True class: 2 ground; 3, 4, 5 vegetation; 6 houses; 14 wires; 15 towers and poles.
     segment_id : ndarray of shape (n,), int32
         Number of the wire, mast, house or tree; 0 for ground.
+
+    Other Parameters
+    ----------------
+    size
+        Side of the site, a square from (0, 0).
+    span
+        Distance between the towers of the transmission line.
+    angle
+        Direction of both lines, counterclockwise from east.
+    trees
+        Trees outside the forest.
 
     Raises
     ------

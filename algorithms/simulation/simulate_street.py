@@ -52,40 +52,20 @@ _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
 )
 def simulate_street(
     *,
-    length: float = tunable(60.0, "Length of the street.", within="[10, 2000] m"),
-    width: float = tunable(16.0, "Distance between the fronts of both sides.", within="[12, 60] m"),
-    slope: float = tunable(1.0, "Slope along the street.", within="[0, 10]°"),
-    clutter: bool = tunable(True, "Add parked cars, trees, poles and people that occlude parts of the fronts."),
-    stoops: float = tunable(
-        0.0,
-        "Height of the doors above the street, with stairs up to them. From 1.4 m on there are cellar windows.",
-        label="Height of stoops",
-        within="[0, 4] m",
-    ),
-    unevenness: float = tunable(
-        0.0,
-        "Largest offset of the ends of a front, forward or backward, from the common line of the fronts. Small values "
-        "give fronts nearly in one plane.",
-        within="[0, 1] m",
-    ),
-    houses: bool = tunable(False, "Add houses with gable roofs behind the fronts; then no front is curved."),
-    view: str = tunable(
-        "vehicle",
-        "Platform of the scanner. With the same seed, both scan the same street.",
-        choices=("vehicle", "airplane"),
-    ),
-    density: float = tunable(
-        12.0,
-        "Mean density of laser pulses from the airplane.",
-        label="Pulse density",
-        within="[0.5, 100] pulses/m²",
-        advanced=True,
-    ),
-    glass: float = tunable(70.0, "Share of pulses that pass through window panes and are lost.", within="[0, 100] %"),
-    speed: float = tunable(5.0, "Speed of the vehicle.", within="[0.5, 30] m/s", advanced=True),
+    length: float = tunable(60.0, within="[10, 2000] m"),
+    width: float = tunable(16.0, within="[12, 60] m"),
+    slope: float = tunable(1.0, within="[0, 10]°"),
+    clutter: bool = tunable(True),
+    stoops: float = tunable(0.0, label="Height of stoops", within="[0, 4] m"),
+    unevenness: float = tunable(0.0, within="[0, 1] m"),
+    houses: bool = tunable(False),
+    view: str = tunable("vehicle", choices=("vehicle", "airplane")),
+    density: float = tunable(12.0, label="Pulse density", within="[0.5, 100] pulses/m²", advanced=True),
+    glass: float = tunable(70.0, within="[0, 100] %"),
+    speed: float = tunable(5.0, within="[0.5, 30] m/s", advanced=True),
     line_rate: float = LINE_RATE.with_default(100.0),
     angular_step: float = ANGULAR_STEP,
-    max_range: float = tunable(40.0, "Maximum range of the scanners.", within="[5, 200] m", advanced=True),
+    max_range: float = tunable(40.0, within="[5, 200] m", advanced=True),
     range_noise: float = RANGE_NOISE.with_default(0.01),
     seed: int = SEED,
     monitor=None,
@@ -118,6 +98,34 @@ def simulate_street(
         Corners of the facades, points with Z.
     outlines : LayerFeatures
         Outlines of the houses on the ground, polygons with Z; empty without ``houses``.
+
+    Other Parameters
+    ----------------
+    length
+        Length of the street.
+    width
+        Distance between the fronts of both sides.
+    slope
+        Slope along the street.
+    clutter
+        Add parked cars, trees, poles and people that occlude parts of the fronts.
+    stoops
+        Height of the doors above the street, with stairs up to them. From 1.4 m on there are cellar windows.
+    unevenness
+        Largest offset of the ends of a front, forward or backward, from the common line of the fronts. Small values
+        give fronts nearly in one plane.
+    houses
+        Add houses with gable roofs behind the fronts; then no front is curved.
+    view
+        Platform of the scanner. With the same seed, both scan the same street.
+    density
+        Mean density of laser pulses from the airplane.
+    glass
+        Share of pulses that pass through window panes and are lost.
+    speed
+        Speed of the vehicle.
+    max_range
+        Maximum range of the scanners.
 
     Raises
     ------

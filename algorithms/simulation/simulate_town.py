@@ -14,58 +14,22 @@ from .town_layout import MAX_BUILDINGS, TownPlan, build_town
 )
 def simulate_town(
     *,
-    size: float = tunable(200.0, "Side of the town, a square from (0, 0).", within="[50, 2000] m"),
+    size: float = tunable(200.0, within="[50, 2000] m"),
     density: float = PULSE_DENSITY,
-    buildings: float = tunable(
-        20.0,
-        "Plots with a house or a short row, per hectare of streets and plots; 0 gives open fields. "
-        "The river valley and the forest have no houses.",
-        within=f"[0, {MAX_BUILDINGS}] per ha",
-    ),
-    trees: float = tunable(
-        20.0, "Trees outside the forest, single and in clumps, if space permits.", within="[0, 200] per ha"
-    ),
+    buildings: float = tunable(20.0, within=f"[0, {MAX_BUILDINGS}] per ha"),
+    trees: float = tunable(20.0, within="[0, 200] per ha"),
     forest: float = FOREST,
-    slope: float = tunable(3.0, "Mean slope of the ground.", within="[0, 40]°"),
-    relief: float = tunable(2.0, "Approximate height difference between hollows and hills.", within="[0, 10] m"),
-    terrace_height: float = tunable(1.5, "Rise of the terraces, one every 45 m up the slope.", within="[0, 5] m"),
-    river: bool = tunable(True, "Add a river in a channel, with a bridge for every street."),
-    clutter: bool = tunable(True, "Add objects that are not buildings.", label="Cars, hedges, walls and wires"),
-    pattern: str = tunable(
-        "lines",
-        "Parallel lines of a rotating mirror, the zigzag of an oscillating mirror, or random positions.",
-        label="Scan pattern",
-        choices=PATTERNS,
-        advanced=True,
-    ),
-    max_scan_angle: float = tunable(
-        20.0,
-        "Angle to the vertical at the edge of a strip. Large angles show more of the walls and occlude more of the "
-        "yards behind them.",
-        within="[5, 30]°",
-        advanced=True,
-    ),
-    overlap: float = tunable(
-        0.3,
-        "Share of a strip that the next strip overlaps. Without overlap, roofs and crowns are cut at the seam.",
-        label="Strip overlap",
-        within="[0, 0.8]",
-        advanced=True,
-    ),
+    slope: float = tunable(3.0, within="[0, 40]°"),
+    relief: float = tunable(2.0, within="[0, 10] m"),
+    terrace_height: float = tunable(1.5, within="[0, 5] m"),
+    river: bool = tunable(True),
+    clutter: bool = tunable(True, label="Cars, hedges, walls and wires"),
+    pattern: str = tunable("lines", label="Scan pattern", choices=PATTERNS, advanced=True),
+    max_scan_angle: float = tunable(20.0, within="[5, 30]°", advanced=True),
+    overlap: float = tunable(0.3, label="Strip overlap", within="[0, 0.8]", advanced=True),
     range_noise: float = RANGE_NOISE,
-    noise_points: float = tunable(
-        10.0,
-        "Noise points, half of them high above the ground (birds), half below it (multipath).",
-        within="[0, 1000] per ha",
-        advanced=True,
-    ),
-    returns: bool = tunable(
-        True,
-        "Record all returns of a pulse. Otherwise only the first is recorded, with unknown return number, as in clouds "
-        "of matched images.",
-        label="Several returns",
-        advanced=True,
-    ),
+    noise_points: float = tunable(10.0, within="[0, 1000] per ha", advanced=True),
+    returns: bool = tunable(True, label="Several returns", advanced=True),
     seed: int = SEED,
     monitor=None,
 ):
@@ -95,6 +59,38 @@ def simulate_town(
         Time of the pulse (s), from the start of the flight.
     segment_id : ndarray of shape (n,), int32
         Number of the object, the same for all points of a building; 0 for ground, water and noise.
+
+    Other Parameters
+    ----------------
+    size
+        Side of the town, a square from (0, 0).
+    buildings
+        Plots with a house or a short row, per hectare of streets and plots; 0 gives open fields. The river valley and
+        the forest have no houses.
+    trees
+        Trees outside the forest, single and in clumps, if space permits.
+    slope
+        Mean slope of the ground.
+    relief
+        Approximate height difference between hollows and hills.
+    terrace_height
+        Rise of the terraces, one every 45 m up the slope.
+    river
+        Add a river in a channel, with a bridge for every street.
+    clutter
+        Add objects that are not buildings.
+    pattern
+        Parallel lines of a rotating mirror, the zigzag of an oscillating mirror, or random positions.
+    max_scan_angle
+        Angle to the vertical at the edge of a strip. Large angles show more of the walls and occlude more of the yards
+        behind them.
+    overlap
+        Share of a strip that the next strip overlaps. Without overlap, roofs and crowns are cut at the seam.
+    noise_points
+        Noise points, half of them high above the ground (birds), half below it (multipath).
+    returns
+        Record all returns of a pulse. Otherwise only the first is recorded, with unknown return number, as in clouds of
+        matched images.
 
     Raises
     ------

@@ -47,16 +47,12 @@ class _Limb:
 )
 def simulate_tree(
     *,
-    height: float = tunable(14.0, "Height of the tree.", within="[3, 60] m"),
-    dbh: float = tunable(
-        0.3, "Diameter of the stem at breast height, 1.3 m.", label="Stem diameter", within="[0.05, 2] m"
-    ),
-    n_branches: int = tunable(14, "Branches of the stem.", label="Branches", within="[0, 100]"),
-    leaves: float = tunable(0.2, "Number of points on leaves, per point on wood.", within="[0, 5]"),
-    density: float = tunable(
-        5000.0, "Point density on wood.", label="Point density", within="[100, 100_000] points/m²"
-    ),
-    noise: float = tunable(0.003, "Standard deviation of points across the bark.", within="[0, 0.05] m"),
+    height: float = tunable(14.0, within="[3, 60] m"),
+    dbh: float = tunable(0.3, label="Stem diameter", within="[0.05, 2] m"),
+    n_branches: int = tunable(14, label="Branches", within="[0, 100]"),
+    leaves: float = tunable(0.2, within="[0, 5]"),
+    density: float = tunable(5000.0, label="Point density", within="[100, 100_000] points/m²"),
+    noise: float = tunable(0.003, within="[0, 0.05] m"),
     seed: int = SEED,
     monitor=None,
 ):
@@ -75,6 +71,21 @@ def simulate_tree(
         1 for the stem, from 2 for branches; 0 for leaves and ground.
     branches : LayerFeatures
         Axes of stem and branches, from the base to the tip.
+
+    Other Parameters
+    ----------------
+    height
+        Height of the tree.
+    dbh
+        Diameter of the stem at breast height, 1.3 m.
+    n_branches
+        Branches of the stem.
+    leaves
+        Number of points on leaves, per point on wood.
+    density
+        Point density on wood.
+    noise
+        Standard deviation of points across the bark.
 
     Notes
     -----

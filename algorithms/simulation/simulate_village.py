@@ -38,59 +38,20 @@ _MAP_FIELDS = (
 )
 def simulate_village(
     *,
-    size: float = tunable(150.0, "Side of the village, a square from (0, 0).", within="[50, 1000] m"),
-    density: float = tunable(
-        100.0,
-        "Density on open ground. Roofs have about the same, walls a tenth of it where a view reaches them.",
-        label="Point density",
-        within="[5, 1000] points/m²",
-    ),
-    buildings: float = tunable(
-        12.0, "Houses per hectare of streets and plots, two of three with a shed.", within=f"[0, {MAX_HOMES}] per ha"
-    ),
-    trees: float = tunable(15.0, "Trees in gardens.", within="[0, 200] per ha"),
-    slope: float = tunable(2.0, "Mean slope of the ground.", within="[0, 20]°"),
-    overhang: float = tunable(
-        0.5,
-        "Overhang of the eaves beyond the walls; half of it at sheds.",
-        label="Overhang of roofs",
-        within="[0, 1] m",
-    ),
-    clutter: bool = tunable(
-        True, "Add objects that are not buildings, also next to walls.", label="Cars, hedges and bushes"
-    ),
-    noise: float = tunable(0.03, "Standard deviation of points, the same in every direction.", within="[0, 0.2] m"),
-    holes: float = tunable(
-        0.1,
-        "Approximate share of all surfaces without points, where matching fails.",
-        label="Share of holes",
-        within="[0, 0.5]",
-    ),
-    oblique: float = tunable(
-        28.0,
-        "Angle of the four oblique views to the vertical. Larger angles show more of the walls.",
-        label="Oblique angle",
-        within="[0, 30]°",
-        advanced=True,
-    ),
-    noise_points: float = tunable(
-        20.0, "Wrong matches, half of them above, half below the ground.", within="[0, 1000] per ha", advanced=True
-    ),
-    map_shift: float = tunable(
-        0.3, "Shift of the old map to the east and to the north.", label="Shift of the old map", within="[0, 2] m"
-    ),
-    map_noise: float = tunable(
-        0.15,
-        "Standard deviation of the corners of the old map in easting and northing.",
-        label="Noise of the old map",
-        within="[0, 1] m",
-    ),
-    map_changes: float = tunable(
-        0.1,
-        "Share of the buildings that are missing from the map. As many demolished ones are added on free plots.",
-        label="Changes since the old map",
-        within="[0, 0.5]",
-    ),
+    size: float = tunable(150.0, within="[50, 1000] m"),
+    density: float = tunable(100.0, label="Point density", within="[5, 1000] points/m²"),
+    buildings: float = tunable(12.0, within=f"[0, {MAX_HOMES}] per ha"),
+    trees: float = tunable(15.0, within="[0, 200] per ha"),
+    slope: float = tunable(2.0, within="[0, 20]°"),
+    overhang: float = tunable(0.5, label="Overhang of roofs", within="[0, 1] m"),
+    clutter: bool = tunable(True, label="Cars, hedges and bushes"),
+    noise: float = tunable(0.03, within="[0, 0.2] m"),
+    holes: float = tunable(0.1, label="Share of holes", within="[0, 0.5]"),
+    oblique: float = tunable(28.0, label="Oblique angle", within="[0, 30]°", advanced=True),
+    noise_points: float = tunable(20.0, within="[0, 1000] per ha", advanced=True),
+    map_shift: float = tunable(0.3, label="Shift of the old map", within="[0, 2] m"),
+    map_noise: float = tunable(0.15, label="Noise of the old map", within="[0, 1] m"),
+    map_changes: float = tunable(0.1, label="Changes since the old map", within="[0, 0.5]"),
     seed: int = SEED,
     monitor=None,
 ):
@@ -116,6 +77,37 @@ def simulate_village(
         Outlines of the walls of all buildings, without the eaves.
     old_map : LayerFeatures
         Footprints of the old map: with a common shift and noise of each corner, some missing and some demolished.
+
+    Other Parameters
+    ----------------
+    size
+        Side of the village, a square from (0, 0).
+    density
+        Density on open ground. Roofs have about the same, walls a tenth of it where a view reaches them.
+    buildings
+        Houses per hectare of streets and plots, two of three with a shed.
+    trees
+        Trees in gardens.
+    slope
+        Mean slope of the ground.
+    overhang
+        Overhang of the eaves beyond the walls; half of it at sheds.
+    clutter
+        Add objects that are not buildings, also next to walls.
+    noise
+        Standard deviation of points, the same in every direction.
+    holes
+        Approximate share of all surfaces without points, where matching fails.
+    oblique
+        Angle of the four oblique views to the vertical. Larger angles show more of the walls.
+    noise_points
+        Wrong matches, half of them above, half below the ground.
+    map_shift
+        Shift of the old map to the east and to the north.
+    map_noise
+        Standard deviation of the corners of the old map in easting and northing.
+    map_changes
+        Share of the buildings that are missing from the map. As many demolished ones are added on free plots.
 
     Raises
     ------

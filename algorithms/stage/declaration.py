@@ -11,7 +11,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from .arguments import REFERENCE_PREFIX, check_arrays
-from .docstrings import before_first_section, sections, with_tunables, with_values
+from .docstrings import before_first_section, described, sections, with_tunables, with_values
 from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
 from .tunables import Param, Tunable, in_words
@@ -249,6 +249,8 @@ def _checked(function: Callable, declared: Stage) -> Callable:
 
 def _declared(function: Callable, title: str, group: str, tags: str, fields: dict[str, Any]) -> Stage:
     """Return the declaration of a function: what its signature and docstring say, and the ``fields`` given."""
+    doc = with_values(inspect.cleandoc(function.__doc__ or ""), function.__globals__)
+    helps = described(doc)
     hints = typing.get_type_hints(function)
     reads: list[str] = []
     optional: list[str] = []
@@ -260,10 +262,12 @@ def _declared(function: Callable, title: str, group: str, tags: str, fields: dic
                 if name not in hints or not isinstance(parameter.default, Param):
                     example = f"{name}: float = tunable(…)"
                     raise TypeError(f"{function.__name__} must declare {name!r} with its type, as in '{example}'.")
-                tunables[name] = Tunable(name, _kind(hints[name]), parameter.default)
+                param = replace(parameter.default, help=parameter.default.help or helps.pop(name, ""))
+                tunables[name] = Tunable(name, _kind(hints[name]), param)
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
-    doc = with_values(inspect.cleandoc(function.__doc__ or ""), function.__globals__)
+    if helps:
+        raise TypeError(f"{function.__name__} describes {next(iter(helps))!r}, no tunable or one that has its help.")
     return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **fields)
 
 

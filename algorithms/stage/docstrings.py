@@ -10,7 +10,8 @@ from typing import Any
 
 from .tunables import Tunable
 
-_HEADINGS = ("Parameters", "Returns", "Raises", "Other Parameters", "Notes", "References", "Examples", "See Also")
+_TUNABLES = "Other Parameters"
+_HEADINGS = ("Parameters", "Returns", "Raises", _TUNABLES, "Notes", "References", "Examples", "See Also")
 
 
 # A constant of a module, or a field of one, as docstrings name it.
@@ -57,12 +58,18 @@ def before_first_section(doc: str) -> str:
     return doc
 
 
+def described(doc: str) -> dict[str, str]:
+    """Return the descriptions of the tunables in a docstring by their names, each on one line."""
+    parts = re.split(r"^(\w+)\n", sections(doc).get(_TUNABLES, ""), flags=re.MULTILINE)
+    return {name: " ".join(text.split()) for name, text in zip(parts[1::2], parts[2::2])}
+
+
 def with_tunables(doc: str, tunables: Collection[Tunable], samples: bool = False) -> str:
-    """Return a docstring with a section for its tunables, if any, so that ``help()`` shows what the dialog shows.
+    """Return a docstring with all that is declared of its tunables, so that ``help()`` shows what the dialog shows.
 
     ``samples`` is whether the stage asks how its cloud was sampled.
     """
-    rows = ["Other Parameters", "----------------"]
+    rows = []
     for t in tunables:
         kind = t.type.__name__ + (" or None" if t.is_optional else "")
         facts = [kind, *([t.param.unit] if t.param.unit else []), *([t.range] if t.range else [])]
@@ -71,5 +78,9 @@ def with_tunables(doc: str, tunables: Collection[Tunable], samples: bool = False
         rows.extend(textwrap.wrap(text, 88, initial_indent="    ", subsequent_indent="    "))
     if samples:
         rows.append("sampling : CloudSampling, optional\n    Measured on the points that are not noise if not given.")
+    if not rows:
+        return doc
     rows.append("monitor : Monitor, optional\n    Receives progress, automatic values and warnings.")
-    return f"{doc}\n\n" + "\n".join(rows) + "\n" if tunables or samples else doc
+    heading, text = f"{_TUNABLES}\n{'-' * len(_TUNABLES)}\n", "\n".join(rows)
+    written = sections(doc).get(_TUNABLES)
+    return doc.replace(heading + written, heading + text) if written else f"{doc}\n\n{heading}{text}\n"

@@ -16,7 +16,8 @@ class Param:
     """One tunable: everything but its name and type, which the signature gives."""
 
     default: Any  #: Value where none is given; None for one that is automatic, or that may be left empty
-    help: str  #: One or two sentences: what it does and when to change it
+    #: One or two sentences, what it does and when to change it; "" where the docstring of its stage says it
+    help: str = ""
     #: Interval and unit of a number: "(0, 100] m" is above 0 and at most 100 m, "[3, inf)" at least 3
     within: str = ""
     choices: tuple[str, ...] = ()  #: Allowed words of a ``str``, or the elements of a ``tuple``
@@ -100,8 +101,12 @@ def with_unit(title: str, unit: str) -> str:
     return f"{title} ({unit})" if unit else title
 
 
-def tunable(default: Any, help: str, **fields: Any) -> Any:
-    """Declare a keyword argument of a stage, in place of its default: see :class:`Param`."""
+def tunable(default: Any, help: str = "", **fields: Any) -> Any:
+    """Declare a keyword argument of a stage, in place of its default: see :class:`Param`.
+
+    What it does is said under "Other Parameters" in the docstring of the stage; a tunable that several stages share
+    has its ``help`` with it.
+    """
     return Param(default, help, **fields)
 
 

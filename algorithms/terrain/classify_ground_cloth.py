@@ -40,28 +40,12 @@ def classify_ground_cloth(
     xyz,
     classification,
     *,
-    cell_size: float = tunable(
-        0.5, "Distance of the cloth's particles (grid resolution).", label="Grid cell size", within="[0.05, 100] m"
-    ),
-    rigidness: int = tunable(
-        3, "Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.", within="[1, 3]"
-    ),
-    threshold: float = tunable(
-        0.5,
-        "Points at most this far above or below the cloth are ground.",
-        label="Class threshold",
-        within="(0, 100] m",
-    ),
-    slope_processing: bool = tunable(
-        True,
-        f"Let the cloth down where it hangs over slopes without a step of {_RULES.step:g} m from one particle to the "
-        "next.",
-        label="Slope post-processing",
-    ),
-    time_step: float = tunable(
-        0.65, "How far the cloth falls in one step; smaller is slower and steadier.", within="(0, 2]", advanced=True
-    ),
-    iterations: int = tunable(500, "Most steps of the simulation.", within="[1, 10_000]", advanced=True),
+    cell_size: float = tunable(0.5, label="Grid cell size", within="[0.05, 100] m"),
+    rigidness: int = tunable(3, within="[1, 3]"),
+    threshold: float = tunable(0.5, label="Class threshold", within="(0, 100] m"),
+    slope_processing: bool = tunable(True, label="Slope post-processing"),
+    time_step: float = tunable(0.65, within="(0, 2]", advanced=True),
+    iterations: int = tunable(500, within="[1, 10_000]", advanced=True),
     monitor=None,
 ):
     """Find the ground by letting a cloth fall onto the terrain turned upside down.
@@ -81,6 +65,21 @@ def classify_ground_cloth(
     -------
     classification : ndarray of shape (n,), uint8
         ASPRS classes, ground 2.
+
+    Other Parameters
+    ----------------
+    cell_size
+        Distance of the cloth's particles (grid resolution).
+    rigidness
+        Stiffness of the cloth: 1 follows steep slopes, 2 terraces, 3 is for flat land.
+    threshold
+        Points at most this far above or below the cloth are ground.
+    slope_processing
+        Let the cloth down where it hangs over slopes without a step of ``_RULES.step`` m from one particle to the next.
+    time_step
+        How far the cloth falls in one step; smaller is slower and steadier.
+    iterations
+        Most steps of the simulation.
 
     Raises
     ------

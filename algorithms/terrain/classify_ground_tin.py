@@ -107,42 +107,30 @@ def classify_ground_tin(
         automatic="the smallest kind from town on that has room for the largest building found.",
     ),
     granularity: Optional[str] = tunable(
-        None,
-        "How finely the surface is started and refined: it sets the grid cell size where that is automatic, at "
-        "least 2 m (coarse), 1 m (medium, fine) or 0.5 m (extra fine).",
-        choices=tuple(_GRANULARITIES),
-        automatic="fine where points are farther apart than 1 m, else medium.",
+        None, choices=tuple(_GRANULARITIES), automatic="fine where points are farther apart than 1 m, else medium."
     ),
     max_building_size: Optional[float] = tunable(
         None,
-        "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
         within="[1, 1000] m",
-        automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
-        "as the kind of terrain has it.",
+        automatic=(
+            f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
+            "as the kind of terrain has it."
+        ),
     ),
     cell_size: Optional[float] = tunable(
         None,
-        "Cell in which the lowest point is looked for.",
         label="Grid cell size",
         within="[0.1, 100] m",
         automatic="half the point spacing (coarse and medium: the whole), at least the granularity's.",
         advanced=True,
     ),
     iteration_angle: Optional[float] = tunable(
-        None,
-        "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
-        "larger follows steeper breaks and lets more low objects in.",
-        within="(0, 90]°",
-        automatic=f"{GROUND.angle:g}°, in nature {GROUND.angle_in_nature:g}°.",
+        None, within="(0, 90]°", automatic=f"{GROUND.angle:g}°, in nature {GROUND.angle_in_nature:g}°."
     ),
     iteration_distance: Optional[float] = ITERATION_DISTANCE,
     edge_length: Optional[float] = EDGE_LENGTH,
     sweep_distance: Optional[float] = SWEEP_DISTANCE,
-    keep_ground: bool = tunable(
-        False,
-        "Where the cloud has ground (2) already, it stays as it is and no other is looked for.",
-        label="Keep existing ground",
-    ),
+    keep_ground: bool = tunable(False, label="Keep existing ground"),
     source: str = POINT_SOURCE,
     sampling: CloudSampling = MEASURED,
     monitor=None,
@@ -166,6 +154,21 @@ def classify_ground_tin(
     -------
     classification : ndarray of shape (n,), uint8
         ASPRS classes, ground 2.
+
+    Other Parameters
+    ----------------
+    granularity
+        How finely the surface is started and refined: it sets the grid cell size where that is automatic, at least 2 m
+        (coarse), 1 m (medium, fine) or 0.5 m (extra fine).
+    max_building_size
+        The shorter side of the largest building; smaller keeps more of narrow hilltops.
+    cell_size
+        Cell in which the lowest point is looked for.
+    iteration_angle
+        Largest angle between a facet and the lines to its nodes under which a point joins the surface; larger follows
+        steeper breaks and lets more low objects in.
+    keep_ground
+        Where the cloud has ground (2) already, it stays as it is and no other is looked for.
 
     Raises
     ------

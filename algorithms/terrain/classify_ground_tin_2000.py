@@ -42,25 +42,9 @@ def classify_ground_tin_2000(
     return_number=None,
     number_of_returns=None,
     *,
-    max_building_size: float = tunable(
-        USUAL_BUILDING,
-        "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
-        "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
-        "towns, 25 m in cities and 50 m in the largest cities.",
-        within="[1, 1000] m",
-    ),
-    terrain_angle: float = tunable(
-        88.0,
-        "Steepest line from a point to the nodes of its facet under which it joins the surface.",
-        within="(0, 90]°",
-        advanced=True,
-    ),
-    iteration_angle: float = tunable(
-        20.0,
-        "Upper bound of the angle between a facet and the lines to its nodes under which a point joins the "
-        "surface, which is estimated in each round. Larger follows steeper breaks and lets more low objects in.",
-        within="(0, 90]°",
-    ),
+    max_building_size: float = tunable(USUAL_BUILDING, within="[1, 1000] m"),
+    terrain_angle: float = tunable(88.0, within="(0, 90]°", advanced=True),
+    iteration_angle: float = tunable(20.0, within="(0, 90]°"),
     iteration_distance: Optional[float] = ITERATION_DISTANCE.with_automatic(
         f"{DENSIFICATION.deviations:g} times the roughness of the surface, estimated in each round; or half of that "
         f"and {_RULES.bend:g} point spacings, if that is more."
@@ -91,6 +75,18 @@ def classify_ground_tin_2000(
     -------
     classification : ndarray of shape (n,), uint8
         ASPRS classes, ground 2.
+
+    Other Parameters
+    ----------------
+    max_building_size
+        Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more of
+        narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in towns, 25 m
+        in cities and 50 m in the largest cities.
+    terrain_angle
+        Steepest line from a point to the nodes of its facet under which it joins the surface.
+    iteration_angle
+        Upper bound of the angle between a facet and the lines to its nodes under which a point joins the surface, which
+        is estimated in each round. Larger follows steeper breaks and lets more low objects in.
 
     Raises
     ------

@@ -20,11 +20,7 @@ def complete_ground(
     classification,
     height_above_ground,
     *,
-    max_distance: float = tunable(
-        0.1,
-        "Unclassified points no farther above or below the surface of the ground become ground; 0 adds none.",
-        within="[0, 1] m",
-    ),
+    max_distance: float = tunable(0.1, within="[0, 1] m"),
     monitor=None,
 ):
     """Add to the ground the points on its surface that have no other class.
@@ -45,6 +41,11 @@ def complete_ground(
     -------
     classification : ndarray of shape (n,), uint8
         The same with more ground (2).
+
+    Other Parameters
+    ----------------
+    max_distance
+        Unclassified points no farther above or below the surface of the ground become ground; 0 adds none.
 
     Notes
     -----

@@ -41,17 +41,13 @@ def rasterize_terrain(
     *,
     cell_size: Optional[float] = tunable(
         None,
-        "Side of a cell of the rasters.",
         within=f"[0.01, {_MOST_CELL}] m",
-        automatic=f"{CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
-        f"least {_LEAST_CELL:g} m.",
+        automatic=(
+            f"{CELL_SPACINGS:g} times the point spacing, rounded to 1, 2 or 5 times a power of ten; at "
+            f"least {_LEAST_CELL:g} m."
+        ),
     ),
-    gap_distance: Optional[float] = tunable(
-        None,
-        "Cells of the surface model without points are interpolated up to this far from cells with points.",
-        within="[0, 10_000] m",
-        automatic=f"{_GAP_CELLS:g} cells.",
-    ),
+    gap_distance: Optional[float] = tunable(None, within="[0, 10_000] m", automatic=f"{_GAP_CELLS:g} cells."),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -71,6 +67,13 @@ def rasterize_terrain(
     -------
     dtm, dsm, ndsm : RasterSurface
         Elevations and heights, m, on the same cells; NaN where there is nothing.
+
+    Other Parameters
+    ----------------
+    cell_size
+        Side of a cell of the rasters.
+    gap_distance
+        Cells of the surface model without points are interpolated up to this far from cells with points.
 
     Raises
     ------

@@ -52,14 +52,10 @@ def classify_roofs(
     height_above_ground,
     segment_id,
     *,
-    min_height: float = tunable(2.0, "Height above the ground over which half of a roof lies.", within="[0.5, 100] m"),
+    min_height: float = tunable(2.0, within="[0.5, 100] m"),
     min_area: float = MIN_MAPPED_AREA,
     gap: Optional[float] = tunable(
-        None,
-        "Points of planes at most this far apart belong to one building.",
-        label="Gap between roofs",
-        within="(0, 20] m",
-        automatic="3 times the point spacing, from 0.6 to 5 m.",
+        None, label="Gap between roofs", within="(0, 20] m", automatic="3 times the point spacing, from 0.6 to 5 m."
     ),
     density: Optional[float] = POINT_DENSITY,
     source: str = POINT_SOURCE,
@@ -88,6 +84,13 @@ def classify_roofs(
         Roofs get 6; points of class 6 on no roof become 1.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from west to east; 0 if unassigned.
+
+    Other Parameters
+    ----------------
+    min_height
+        Height above the ground over which half of a roof lies.
+    gap
+        Points of planes at most this far apart belong to one building.
 
     Notes
     -----

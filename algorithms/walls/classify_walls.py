@@ -47,32 +47,22 @@ def classify_walls(
     height_above_ground,
     cluster_id,
     *,
-    min_height: float = tunable(0.3, "Lower points may be ground, kerbs and plants.", within="[0, 10] m"),
-    max_height: float = tunable(2.5, "Walls are looked for up to this height above the ground.", within="[0.5, 100] m"),
-    max_tilt: float = tunable(30.0, "Largest angle of a wall to the vertical.", within="[0, 90]°"),
-    neighborhood: str = tunable(
-        "nearest",
-        "Which points give a point its normal: a number of nearest ones, or all within a radius.",
-        choices=("nearest", "radius"),
-    ),
+    min_height: float = tunable(0.3, within="[0, 10] m"),
+    max_height: float = tunable(2.5, within="[0.5, 100] m"),
+    max_tilt: float = tunable(30.0, within="[0, 90]°"),
+    neighborhood: str = tunable("nearest", choices=("nearest", "radius")),
     n_neighbors: Optional[int] = tunable(
         None,
-        "Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.",
         label="Nearest points",
         within="[3, 1000]",
-        automatic=f"as many as reach {_REACH_DEVIATIONS:g} times the roughness at the density of low points near "
-        "roofs, 8 to 30.",
+        automatic=(
+            f"as many as reach {_REACH_DEVIATIONS:g} times the roughness at the density of low points near "
+            "roofs, 8 to 30."
+        ),
     ),
-    radius: float = tunable(
-        0.5, "Radius of the sphere around a point; used by the neighborhood 'radius'.", within="(0, 10] m"
-    ),
+    radius: float = tunable(0.5, within="(0, 10] m"),
     noise: Optional[float] = SURFACE_NOISE,
-    margin: float = tunable(
-        0.3,
-        "How far the convex hull of a roof is grown; walls outside it belong to no roof.",
-        label="Margin around roofs",
-        within="[0, 20] m",
-    ),
+    margin: float = tunable(0.3, label="Margin around roofs", within="[0, 20] m"),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -98,6 +88,23 @@ def classify_walls(
         Walls get 6.
     wall_of : ndarray of shape (n,), int32
         Building of each wall point; 0 if unassigned.
+
+    Other Parameters
+    ----------------
+    min_height
+        Lower points may be ground, kerbs and plants.
+    max_height
+        Walls are looked for up to this height above the ground.
+    max_tilt
+        Largest angle of a wall to the vertical.
+    neighborhood
+        Which points give a point its normal: a number of nearest ones, or all within a radius.
+    n_neighbors
+        Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.
+    radius
+        Radius of the sphere around a point; used by the neighborhood 'radius'.
+    margin
+        How far the convex hull of a roof is grown; walls outside it belong to no roof.
 
     Raises
     ------

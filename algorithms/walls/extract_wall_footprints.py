@@ -94,18 +94,9 @@ def extract_wall_footprints(
     voxel_count=None,
     *,
     min_area: float = MIN_MAPPED_AREA,
-    min_length: float = tunable(
-        1.2, "Length of the shortest wall that is looked for.", label="Minimum wall length", within="[0.2, 100] m"
-    ),
-    max_overhang: float = tunable(
-        1.2, "How far roofs may jut out over their walls; parts deeper under a roof are inside.", within="[0, 10] m"
-    ),
-    min_seen: float = tunable(
-        0.25,
-        "Where less of the perimeter has wall points, the outline of the roof is given instead.",
-        label="Minimum share of walls seen",
-        within="[0, 1]",
-    ),
+    min_length: float = tunable(1.2, label="Minimum wall length", within="[0.2, 100] m"),
+    max_overhang: float = tunable(1.2, within="[0, 10] m"),
+    min_seen: float = tunable(0.25, label="Minimum share of walls seen", within="[0, 1]"),
     tolerance: Optional[float] = _TOLERANCE,
     seed: int = SEED,
     sampling: CloudSampling = MEASURED,
@@ -144,6 +135,15 @@ def extract_wall_footprints(
         of each.
     report : Report
         Points of each kind, footprints and corners, and a page that shows them.
+
+    Other Parameters
+    ----------------
+    min_length
+        Length of the shortest wall that is looked for.
+    max_overhang
+        How far roofs may jut out over their walls; parts deeper under a roof are inside.
+    min_seen
+        Where less of the perimeter has wall points, the outline of the roof is given instead.
 
     Notes
     -----

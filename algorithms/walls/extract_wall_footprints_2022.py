@@ -75,27 +75,21 @@ def extract_wall_footprints_2022(
     voxel_count=None,
     *,
     min_area: float = MIN_MAPPED_AREA,
-    tolerance: float = tunable(0.1, "Distance within which points lie on a line.", within="[0.01, 2] m"),
+    tolerance: float = tunable(0.1, within="[0.01, 2] m"),
     min_points: Optional[int] = tunable(
         None,
-        "Points of a line at least; the authors' program takes 90.",
         label="Minimum points of a line",
         within="[2, 100_000]",
-        automatic=f"as many as lie on {_SHORTEST:g} m of wall, if the sides of the boxes around all walls have the "
-        f"same number per meter; at least {_LEAST_POINTS}.",
+        automatic=(
+            f"as many as lie on {_SHORTEST:g} m of wall, if the sides of the boxes around all walls have the "
+            f"same number per meter; at least {_LEAST_POINTS}."
+        ),
     ),
-    max_skew: float = tunable(
-        5.0, "Largest deviation of a corner from a right angle; others are no corners.", within="[0, 90]°"
-    ),
-    width: float = tunable(
-        0.2, "How far the buffer around an edge reaches to both sides.", label="Buffer", within="[0.01, 5] m"
-    ),
-    ends: float = tunable(
-        0.2, "Length at both ends of an edge that its buffer leaves out.", label="Corner distance", within="[0, 5] m"
-    ),
+    max_skew: float = tunable(5.0, within="[0, 90]°"),
+    width: float = tunable(0.2, label="Buffer", within="[0.01, 5] m"),
+    ends: float = tunable(0.2, label="Corner distance", within="[0, 5] m"),
     min_density: Optional[float] = tunable(
         None,
-        "Wall points per square meter in the buffer of an edge at least; the authors' program takes 90.",
         within="(0, 1_000_000] points/m²",
         automatic=f"{_DENSE:g} times the density around all lines in the median.",
     ),
@@ -131,6 +125,21 @@ def extract_wall_footprints_2022(
         All crossings of two lines at right angles up to 10 m around the walls.
     report : Report
         Points of each kind, footprints and corners, and a page that shows them.
+
+    Other Parameters
+    ----------------
+    tolerance
+        Distance within which points lie on a line.
+    min_points
+        Points of a line at least; the authors' program takes 90.
+    max_skew
+        Largest deviation of a corner from a right angle; others are no corners.
+    width
+        How far the buffer around an edge reaches to both sides.
+    ends
+        Length at both ends of an edge that its buffer leaves out.
+    min_density
+        Wall points per square meter in the buffer of an edge at least; the authors' program takes 90.
 
     Notes
     -----

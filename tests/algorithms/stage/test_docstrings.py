@@ -2,21 +2,36 @@
 
 from typing import Optional
 
+import pytest
+
 from lidar_buildings.algorithms.stage import stage, tunable
+
+_WIDTH = 1250.5
+
+# Shared with other stages, so that it has its help with it.
+COLOR = tunable(None, "Which.", empty="it stays as it is.")
 
 
 @stage("Toys", writes=("cluster_id",))
 def toy_words(
     xyz,
     *,
-    width: float = tunable(2.0, "How wide.", within="[0, inf) m"),
-    count: Optional[int] = tunable(None, "How many.", within="[1, inf)", automatic="all."),
-    color: Optional[str] = tunable(None, "Which.", empty="it stays as it is."),
+    width: float = tunable(2.0, within="[0, inf) m"),
+    count: Optional[int] = tunable(None, within="[1, inf)", automatic="all."),
+    color: Optional[str] = COLOR,
     monitor=None,
 ):
     """Say something in one paragraph.
 
     A second one.
+
+    Other Parameters
+    ----------------
+    width
+        How wide, at most ``_WIDTH`` m,
+        in words.
+    count
+        How many.
 
     Notes
     -----
@@ -47,10 +62,13 @@ def test_summary_description_and_sections_come_from_the_docstring():
 
 
 def test_help_shows_tunables_as_the_dialog_does():
-    _, added = toy_words.__doc__.split("Other Parameters\n----------------\n")
+    before, added = toy_words.__doc__.split("Other Parameters\n----------------\n")
+    assert before == "Say something in one paragraph.\n\nA second one.\n\n"
+    added, after = added.split("\n\n", 1)
+    assert after.startswith("Notes\n-----\n")
     assert added.splitlines() == [
         "width : float, m, at least 0 m, default 2.0",
-        "    How wide.",
+        "    How wide, at most 1,250.5 m, in words.",
         "count : int or None, at least 1, default None",
         "    How many. Automatic: all.",
         "color : str or None, default None",
@@ -79,12 +97,32 @@ def test_words_and_lines_within_a_section_are_its_text():
     assert words.section("Returns") == ""
 
 
-_WIDTH = 1250.5
-
-
 def test_constants_that_a_docstring_names_become_their_values():
     def toy(xyz, *, monitor=None):
         """Cut strips of ``_WIDTH`` m, not ``width``; ``Optional`` is no number."""
 
     words = stage("Toys", title="Toy", writes=("cluster_id",))(toy).stage
     assert words.summary == "Cut strips of 1,250.5 m, not ``width``; ``Optional`` is no number."
+
+
+def test_what_a_tunable_does_is_read_from_the_docstring_or_comes_with_it():
+    helps = {name: tunable.param.help for name, tunable in toy_words.stage.tunables.items()}
+    assert helps == {"width": "How wide, at most 1,250.5 m, in words.", "count": "How many.", "color": "Which."}
+
+
+@pytest.mark.parametrize("name", ["color", "breadth"])
+def test_a_docstring_describes_no_tunable_that_has_its_help_or_does_not_exist(name):
+    def toy(xyz, *, color: Optional[str] = COLOR, monitor=None):
+        pass
+
+    toy.__doc__ = f"Count.\n\nOther Parameters\n----------------\n{name}\n    Which one."
+    with pytest.raises(TypeError, match=rf"^toy describes '{name}', no tunable"):
+        stage("Toys", title="Toy", writes=("cluster_id",))(toy)
+
+
+def test_a_section_is_added_at_the_end_where_all_tunables_are_shared():
+    def toy(xyz, *, color: Optional[str] = COLOR, monitor=None):
+        """Count."""
+
+    made = stage("Toys", title="Toy", writes=("cluster_id",))(toy)
+    assert made.__doc__.startswith("Count.\n\nOther Parameters\n----------------\ncolor : str or None, default None\n")
