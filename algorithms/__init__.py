@@ -17,8 +17,6 @@ Conventions, written once and kept by every stage:
   of other points (``selects``, ``merges``).
 """
 
-from __future__ import annotations
-
 from .stages import STAGES
 
 __all__ = ["STAGES"]

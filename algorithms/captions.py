@@ -4,8 +4,6 @@ The pictures are made of simulated scenes by ``scripts/help_pictures.py`` and ``
 is not named here, and writes a dimension of the points it reads, is shown on a simulated town by that dimension.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 from .cloud.dimensions import DIMENSIONS

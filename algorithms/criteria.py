@@ -1,7 +1,5 @@
 """Criteria that are no choice of a method: a majority, normal errors, rounding, the millimeters of maps."""
 
-from __future__ import annotations
-
 # Share of the parts of something that decides for all of it: the majority.
 MAJORITY = 0.5
 

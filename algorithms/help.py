@@ -1,7 +1,5 @@
 """Help of an algorithm as HTML, from the declaration of its stage or pipeline."""
 
-from __future__ import annotations
-
 import html
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Memory of this computer: how much it has; freed memory is shared by threads, and returned to the system."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import sys

@@ -1,7 +1,5 @@
 """Versions of the packages that the plugin installs: wanted, as ``requirements.txt`` has them, and installed."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import pkgutil
 import re

@@ -5,8 +5,6 @@ then still show every algorithm and each must say what is missing, so nothing he
 is imported before a stage runs.
 """
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 from collections.abc import Collection

@@ -1,7 +1,5 @@
 """Tunables that two stages or more share: label, help, unit and bounds, once."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from .stage import tunable

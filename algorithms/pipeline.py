@@ -1,7 +1,5 @@
 """The vocabulary of composites: steps, their outputs, and the pipeline that they make."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import Any, Optional

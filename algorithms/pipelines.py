@@ -4,8 +4,6 @@ The graph that a user opens in the model designer is drawn from this module too,
 can't differ.
 """
 
-from __future__ import annotations
-
 from .pipeline import Pipeline, Step
 
 _SANTOS = (

@@ -1,7 +1,5 @@
 """Kinds of clouds as users name them, and the parameters that are better set for them than measured."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

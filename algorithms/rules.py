@@ -1,7 +1,5 @@
 """Rules of the methods: numbers that a module groups under a name, each with its unit and the reason for it."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterator
 from typing import Any

@@ -4,8 +4,6 @@ A stage: fetch the dimensions that it reads, leave out withheld points, store th
 stage after the other.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Optional, Union

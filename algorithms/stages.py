@@ -1,7 +1,5 @@
 """The stages, in pipeline order. To add one: write its module, name it here, test it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, MutableMapping
 from importlib import import_module
 from typing import Optional

@@ -1,7 +1,5 @@
 """Work in chunks on all cores, for numpy and scipy calls that release the interpreter."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterator

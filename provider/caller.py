@@ -1,7 +1,5 @@
 """Who runs an algorithm: the command line, a chain, or a dialog."""
 
-from __future__ import annotations
-
 from qgis.core import QgsApplication, QgsProcessingFeedback
 
 

@@ -1,7 +1,5 @@
 """What stages and composites have in common as algorithms: read, compute in memory, write all results or none."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

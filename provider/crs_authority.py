@@ -4,8 +4,6 @@ QGIS's own class has no way to leave out the third axis of a system, knows no Ge
 thread that made it (see :func:`.crs.is_hollow`). GDAL, by which QGIS reads and writes layers, has none of these faults.
 """
 
-from __future__ import annotations
-
 import struct
 from functools import lru_cache, partial
 from typing import Optional

@@ -1,7 +1,5 @@
 """What is missing on this machine, and the one command that mends it."""
 
-from __future__ import annotations
-
 import importlib.util
 import shlex
 import sys

@@ -1,7 +1,5 @@
 """The toolbox entry that opens a composite as a graph."""
 
-from __future__ import annotations
-
 from processing.gui.ContextAction import ContextAction
 from qgis.PyQt.QtWidgets import QMessageBox
 

@@ -1,7 +1,5 @@
 """What algorithms make, as the outputs that users choose."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from qgis.core import (

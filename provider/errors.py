@@ -1,7 +1,5 @@
 """Errors of the core as Processing shows them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Optional

@@ -1,7 +1,5 @@
 """Progress, values and warnings of a running stage, shown in QGIS's log and progress bar."""
 
-from __future__ import annotations
-
 import html
 import time
 from difflib import get_close_matches

@@ -1,7 +1,5 @@
 """The field for several point clouds in a dialog: files, folders and layers in one list."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a user gives an algorithm, as its other modules ask for it."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Inputs and outputs that algorithms have in common: their names, titles and parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Optional

@@ -1,7 +1,5 @@
 """Versions that are installed, in text to copy, and the installation of packages that are missing."""
 
-from __future__ import annotations
-
 import importlib
 import platform
 import sys

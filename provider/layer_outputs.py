@@ -1,7 +1,5 @@
 """Layers and text files that algorithms make, written to the outputs that the user chose."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -4,8 +4,6 @@ When a disk is full, GDAL fails at closing a file, where it reports no error. Fi
 are complete, or copying raises the error of the system.
 """
 
-from __future__ import annotations
-
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager

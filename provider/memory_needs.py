@@ -1,7 +1,5 @@
 """What clouds need of this computer's memory."""
 
-from __future__ import annotations
-
 from ..algorithms.memory import installed_memory
 from ..algorithms.stage import Monitor
 from ..algorithms.stages import less_memory

@@ -1,7 +1,5 @@
 """The plugin's menu and toolbar button: the way to a first result, and what helps where something is missing."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Callable, Optional

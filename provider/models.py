@@ -1,7 +1,5 @@
 """Pipelines as Processing models, drawn from ``pipelines.py`` when the designer asks for them."""
 
-from __future__ import annotations
-
 from qgis.core import (
     Qgis,
     QgsProcessingModelAlgorithm,

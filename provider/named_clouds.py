@@ -1,7 +1,5 @@
 """Clouds that name no coordinate reference system get the one of the others of the run, or the one that is given."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Optional

@@ -1,7 +1,5 @@
 """Styles that users switch between, under Styles in the menu of a layer: by height, confidence, reason, roof type."""
 
-from __future__ import annotations
-
 from qgis.core import (
     QgsCategorizedSymbolRenderer,
     QgsClassificationPrettyBreaks,

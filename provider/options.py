@@ -1,7 +1,5 @@
 """What users set for all runs, under Settings ▸ Options ▸ Processing ▸ Providers ▸ LiDAR Buildings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Callable
 

@@ -1,7 +1,5 @@
 """Tunables as Processing parameters: label, unit, bounds, choices, default and help from one declaration."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 from typing import Any, Optional
 

@@ -1,7 +1,5 @@
 """Where the plugin keeps its own files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 PLUGIN = Path(__file__).resolve().parent.parent

@@ -1,7 +1,5 @@
 """Buttons next to text fields that fill them in: classes by their names, dimensions of the chosen cloud."""
 
-from __future__ import annotations
-
 from typing import Callable
 
 from qgis.PyQt.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QToolButton, QWidget

@@ -1,7 +1,5 @@
 """The shipped composites as algorithms: all steps run in memory, and only those that the wanted outputs need."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from qgis.core import QgsProcessingContext, QgsProcessingFeedback

@@ -1,7 +1,5 @@
 """Where the local meters of a run are on the map."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Callable
 

@@ -1,7 +1,5 @@
 """The plugin as QGIS sees it: it adds the provider, and takes everything away again."""
 
-from __future__ import annotations
-
 import sys
 from importlib import import_module
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The Processing provider: an algorithm for every stage and every pipeline, and those for surveys in tiles."""
 
-from __future__ import annotations
-
 from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 

@@ -1,7 +1,5 @@
 """Coordinate reference systems, looked up in QGIS."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Callable, Optional
 

@@ -1,7 +1,5 @@
 """Questions to the user, and messages with something to do."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from typing import Any, Callable, Optional
 

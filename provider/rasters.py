@@ -1,7 +1,5 @@
 """Rasters that stages make, as tiled and compressed GeoTIFF that is read in part and at any scale (COG)."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager

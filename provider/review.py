@@ -1,7 +1,5 @@
 """Decisions of a reviewer on the buildings of a layer: they are attributes of it, and each can be undone."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """The points around a building under review, from above and in sections, read from a cloud of the project."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the steps of a run did, for its pages: parameters as used, seconds, and what they said."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterable, Sequence
 from datetime import datetime

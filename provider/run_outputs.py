@@ -1,7 +1,5 @@
 """What algorithms write: checked before, complete or absent after, and shown in QGIS."""
 
-from __future__ import annotations
-
 import os
 import re
 import tempfile

@@ -1,7 +1,5 @@
 """A small town to try everything with: made in seconds, and opened as a project."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -3,8 +3,6 @@
 Whoever controls a scheduler runs code as the user. An address may come with a model or a project of somebody else.
 """
 
-from __future__ import annotations
-
 import re
 
 from qgis.core import QgsApplication

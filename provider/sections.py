@@ -1,7 +1,5 @@
 """How the parameters of a composite are grouped in its dialog: each step's together, under its name."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from typing import Any, Optional

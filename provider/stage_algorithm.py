@@ -1,7 +1,5 @@
 """The one Processing algorithm that turns any stage into a dialog, a model child and a command."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What algorithms on surveys have in common: where a survey lies, and the virtual point cloud over its tiles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Optional

@@ -1,7 +1,5 @@
 """A composite in tiles as a Processing algorithm: a survey in, a folder of tiles and the layers of the whole out."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any, Optional

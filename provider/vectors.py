@@ -1,7 +1,5 @@
 """Layers that stages make, as QGIS features."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path

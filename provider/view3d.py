@@ -1,7 +1,5 @@
 """A view of the results of a run in three dimensions, from the side."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import islice

@@ -1,7 +1,5 @@
 """Point clouds on the web, read as QGIS reads layers: through its proxy, certificates and authentication."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Callable, NamedTuple, Optional, cast

@@ -22,8 +22,6 @@ CHANGES = ROOT / "CHANGELOG.md"
 
 TEST = '''"""Storeys of a tower of points."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from lidar_buildings.algorithms.{room}.{name} import {name}

@@ -1,7 +1,5 @@
 """Find bridge decks among ground points: smooth surfaces with free air at both sides."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

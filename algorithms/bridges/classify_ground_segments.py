@@ -1,7 +1,5 @@
 """Bare earth and bridges, from the segments of a cloud."""
 
-from __future__ import annotations
-
 import math
 from typing import Optional
 

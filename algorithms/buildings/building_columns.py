@@ -1,7 +1,5 @@
 """Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns next to it do not."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Features of space cells: shape, height, returns and intensity of their points, and the column of each cell."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

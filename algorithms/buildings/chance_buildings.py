@@ -1,7 +1,5 @@
 """Remove crowns that look like buildings by chance: of thousands in a forest, some are smooth and closed."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Decide which clusters are buildings by mean entropy, penetration by the beam, adjacent clusters and surroundings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Optional, Union
 

@@ -1,7 +1,5 @@
 """Decide which clusters are buildings as published in 2019, by mean entropy and two means."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

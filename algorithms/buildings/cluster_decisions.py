@@ -1,7 +1,5 @@
 """Decisions on clusters: confidence, reason and weakest evidence, first by entropy, finally written to the points."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Optional
 

@@ -1,7 +1,5 @@
 """The mean entropy of each cluster (equations 5 to 11 of dos Santos et al., 2019)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Evidence on clusters other than entropy: penetration by the beam, adjacent clusters, surroundings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Optional

@@ -1,7 +1,5 @@
 """The page with the decisions on clusters: reasons, entropies and, where it counts, penetration."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Decide on points at the edges of buildings together, by a minimum cut in the graph of their nearest neighbors."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Two mean entropies, of buildings and of everything else, held by reference values."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Callable
 

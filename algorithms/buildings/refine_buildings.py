@@ -1,7 +1,5 @@
 """Refine buildings by self-training: a classifier learns from the result that it then corrects."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Optional

@@ -1,7 +1,5 @@
 """The cells that roofs of buildings cover: gaps closed, regions numbered, with the height of roofs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Extent of roofs in clouds of matched images, whose edges are rounded, and objects of the size of vehicles."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

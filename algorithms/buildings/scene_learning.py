@@ -1,7 +1,5 @@
 """Learn the appearance of buildings from the scene's own classes: each half of the scene judges the other one."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

@@ -1,7 +1,5 @@
 """Cubic cells in space with the points in each, and sums over each cell and the 26 around it."""
 
-from __future__ import annotations
-
 from functools import cached_property
 from itertools import chain
 from typing import Any

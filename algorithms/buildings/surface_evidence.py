@@ -1,7 +1,5 @@
 """Evidence on clusters without returns: planar surfaces next to others of their kind, and color."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """ASPRS point classes (LAS 1.4 R15): the only place where a class has a number."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 import numpy as np

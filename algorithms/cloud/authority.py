@@ -1,7 +1,5 @@
 """Create and compare coordinate reference systems: by QGIS's libraries in QGIS, else by pyproj."""
 
-from __future__ import annotations
-
 import importlib
 import re
 import warnings

@@ -1,7 +1,5 @@
 """Read descriptions of point clouds in JSON, in bounded memory."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

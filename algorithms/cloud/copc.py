@@ -1,7 +1,5 @@
 """COPC files: LAZ whose chunks are the nodes of an octree (copc.io, specification 1.0)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, BinaryIO, Callable
 

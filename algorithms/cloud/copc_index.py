@@ -1,7 +1,5 @@
 """The index of a COPC file: the chunks of points that may lie in a box."""
 
-from __future__ import annotations
-
 import struct
 from pathlib import Path
 from typing import BinaryIO

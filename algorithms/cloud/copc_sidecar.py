@@ -5,8 +5,6 @@ both files' content. By it a view differs from any other COPC file, and from a v
 changed since: nothing but an untouched view may be lost.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable
 from pathlib import Path

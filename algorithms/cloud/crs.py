@@ -1,7 +1,5 @@
 """The coordinate reference system of a cloud: one record, made when the cloud is opened and handed on from there."""
 
-from __future__ import annotations
-
 import re
 import struct
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ Stages name dimensions by the Python name, in positional arguments (read) and in
 several dimensions on disk. Undefined is NaN in a float dimension and 0 in an id.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """Entwine point tiles (EPT 1.0): an octree whose nodes are files, described by ept.json and pages of a hierarchy."""
 
-from __future__ import annotations
-
 import re
 from functools import lru_cache
 from pathlib import Path

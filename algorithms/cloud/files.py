@@ -1,7 +1,5 @@
 """Reading point clouds from files, and writing them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace

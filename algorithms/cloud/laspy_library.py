@@ -1,7 +1,5 @@
 """The libraries of point cloud files: laspy, with lazrs or laszip beneath it. The only place that imports them."""
 
-from __future__ import annotations
-
 import importlib
 import sys
 from collections.abc import Iterator

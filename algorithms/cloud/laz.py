@@ -1,7 +1,5 @@
 """LAZ through laspy's backends, lazrs or laszip, after the claims of a file are checked against its size."""
 
-from __future__ import annotations
-
 import io
 import struct
 from dataclasses import dataclass

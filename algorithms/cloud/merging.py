@@ -1,7 +1,5 @@
 """Merge clouds of any scales, offsets, point formats and extra dimensions."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Optional
 

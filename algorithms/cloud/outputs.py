@@ -1,7 +1,5 @@
 """Files that appear complete or not at all, and all files of one run together."""
 
-from __future__ import annotations
-
 import errno
 import io
 import os

@@ -1,7 +1,5 @@
 """The records that a cloud is written as: what was read, with what stages have set."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from typing import Callable, Optional, Union

@@ -1,7 +1,5 @@
 """Show texts of files in sentences to the user."""
 
-from __future__ import annotations
-
 
 def shown(text: str, longest: int = 60) -> str:
     """Return a text as a sentence may show it: printable, in one line, at most ``longest`` characters.

@@ -1,7 +1,5 @@
 """Why points are called building or not: a number, a name and a sentence for each reason, and the weakest evidence."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 from typing import Callable
 

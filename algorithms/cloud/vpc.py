@@ -1,7 +1,5 @@
 """STAC items in JSON that name the tiles of one cloud: virtual point clouds, other collections, and single items."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """Addresses on the web: those that may be read, their display, and redirections."""
 
-from __future__ import annotations
-
 import ipaddress
 import re
 import socket

@@ -1,7 +1,5 @@
 """Ranges of files on the web that are kept from run to run, in a folder that the user names."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator
 from contextlib import suppress

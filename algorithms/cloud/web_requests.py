@@ -1,7 +1,5 @@
 """One request for a range of bytes: by the standard library, or by the means of the program around it."""
 
-from __future__ import annotations
-
 import ssl
 from dataclasses import dataclass
 from http.client import HTTPException

@@ -1,7 +1,5 @@
 """The arguments of the command, from the declaration of an algorithm."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any, Callable

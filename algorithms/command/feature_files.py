@@ -1,7 +1,5 @@
 """Vector layers in files: GeoJSON, and the formats of the package pyogrio where that is installed."""
 
-from __future__ import annotations
-
 import io
 import json
 import re

@@ -1,7 +1,5 @@
 """Faces of the models in CityJSON and CityJSONSeq files, of this program or any other."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterator

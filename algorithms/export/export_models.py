@@ -1,7 +1,5 @@
 """Models of buildings for browsers and other programs: GLB, a page that shows it, 3D Tiles and OBJ."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Collection, Iterator
 from pathlib import Path

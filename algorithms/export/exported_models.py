@@ -1,7 +1,5 @@
 """Models of buildings as they are exported: faces with attributes, by level of detail, and images of colors on them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Models of buildings as CityJSON with images on their faces."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Sequence
 from typing import Any, Optional
 

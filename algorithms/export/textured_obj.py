@@ -1,7 +1,5 @@
 """Models of buildings as Wavefront OBJ: materials by the kind of face, or one image of the colors of points."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator
 

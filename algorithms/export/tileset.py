@@ -1,7 +1,5 @@
 """Models of buildings as a tileset of 3D Tiles 1.1: a quadtree of GLB files on the globe, coarse levels far away."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Collection, Generator, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Outlines of points in a plane: alpha shapes without their holes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

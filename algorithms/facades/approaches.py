@@ -1,7 +1,5 @@
 """Distinguish doors from windows by the approach: ground, a landing or steps before the opening."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..criteria import MAJORITY

@@ -1,7 +1,5 @@
 """Intersection lines of neighboring facades as their common borders."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Curved fronts as upright strips: planes that cross each other at small angles, separated by plan position."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Facades as vertical polygons: planes by least squares, boundaries, and intersection lines as common borders."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Optional
 

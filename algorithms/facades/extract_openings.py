@@ -1,7 +1,5 @@
 """Windows and doors of facades: as holes in their polygons, and as features with size, position and row."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The plane of a facade as a frame of its own: along the facade, up it, and out of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """The boundary of a facade in its own plane: traced, reduced to its corners, and pushed out to hold all points."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

@@ -1,7 +1,5 @@
 """Facades of segments: least-squares plane, side that was seen, and boundary of each."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

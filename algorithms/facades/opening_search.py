@@ -1,7 +1,5 @@
 """Openings in the plane of a facade: areas enclosed by the wall with points behind it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

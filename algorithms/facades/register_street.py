@@ -1,7 +1,5 @@
 """Facades and openings of a street scan, moved onto an airborne cloud by the walls and the ground that both show."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

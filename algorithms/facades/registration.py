@@ -1,7 +1,5 @@
 """The shift between a street scan and an airborne one: by walls, their ends, and the ground that both see."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Line segments of a vehicle's scan lines: ground, facades and other objects."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Footprints whose walls are those that were seen from the street, and the outlines from the air elsewhere."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

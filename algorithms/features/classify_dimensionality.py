@@ -1,7 +1,5 @@
 """Whether the surroundings of each point are a line, a surface or a volume."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 import numpy as np

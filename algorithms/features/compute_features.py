@@ -1,7 +1,5 @@
 """Covariance features of each point's neighborhood."""
 
-from __future__ import annotations
-
 from functools import cached_property
 from typing import Callable, Optional
 

@@ -1,7 +1,5 @@
 """How green points are in light and in shadow, and the threshold from which on they are plants."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

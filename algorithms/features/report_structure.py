@@ -1,7 +1,5 @@
 """The figures of a cloud's structure: thinning, and its linear, planar and volumetric points in two neighborhoods."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..neighborhoods.covariance import Nearest, Neighborhood, Shapes, defined_eigenvalues, reduce_neighborhoods

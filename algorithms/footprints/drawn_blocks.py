@@ -3,8 +3,6 @@
 Borders that two buildings have in common, and polygons that are valid and do not overlap, follow from that.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Footprints: the outlines of building clusters as polygons."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from typing import Any, Optional

@@ -1,7 +1,5 @@
 """Attributes of footprints: sizes, heights of the roof above the ground, and measures of the building."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

@@ -1,7 +1,5 @@
 """Input of models of buildings: classified points, footprints with an area, and distances of points from planes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

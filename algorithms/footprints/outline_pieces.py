@@ -1,7 +1,5 @@
 """Pieces of buildings on the lattice: areas where each building has the largest share, with the rings around them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Polygons of any source drawn anew along the main directions of buildings: no points are needed."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Separate roof points of buildings from wall points, and find the non-building points next to roofs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pairs of adjacent raster cells."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 # Rows and columns of a step from a cell in each of the four directions in which others touch it.

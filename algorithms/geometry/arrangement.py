@@ -1,7 +1,5 @@
 """Lines that cut a rectangle into cells, and the cheapest choice of cells."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

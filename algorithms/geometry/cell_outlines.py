@@ -1,7 +1,5 @@
 """Groups of cells as polygons."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .grid import Grid, find_cells

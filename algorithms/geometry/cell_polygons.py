@@ -1,7 +1,5 @@
 """The polygons that cells of a subdivision make, with common vertices along the borders that they share."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Label the cells of a partition at least total cost, by α-expansion with minimum cuts."""
 
-from __future__ import annotations
-
 from typing import Callable, Optional
 
 import numpy as np

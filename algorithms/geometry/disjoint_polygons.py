@@ -1,7 +1,5 @@
 """Divide the overlap of two polygons between them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..criteria import MICROMETER

@@ -1,7 +1,5 @@
 """Sets of items that pairs join, for pairs that come in portions: no pair is kept."""
 
-from __future__ import annotations
-
 from threading import Lock
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Square cells in plan: numbering points by them without ever holding the whole grid."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

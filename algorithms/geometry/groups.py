@@ -1,7 +1,5 @@
 """Items and groups: starts of runs, members of groups, and components of pairs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

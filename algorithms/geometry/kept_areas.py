@@ -1,7 +1,5 @@
 """Move the walls of polygons along their normals, so that each polygon gets a given area."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

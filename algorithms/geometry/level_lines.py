@@ -1,7 +1,5 @@
 """Level lines of a field on a lattice: closed rings around where it is positive, by marching squares."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .groups import cycles

@@ -1,7 +1,5 @@
 """Measures of polygons in space: rings of corners, float64 (n, 3), m."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Simplify lines within a tolerance."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

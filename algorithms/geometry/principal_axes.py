@@ -1,7 +1,5 @@
 """The line or plane of least squares through a few points."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

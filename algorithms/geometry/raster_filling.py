@@ -1,7 +1,5 @@
 """Gaps of a raster filled with values from around them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..packages import ndimage

@@ -1,7 +1,5 @@
 """Morphological opening of height rasters, at a cost that grows with the logarithm of the window's size."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

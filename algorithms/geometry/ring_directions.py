@@ -1,7 +1,5 @@
 """Main directions of the walls of buildings, from rings along their outlines."""
 
-from __future__ import annotations
-
 from typing import Optional, Union
 
 import numpy as np

@@ -3,8 +3,6 @@
 An outline is a list of rings: first the exterior, counterclockwise, then the holes, clockwise.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable
 

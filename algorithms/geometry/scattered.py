@@ -3,8 +3,6 @@
 Every tenth item, say, is another one as soon as one item is missing; of a sample by these numbers only that one is.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 # Odd numbers of 64 bits, one for each axis: digits of the golden ratio, of pi and of e have no pattern.

@@ -4,8 +4,6 @@ A set of voxels is an array of cells: int64 (m, 3), columns, rows and layers, ea
 row, then layer. Memory follows the voxels, not the box around them. All other space is background, without an end.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -8,8 +8,6 @@ The far corners that surround the nodes of a tile take no part: where one of the
 hull of the nodes, these are triangulated again without it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Optional
 

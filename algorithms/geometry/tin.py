@@ -1,7 +1,5 @@
 """A triangulated surface in plan, with the location of points on it."""
 
-from __future__ import annotations
-
 from typing import Callable, Optional
 
 import numpy as np

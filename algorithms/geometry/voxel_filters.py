@@ -1,7 +1,5 @@
 """Filters of the numbers of points in voxels: convolutions and rank orders over a voxel and its 26 neighbors."""
 
-from __future__ import annotations
-
 from typing import Callable
 
 import numpy as np

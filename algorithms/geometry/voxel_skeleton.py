@@ -1,7 +1,5 @@
 """Skeletons of sparse voxels: thinning to lines one voxel wide that keeps components, tunnels and cavities."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..stage import Monitor

@@ -1,7 +1,5 @@
 """Give a class to segments that a person picks by number, in the map or by their measures."""
 
-from __future__ import annotations
-
 from typing import Any, Optional
 
 import numpy as np

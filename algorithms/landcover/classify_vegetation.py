@@ -1,7 +1,5 @@
 """Vegetation: points above the ground that are neither of buildings nor of other solid objects."""
 
-from __future__ import annotations
-
 from typing import NamedTuple, Optional
 
 import numpy as np

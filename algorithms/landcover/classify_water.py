@@ -1,7 +1,5 @@
 """Water: few returns, of one level, lower than the ground around."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

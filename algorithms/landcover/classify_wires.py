@@ -1,7 +1,5 @@
 """Wires and the masts that carry them."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

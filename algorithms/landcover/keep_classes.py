@@ -1,7 +1,5 @@
 """Classes that a cloud came with, remembered for 'Restore classes'."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

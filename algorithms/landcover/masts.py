@@ -1,7 +1,5 @@
 """Masts: slender upright objects where the spans of wires end."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

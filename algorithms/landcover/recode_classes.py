@@ -1,7 +1,5 @@
 """Class codes of an agency, or of one's own, instead of ASPRS'."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import NOISE, VEGETATION, PointClass, parse_classes

@@ -1,7 +1,5 @@
 """Classes that 'Keep classes' remembered, put back."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

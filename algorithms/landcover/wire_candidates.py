@@ -1,7 +1,5 @@
 """Points that may be on wires: high, nothing close below them, and on a line with others."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

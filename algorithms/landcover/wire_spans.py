@@ -1,7 +1,5 @@
 """Spans of wires: parabolas in upright planes, fitted by RANSAC."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Optional

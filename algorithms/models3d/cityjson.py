@@ -1,7 +1,5 @@
 """Models of buildings as CityJSON 2.0 and CityJSONSeq."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

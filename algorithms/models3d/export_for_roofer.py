@@ -1,7 +1,5 @@
 """Points and footprints as the program roofer reads them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

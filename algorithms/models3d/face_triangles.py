@@ -1,7 +1,5 @@
 """Triangles of a plane face with holes, on its own vertices."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 

@@ -1,7 +1,5 @@
 """The terrain around buildings: triangles that end at their walls, and walls that end on these triangles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 

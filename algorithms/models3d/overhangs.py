@@ -1,7 +1,5 @@
 """Eaves that overhang the walls: how far, where walls were seen under them, and solids with the walls set back."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..criteria import MAJORITY

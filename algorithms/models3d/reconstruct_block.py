@@ -1,7 +1,5 @@
 """A city block from the street and from the air: roofs, walls where they were seen, windows and doors."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Gable houses of ten vertices and fifteen parameters, from two roof planes, the eaves and the ground."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Optional
 

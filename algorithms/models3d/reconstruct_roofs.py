@@ -1,7 +1,5 @@
 """Models of buildings: closed solids with the planes of their roofs, from points and footprints."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 from typing import Any, Optional

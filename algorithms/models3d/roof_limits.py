@@ -1,7 +1,5 @@
 """Distances of models from the points of a roof, and the heights that these allow."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..packages import spatial

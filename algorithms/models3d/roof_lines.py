@@ -1,7 +1,5 @@
 """Lines along which the planes of a roof may meet or end, in plan."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The footprint of a building divided among the planes of its roof."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

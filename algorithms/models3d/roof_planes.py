@@ -1,7 +1,5 @@
 """The planes of one building's roof, grown from its smoothest positions."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Windows and doors as faces of their own in the walls of a solid: level of detail 3."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Closed solids of divided footprints: roofs on top, walls where heights differ, one level ground, and soffits."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from dataclasses import dataclass

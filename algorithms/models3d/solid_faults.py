@@ -1,7 +1,5 @@
 """Faults of a solid, by the rules of ISO 19107, and in which of its faces they are."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 

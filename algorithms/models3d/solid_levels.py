@@ -1,7 +1,5 @@
 """Heights at the vertices of a divided footprint: one for each plane there, one where planes meet."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 

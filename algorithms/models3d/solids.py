@@ -1,7 +1,5 @@
 """Closed solids: vertices, and faces by kind."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 

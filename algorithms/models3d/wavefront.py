@@ -1,7 +1,5 @@
 """Models of buildings as a Wavefront OBJ file."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator
 

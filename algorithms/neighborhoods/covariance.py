@@ -5,8 +5,6 @@ shared out among threads: the k-d tree and numpy both release the interpreter wh
 depend on the number of threads, and on the chunks only by rounding.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Protocol
 

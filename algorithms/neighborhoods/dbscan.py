@@ -1,7 +1,5 @@
 """Clusters by density: DBSCAN (Ester et al., 1996), with memory that follows the points."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.boxes import Boxes, Offset, around, by_first_point, connected

@@ -5,8 +5,6 @@ So points that lie side by side, a block, share a list of candidates. All square
 matrix product, and the sums over the candidates that are near enough are another.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The neighborhood that suits each point best: as many nearest points as give the least eigenentropy."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

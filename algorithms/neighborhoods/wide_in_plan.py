@@ -1,7 +1,5 @@
 """Neighborhoods as wide as they are long in plan, however unevenly the points are spread."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

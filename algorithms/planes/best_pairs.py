@@ -1,7 +1,5 @@
 """Merge adjacent planes in rounds: each pair that is the best one of both planes."""
 
-from __future__ import annotations
-
 from typing import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Local planes of points: of all their neighbors, or robust to those across an edge."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

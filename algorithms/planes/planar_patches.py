@@ -1,7 +1,5 @@
 """Planar patches: points that lie on one smooth surface with their neighbors."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Union
 

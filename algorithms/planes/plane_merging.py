@@ -1,7 +1,5 @@
 """Join pieces of one plane in neighboring voxels."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Surface growing: seed surfaces where local planes are smooth, and growth from these."""
 
-from __future__ import annotations
-
 import itertools
 from functools import partial
 from typing import Callable, Optional

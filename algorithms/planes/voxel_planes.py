@@ -1,7 +1,5 @@
 """Planes in voxels by sequential RANSAC, all voxels of a chunk at once."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.boxes import Boxes

@@ -1,7 +1,5 @@
 """Noise in the air over the scene: loose points that nothing supports."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

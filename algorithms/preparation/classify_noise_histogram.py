@@ -1,7 +1,5 @@
 """Noise far above or below everything else, from height histograms of cells."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

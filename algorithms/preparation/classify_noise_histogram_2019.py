@@ -1,7 +1,5 @@
 """Noise above or below everything else by height histograms of cells, as published."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

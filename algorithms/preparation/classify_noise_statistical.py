@@ -1,7 +1,5 @@
 """Isolated points, from the distances to their nearest neighbors."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.grid import distinct, plan_box

@@ -1,7 +1,5 @@
 """The part of a cloud that lies in polygons, or outside of them."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

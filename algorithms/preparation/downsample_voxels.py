@@ -1,7 +1,5 @@
 """Thinning of points: one for every occupied voxel."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Points chosen by class, by height above ground, and by any other dimension."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

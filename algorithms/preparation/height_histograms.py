@@ -1,7 +1,5 @@
 """Height histograms of square cells in plan."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

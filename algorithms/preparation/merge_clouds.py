@@ -1,7 +1,5 @@
 """Merge several clouds in one frame."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

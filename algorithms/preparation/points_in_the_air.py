@@ -5,8 +5,6 @@ since most pulses pass it. Points of a roof or a crown are most of their column,
 seen.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..criteria import MAJORITY

@@ -1,7 +1,5 @@
 """Assess detected buildings against a reference, per point, per cell and per object."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Optional

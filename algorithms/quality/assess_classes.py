@@ -1,7 +1,5 @@
 """Assess all classes against a reference: the confusion matrix and the figures from it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import CODES, NOISE, VEGETATION, PointClass, parse_classes

@@ -1,7 +1,5 @@
 """Assess outlines of buildings, one by one, against trusted polygons."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Callable, Optional
 

@@ -1,7 +1,5 @@
 """Assess classified ground against a reference."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass, parse_classes

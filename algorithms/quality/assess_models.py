@@ -1,7 +1,5 @@
 """Assess models of buildings by the points of their roofs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

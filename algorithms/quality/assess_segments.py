@@ -1,7 +1,5 @@
 """Assess segments against a reference: correct, over- and under-segmented, missed and noise."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

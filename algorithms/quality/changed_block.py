@@ -1,7 +1,5 @@
 """Old buildings and new outlines that lie together, compared on a lattice and drawn anew where they have changed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compare corners of buildings with an older map."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Compare the footprints of two surveys: buildings new, gone, or with another height or outline."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Optional
 

@@ -1,7 +1,5 @@
 """Confusion matrices: counts by true and found class, and the figures from them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

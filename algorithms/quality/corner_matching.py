@@ -1,7 +1,5 @@
 """Corners of buildings, and which corners of two layers are the same."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

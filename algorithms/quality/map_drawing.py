@@ -1,7 +1,5 @@
 """Redraw changed buildings of a map, along old walls as far as these are right."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..footprints.soft_shares import Lattice

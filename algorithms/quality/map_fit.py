@@ -1,7 +1,5 @@
 """Fit an old map to new outlines: its shift, the overhang of eaves, and displaced buildings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

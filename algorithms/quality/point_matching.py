@@ -1,7 +1,5 @@
 """Match two classifications of the same points."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..criteria import MILLIMETER

@@ -1,7 +1,5 @@
 """Compare two layers of polygons building by building, and measure the squareness of outlines."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.ring_directions import along_two_directions

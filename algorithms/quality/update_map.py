@@ -1,7 +1,5 @@
 """Update a map of buildings: redraw what has changed, keep everything else as it is."""
 
-from __future__ import annotations
-
 from collections import Counter
 from typing import Callable, Optional
 

@@ -1,7 +1,5 @@
 """Views of single buildings: their points from above and in sections, as SVG."""
 
-from __future__ import annotations
-
 import html
 
 import numpy as np

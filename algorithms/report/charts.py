@@ -1,7 +1,5 @@
 """Charts for the quality pages: SVG within the page, readable in gray and in every color vision."""
 
-from __future__ import annotations
-
 import html
 import math
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The surface of points, shaded, as a picture for the maps of the pages."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.raster_filling import nearest_known

@@ -1,7 +1,5 @@
 """A map of polygons in the colors of their kinds, for the pages; on request over the shaded surface of points."""
 
-from __future__ import annotations
-
 import html
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Whether a cloud is one closed surface seen from above, as matched images give it, or is seen through in places."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.grid import find_cells, grid_over

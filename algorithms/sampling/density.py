@@ -1,7 +1,5 @@
 """How densely a cloud covers the ground: the measure of automatic thresholds."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How finely the heights of a cloud are resolved: no roughness below that can be measured."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..rules import rule, rules

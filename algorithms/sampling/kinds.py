@@ -1,7 +1,5 @@
 """Kinds of clouds, chosen once per run: what steps do otherwise where points were matched from images."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """The points on top of buildings, and how far models are from them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether a cloud can show buildings at all: dense enough, wide enough, with ground around them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

@@ -1,7 +1,5 @@
 """How dense and how noisy the surfaces of a cloud are, measured on a sample of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Callable, Optional, Union

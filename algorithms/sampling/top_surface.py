@@ -1,7 +1,5 @@
 """The surface that is seen from above, in cells: how high it is, and which points are of it and not of walls below."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.grid import distinct, fixed_grid_over, raster_cells, refuse_sparse

@@ -1,7 +1,5 @@
 """Find straight pieces of scan lines side by side on adjacent lines."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

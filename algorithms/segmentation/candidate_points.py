@@ -1,7 +1,5 @@
 """Candidate points of segments and clusters."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

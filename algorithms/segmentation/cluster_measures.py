@@ -1,7 +1,5 @@
 """Measures of groups of points in plan: area, surroundings, and penetration by the beam."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Regions of straight pieces of scan lines: seeds of three, and the adjacent pieces that lie on their surface."""
 
-from __future__ import annotations
-
 from collections import deque
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Artificial scan lines: slices of a cloud in several directions, and the pieces that points near each other make."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

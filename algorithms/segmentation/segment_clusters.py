@@ -1,7 +1,5 @@
 """Clusters by density: DBSCAN."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Planes by sequential RANSAC in voxels."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

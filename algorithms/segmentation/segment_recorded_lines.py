@@ -1,7 +1,5 @@
 """Planes and smooth surfaces from the straight pieces of recorded scan lines."""
 
-from __future__ import annotations
-
 from typing import Any, Optional
 
 import numpy as np

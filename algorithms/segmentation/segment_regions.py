@@ -1,7 +1,5 @@
 """Clusters by region growing under a distance in plan and one in height."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

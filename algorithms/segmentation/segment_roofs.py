@@ -1,7 +1,5 @@
 """Clusters that are roof surfaces, and clusters of other objects above the ground."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Optional

@@ -1,7 +1,5 @@
 """Segments made of the pieces of artificial scan lines in several directions."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Smooth surfaces and planes by surface growing."""
 
-from __future__ import annotations
-
 from typing import Any, Optional
 
 import numpy as np

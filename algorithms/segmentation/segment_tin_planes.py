@@ -1,7 +1,5 @@
 """Planes made of the triangles of a TIN, merged from the most similar pair on."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

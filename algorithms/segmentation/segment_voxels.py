@@ -1,7 +1,5 @@
 """Segments as connected components of voxels, after operations of mathematical morphology."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Straight pieces of scan lines: lines split at their farthest points until all are straight."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 from typing import Callable

@@ -1,7 +1,5 @@
 """Evidence of a cylinder: distances of its points, their coverage, and the free space around it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

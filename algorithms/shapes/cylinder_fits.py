@@ -1,7 +1,5 @@
 """Cylinders and spheres fitted to points by least squares, and how well these support them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cylinders: axes by great circles on the Gaussian sphere, then circles across them, then least squares."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling

@@ -1,7 +1,5 @@
 """Spheres: centers where the normals of their points meet, radii, then least squares."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Planes in windows of a cloud by the Hough transform, one maximum of the parameter space after the other."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Join pieces of one cylinder that a flange or the shadow of another object separates."""
 
-from __future__ import annotations
-
 import heapq
 from dataclasses import replace
 from typing import Optional

@@ -1,7 +1,5 @@
 """Join pieces of one shape, found in overlapping parts of a cloud, to one feature."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.grid import grid_over

@@ -1,7 +1,5 @@
 """Planes as polygons: the cells of a plane that hold its points, outlined and lifted onto it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..criteria import CELL_SPACINGS

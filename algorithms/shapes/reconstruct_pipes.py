@@ -1,7 +1,5 @@
 """Pipes and spheres as surfaces: polygons around axes and centers, for three-dimensional views."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

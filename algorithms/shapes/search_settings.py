@@ -1,7 +1,5 @@
 """Tunables that the searches for cylinders and spheres share, and their automatic values."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The points among which shapes are searched, and the numbers that these get."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Callable, Generic, Optional, Protocol, TypeVar

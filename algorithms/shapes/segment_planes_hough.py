@@ -1,7 +1,5 @@
 """Planes by the Hough transform, in three dimensions or in two steps with normals."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Trees into stems and branches: shortest paths through their voxels from the roots, and slices across them."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Windows for each range of radii, with size and point spacing in proportion."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

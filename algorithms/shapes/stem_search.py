@@ -1,7 +1,5 @@
 """Stems: round and upright shapes at breast height."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Normals of the surface at each point, from neighborhoods that grow with the noise."""
 
-from __future__ import annotations
-
 import zlib
 from weakref import WeakKeyDictionary
 

@@ -1,7 +1,5 @@
 """The structure of trees: shortest paths from the roots, slices across them, branches by length and order."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

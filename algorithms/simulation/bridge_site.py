@@ -1,7 +1,5 @@
 """Sites with bridges and similar objects, one per lot: terrain, decks, parapets, piers, quays, cars and trees."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """Matched drone images of a scene by ray casting: vertical and oblique views, one point per ray."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator
 from typing import Optional

@@ -1,7 +1,5 @@
 """A drone with two line scanners: its flight, its beams and their first echoes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol

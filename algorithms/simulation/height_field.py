@@ -1,7 +1,5 @@
 """A scene seen from above: height, class and object of the visible surface in fine cells."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Effects of dense image matching on a surface: rounded edges, waves, holes, spikes, and colors."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from statistics import NormalDist
 

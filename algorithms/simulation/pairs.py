@@ -1,7 +1,5 @@
 """Pairs of points and boxes, and the order of echoes within their pulses."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.groups import items, run_starts

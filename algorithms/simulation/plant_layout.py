@@ -1,7 +1,5 @@
 """Layout of a simulated plant: racks of pipes, tanks, spheres and clutter in bays with aisles between them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

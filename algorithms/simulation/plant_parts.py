@@ -1,7 +1,5 @@
 """Parts of an industrial plant: surfaces with a kind, which can be sampled."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Callable, Optional
 

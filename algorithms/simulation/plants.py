@@ -1,7 +1,5 @@
 """Trees, bushes and hedges: ellipsoids of leaves, and stems."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

@@ -1,7 +1,5 @@
 """Terrain of a simulated town in closed form: a slope with hills, terraces and a river valley."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """An airborne laser scanner: strips, scan patterns, and the returns of each pulse."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """A scene of objects with known truth, to be scanned."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, fields
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Airborne scans of bridges over water, roads and valleys, and of similar objects."""
 
-from __future__ import annotations
-
 from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable

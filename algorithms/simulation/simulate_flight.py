@@ -1,7 +1,5 @@
 """A drone's laser scan of a street with known truth, for training, tests and measurements."""
 
-from __future__ import annotations
-
 from ..params import SEED
 from ..stage import stage, tunable
 from .drone import ANGULAR_STEP, LINE_RATE, SCANNERS, LineScan, plan_flight, pulses_per_line

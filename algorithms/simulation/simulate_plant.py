@@ -1,7 +1,5 @@
 """Terrestrial laser scans of an industrial plant with known truth."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

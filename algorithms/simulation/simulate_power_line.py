@@ -1,7 +1,5 @@
 """Airborne scans of power lines with known truth."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

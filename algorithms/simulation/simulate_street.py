@@ -1,7 +1,5 @@
 """Scans of a street with known facades, openings and corners, from a vehicle or an airplane."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Airborne scans of a town with known truth, for training, tests and measurements."""
 
-from __future__ import annotations
-
 from ..params import SEED
 from ..stage import stage, tunable
 from .plants import FOREST

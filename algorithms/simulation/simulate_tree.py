@@ -1,7 +1,5 @@
 """A tree scanned from all sides, with known branches."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Matched drone images of a village with known walls and roofs, and an old map with errors."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

@@ -1,7 +1,5 @@
 """Fronts of houses along a street: plain or curved walls with openings, recesses, bays and balconies."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A site for a drone flight: a street with houses on one side and at one end, parked cars, lamps and trees."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -3,8 +3,6 @@
 The length of a plot is parallel to the street, which is on its right side.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

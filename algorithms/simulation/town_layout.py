@@ -1,7 +1,5 @@
 """Layout of a simulated town: streets with plots, a river with bridges, a forest, and other objects."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from typing import Optional

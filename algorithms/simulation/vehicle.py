@@ -1,7 +1,5 @@
 """A vehicle with two line scanners on its roof: its drive along a street and the first echoes."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 

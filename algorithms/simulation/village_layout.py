@@ -1,7 +1,5 @@
 """Layout of a simulated village: streets with large plots, houses with overhanging eaves, sheds, plants and cars."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The arrays that a stage is called with: refused, in the same words for every stage, where they don't fit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

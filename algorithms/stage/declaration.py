@@ -1,7 +1,5 @@
 """The declaration next to a function, and the decorator that makes it a stage."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 import typing

@@ -1,7 +1,5 @@
 """The sections of numpydoc docstrings, read and written."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Collection

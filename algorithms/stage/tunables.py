@@ -1,7 +1,5 @@
 """Tunables: name, type and default from the signature of a stage, the rest from its declaration."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass, replace

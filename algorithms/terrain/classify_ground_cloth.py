@@ -1,7 +1,5 @@
 """Ground points by cloth simulation."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

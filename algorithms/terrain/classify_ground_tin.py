@@ -1,7 +1,5 @@
 """Ground points by progressive TIN densification, from seeds by progressive opening."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

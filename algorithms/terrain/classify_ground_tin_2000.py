@@ -1,7 +1,5 @@
 """Ground points by progressive TIN densification, as published in 2000."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Groups of multipath points under the ground: low noise instead of pits."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

@@ -1,7 +1,5 @@
 """Ground points that a filter left out although they lie on its surface."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

@@ -1,7 +1,5 @@
 """Height above ground."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..cloud.asprs import PointClass

@@ -1,7 +1,5 @@
 """Free-standing segments of the lowest surface: roofs of any size; hills lack the steps at their edges."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """The points that a ground filter looks at, and the classes that it returns."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Seeds of the terrain: certain ground points, from which a TIN can grow."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

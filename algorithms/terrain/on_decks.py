@@ -1,7 +1,5 @@
 """Objects on bridge decks."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Terrain and surface as rasters."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -4,8 +4,6 @@ The opening after Pingel et al. (2013) removes cells that are higher than terrai
 of removed cells come back if they go on into the terrain around without a step, as banks, spits and hilltops do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 

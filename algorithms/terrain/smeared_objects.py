@@ -1,7 +1,5 @@
 """Ground points of matched images that lie on the smeared walls and roofs of small objects."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.grid import EIGHT, raster_cells, refuse_sparse

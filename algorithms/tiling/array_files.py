@@ -1,7 +1,5 @@
 """Files of a run's own arrays, as numpy reads them: complete or not there."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path

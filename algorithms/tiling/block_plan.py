@@ -1,7 +1,5 @@
 """Size and position of the blocks of a survey."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

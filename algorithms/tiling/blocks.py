@@ -1,7 +1,5 @@
 """One block of a survey: the chain run on its points and those around, and its results kept in a file."""
 
-from __future__ import annotations
-
 import time
 from copy import copy
 from dataclasses import dataclass, replace

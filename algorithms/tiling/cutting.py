@@ -1,7 +1,5 @@
 """A survey cut into square tiles, streamed: no file is ever read whole."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO

@@ -1,7 +1,5 @@
 """Stages that work on each feature of a layer, on surveys of any size: part by part, and each feature in one."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any, Optional
 

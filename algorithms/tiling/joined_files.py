@@ -1,7 +1,5 @@
 """Rasters and text files of a survey, from what its blocks have kept: never whole in memory, rasters without seams."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Run a composite on a survey of any size: block by block in several processes, tile by tile into a folder."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil

@@ -1,7 +1,5 @@
 """Match features of different blocks that are the same one."""
 
-from __future__ import annotations
-
 from typing import Any, Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Settings of a run in tiles besides the parameters of the composite: titles and help for dialog and pages."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Iterable
 from dataclasses import dataclass

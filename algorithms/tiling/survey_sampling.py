@@ -1,7 +1,5 @@
 """Measure the sampling of a survey, and the values that blocks take from the whole, before its blocks are processed."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any, Callable, Optional
 

@@ -1,7 +1,5 @@
 """Run the steps of a composite that work on the layers of the whole survey and make its pages."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The tiles of a survey's output: one for each file, or for each block of a large file that is cut by its index."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable

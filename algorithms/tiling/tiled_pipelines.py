@@ -1,7 +1,5 @@
 """The composites that run in tiles, as users meet them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Settings and results of a run in tiles."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path

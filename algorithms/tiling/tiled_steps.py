@@ -1,7 +1,5 @@
 """Sort the steps of a composite: run in blocks, run once for the whole survey, or not possible in tiles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

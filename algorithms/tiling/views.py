@@ -1,7 +1,5 @@
 """The points of a survey that its pages show: the topmost ones for a hillshade, and all around single buildings."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The hidden folder next to the tiles of a survey that keeps the results of blocks until the run is complete."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress

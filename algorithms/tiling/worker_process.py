@@ -4,8 +4,6 @@
 never searches the current folder for modules: a survey's folder may hold files of any origin.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import pickle  # nosec B403 - between a program and the process that it has started

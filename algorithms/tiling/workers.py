@@ -1,7 +1,5 @@
 """Workers: processes of this machine, or of a running Dask cluster."""
 
-from __future__ import annotations
-
 import os
 import pickle  # nosec B403 - what goes to the cluster that the user has confirmed; no file is unpickled
 import shutil

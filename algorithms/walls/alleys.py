@@ -1,7 +1,5 @@
 """Find alleys between houses whose roofs nearly touch: two walls that face each other show two houses."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from typing import Optional
 

@@ -1,7 +1,5 @@
 """Find bent parts of roofs in matched images, which deviate from planes by decimeters over meters."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..buildings.roof_extent import amid_rough

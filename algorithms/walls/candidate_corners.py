@@ -1,7 +1,5 @@
 """Candidate corners of a footprint: the intersections of the lines along which its walls were looked for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

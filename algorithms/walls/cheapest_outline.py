@@ -3,8 +3,6 @@
 The unit of all costs is a meter of wall without points.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..geometry.arrangement import Arrangement, sides_of

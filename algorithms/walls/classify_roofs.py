@@ -1,7 +1,5 @@
 """Find the planes that are roofs, join the roofs of each building, and split blocks at party walls."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

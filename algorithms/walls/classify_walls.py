@@ -1,7 +1,5 @@
 """Find the points of walls and the roof above each."""
 
-from __future__ import annotations
-
 from typing import Optional
 
 import numpy as np

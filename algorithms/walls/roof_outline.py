@@ -1,7 +1,5 @@
 """Outlines of single roofs, drawn like footprints, and the depth of positions inside them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Callable, Optional

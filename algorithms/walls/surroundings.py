@@ -1,7 +1,5 @@
 """The surroundings of a roof and of its holes: other roofs, and visible ground."""
 
-from __future__ import annotations
-
 from functools import cached_property
 
 import numpy as np

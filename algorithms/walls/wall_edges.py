@@ -1,7 +1,5 @@
 """The edges of a wall outline: each on a line of wall points, with the points seen along it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

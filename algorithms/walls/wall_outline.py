@@ -1,7 +1,5 @@
 """The outline of one building's walls."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Optional

@@ -1,7 +1,5 @@
 """Numbers of points at each step from a cloud to its walls, and of the footprints and corners drawn."""
 
-from __future__ import annotations
-
 import math
 from typing import Optional
 
