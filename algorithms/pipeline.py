@@ -1,10 +1,22 @@
 """The vocabulary of composites: steps, their outputs, and the pipeline that they make."""
 
+import inspect
 from collections.abc import Collection
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
-from .stage import CLOUD, REPORT, Declared, InputLayer, Stage, Tunable
+from .stage import (
+    CLOUD,
+    REPORT,
+    Declared,
+    InputLayer,
+    Stage,
+    Tunable,
+    description,
+    in_words,
+    sections,
+    summary,
+)
 from .stages import STAGES
 
 # The second cloud among what a step may depend on.
@@ -215,6 +227,34 @@ class Pipeline:
     def id(self) -> str:
         """Processing id, ``detectbuildings``."""
         return self.name.replace("_", "")
+
+
+def composite(group: str, *, title: str = "", tags: str, **fields: Any) -> Callable[[Callable], Pipeline]:
+    """Declare a function as a composite: it returns the steps, and name and docstring say the same as a stage's.
+
+    Parameters
+    ----------
+    group : str
+        Group in the toolbox.
+    title : str
+        Title in the toolbox, where it is not the name of the function in words.
+    tags : str
+        Words to search for, with commas between.
+    **fields
+        Fields of :class:`Pipeline` from ``shared`` on.
+
+    Returns
+    -------
+    callable
+        The decorator, which puts the :class:`Pipeline` in the place of the function.
+    """
+
+    def declare(function: Callable) -> Pipeline:
+        name, doc = function.__name__, inspect.cleandoc(function.__doc__ or "")
+        texts = summary(doc), description(doc), sections(doc)["References"]
+        return Pipeline(name, title or in_words(name), group, tags, *texts, function(), **fields)
+
+    return declare
 
 
 def made_by(layer: str) -> tuple[str, str]:

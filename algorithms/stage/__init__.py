@@ -8,8 +8,8 @@ A stage is an ordinary function with a declaration next to it:
   dimension that the tunable ``dimension`` names, whichever the file has;
 * positional arguments after them are the vector layers that it reads, each
   declared as a :class:`InputLayer`; a stage that reads layers only has no cloud;
-* keyword-only arguments are tunables, each ``name: type = tunable(default, ...)``;
-  ``Optional`` types with the default None are *automatic*:
+* keyword-only arguments are tunables, each ``name: type = tunable(default, ...)``; "Other Parameters" of the docstring
+  says what each does. ``Optional`` types with the default None are *automatic*:
   the stage derives the value from the data and reports it to the monitor;
 * ``sampling`` with the default None is how the cloud was sampled (density, noise and the like, a
   ``CloudSampling``): no tunable. The runner measures it once for all stages of a run, or is given it; a stage that
@@ -29,6 +29,7 @@ package needs the standard library and numpy only, and is independent of QGIS.
 
 from .arguments import REFERENCE_PREFIX  # noqa: F401 - the names that stages import
 from .declaration import CLOUD, DIMENSION, REPORT, SAMPLING, VALUES, Declared, Stage, stage  # noqa: F401
+from .docstrings import description, sections, summary  # noqa: F401
 from .inputs_outputs import (  # noqa: F401
     Field,
     FileContent,
@@ -52,4 +53,4 @@ from .inputs_outputs import (  # noqa: F401
     plain,
 )
 from .monitor import Cancelled, Monitor, Part, ProgressOnly  # noqa: F401
-from .tunables import Param, Tunable, tunable, with_unit  # noqa: F401
+from .tunables import Param, Tunable, in_words, tunable, with_unit  # noqa: F401

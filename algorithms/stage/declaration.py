@@ -9,7 +9,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from .arguments import REFERENCE_PREFIX, check_arrays
-from .docstrings import before_first_section, described, sections, with_tunables, with_values
+from .docstrings import described, description, sections, summary, with_tunables, with_values
 from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
 from .tunables import Param, Tunable, in_words
@@ -89,13 +89,12 @@ class Stage:
     @property
     def summary(self) -> str:
         """First paragraph of the docstring, on one line."""
-        return " ".join(self.doc.split("\n\n")[0].split())
+        return summary(self.doc)
 
     @property
     def description(self) -> str:
         """Docstring text between the summary and the first section."""
-        text = self.doc.split("\n\n", 1)[1] if "\n\n" in self.doc else ""
-        return before_first_section(text).strip()
+        return description(self.doc)
 
     def section(self, title: str) -> str:
         """Text of one numpydoc section ("Notes", "References"), "" without it."""
@@ -260,7 +259,9 @@ def _declared(function: Callable, title: str, group: str, tags: str, fields: dic
                 if name not in hints or not isinstance(parameter.default, Param):
                     example = f"{name}: float = tunable(…)"
                     raise TypeError(f"{function.__name__} must declare {name!r} with its type, as in '{example}'.")
-                param = replace(parameter.default, help=parameter.default.help or helps.pop(name, ""))
+                param = parameter.default
+                if not param.help:
+                    param = replace(param, help=helps.pop(name, ""))
                 tunables[name] = Tunable(name, _kind(hints[name]), param)
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)

@@ -56,6 +56,16 @@ def before_first_section(doc: str) -> str:
     return doc
 
 
+def summary(doc: str) -> str:
+    """Return the first paragraph of a docstring on one line."""
+    return " ".join(doc.split("\n\n", maxsplit=1)[0].split())
+
+
+def description(doc: str) -> str:
+    """Return the text of a docstring between the summary and the first section."""
+    return before_first_section(doc.partition("\n\n")[2]).strip()
+
+
 def described(doc: str) -> dict[str, str]:
     """Return the descriptions of the tunables in a docstring by their names, each on one line."""
     parts = re.split(r"^(\w+)\n", sections(doc).get(_TUNABLES, ""), flags=re.MULTILINE)
