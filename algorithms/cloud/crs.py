@@ -4,7 +4,7 @@ import re
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Callable, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -334,6 +334,14 @@ def crs_records(text: str) -> tuple[list[Vlr], int]:
     if not text:
         return [], WKT_BIT
     return [Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")], WKT_BIT
+
+
+def is_storable(named: Any) -> bool:
+    """Whether what a catalog names as a system is text that the VLR of a file can hold, with the zero behind it."""
+    try:
+        return isinstance(named, str) and 0 < len(named.encode()) < LARGEST_VLR
+    except UnicodeEncodeError:  # JSON may have halves of characters, files can't.
+        return False
 
 
 def is_epsg_code(text: str) -> bool:

@@ -195,7 +195,18 @@ def test_wkt_that_can_not_be_read_gives_way_to_what_else_is_there():
     )
 
 
-@pytest.mark.parametrize("codes", [{"proj:epsg": 25832}, {"proj:code": "EPSG:25832"}, {"proj:wkt2": ETRS_32}])
+@pytest.mark.parametrize(
+    "codes",
+    [
+        {"proj:epsg": 25832},
+        {"proj:code": "EPSG:25832"},
+        {"proj:wkt2": ETRS_32},
+        # What no record of a file can hold gives way to the code: longer than 65,535 bytes, half of a character.
+        {"proj:wkt2": ETRS_32 + " " * 65536, "proj:epsg": 25832},
+        {"proj:wkt2": ETRS_32 + "\ud800", "proj:epsg": 25832},
+    ],
+    ids=["epsg", "code", "wkt2", "long", "half"],
+)
 def test_a_catalog_counts_where_its_tiles_say_nothing(make_las, tmp_path, codes):
     make_las("a.las")
     feature = {"properties": codes, "assets": {"data": {"href": "./a.las", "roles": ["data"]}}}

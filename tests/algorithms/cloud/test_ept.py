@@ -161,7 +161,10 @@ def test_odd_descriptions_are_refused(made, changes, sentence):
         read_cloud(made("binary", **changes))
 
 
-@pytest.mark.parametrize("srs", [None, [], {}, {"wkt": 1}, {"horizontal": "9" * 400}, {"wkt": "http://x/a"}])
+@pytest.mark.parametrize(
+    "srs",
+    [None, [], {}, {"wkt": 1}, {"horizontal": "9" * 400}, {"wkt": "http://x/a"}, {"wkt": 'PROJCS["\ud800"]'}],
+)
 def test_odd_systems_are_none(made, srs):
     assert read_cloud(made("binary", srs=srs)).crs.identity == ""
 
