@@ -336,12 +336,12 @@ def crs_records(text: str) -> tuple[list[Vlr], int]:
     return [Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")], WKT_BIT
 
 
-def is_storable(named: Any) -> bool:
-    """Whether what a catalog names as a system is text that the VLR of a file can hold, with the zero behind it."""
+def storable(named: Any) -> str:
+    """Return what a catalog names as a system, "" if it is no text that the VLR of a file can hold with its zero."""
     try:
-        return isinstance(named, str) and 0 < len(named.encode()) < LARGEST_VLR
+        return named if isinstance(named, str) and len(named.encode()) < LARGEST_VLR else ""
     except UnicodeEncodeError:  # JSON may have halves of characters, files can't.
-        return False
+        return ""
 
 
 def is_epsg_code(text: str) -> bool:

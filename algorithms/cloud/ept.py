@@ -10,7 +10,7 @@ import numpy as np
 from .. import packages
 from ..stage import Monitor
 from .catalog_json import read_json
-from .crs import crs_records, is_epsg_code, is_storable
+from .crs import crs_records, is_epsg_code, storable
 from .extra_bytes import LONGEST_NAME, new_field
 from .header import LARGEST_STEP, MOST_EXTRAS, Header, truncated
 from .octree import PAGE, Nodes, fetched_to, nodes_of
@@ -181,8 +181,8 @@ def _field(one: dict) -> tuple[str, np.dtype, float, float]:
 def _system(srs: Any) -> str:
     """Return the coordinate reference system of a description: WKT, "EPSG:code" or ""."""
     wkt, code = (srs.get(name) for name in ("wkt", "horizontal")) if isinstance(srs, dict) else ("", "")
-    if is_storable(wkt) and '"' in wkt:
-        return wkt
+    if '"' in storable(wkt):
+        return storable(wkt)
     text = f"EPSG:{code}"
     return text if len(text) < 11 and is_epsg_code(text) else ""
 

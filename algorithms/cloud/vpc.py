@@ -13,7 +13,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .catalog_json import read_json
-from .crs import Crs, is_storable, stated_wkt
+from .crs import Crs, stated_wkt, storable
 from .header import LARGEST_STEP, OF_OLD_POINTS, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, EPT, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import fill_merged, merged_layout
@@ -133,7 +133,7 @@ def _named(properties: Any) -> Named:
     except (TypeError, ValueError, OverflowError):
         ends = np.empty((0, 0))
     is_box = ends.shape in ((2, 2), (2, 3)) and np.isfinite(ends).all()
-    return Named(wkt if is_storable(wkt) else coded, ends[:, :2] if is_box else None)
+    return Named(storable(wkt) or coded, ends[:, :2] if is_box else None)
 
 
 def _hrefs(assets: dict) -> list[str]:
