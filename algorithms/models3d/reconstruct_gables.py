@@ -9,6 +9,7 @@ from ..cloud.asprs import PointClass
 from ..footprints.footprint_points import ground_beside
 from ..geometry.groups import members
 from ..geometry.polygons import area_vector, line_of_planes
+from ..geometry.rings import sampled_rings
 from ..packages import spatial
 from ..planes.least_squares_planes import Planes, planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
@@ -147,6 +148,10 @@ class House:
     n_points: int
 
 
+# Distance (m) within which the ground next to an eave is seen from the air: eaves overhang walls by a meter at most.
+_BESIDE = 2.0
+
+
 class _Ground:
     """Elevation of the ground around houses."""
 
@@ -157,11 +162,13 @@ class _Ground:
         self.tree = spatial.cKDTree(self.points[:, :2])
 
     def near(self, corners: np.ndarray) -> float:
-        """Return the elevation (m) around corners (4, 2): the median of the ground, or of the lowest points."""
+        """Return the elevation (m) around corners (4, 2): the median of the ground, or of the lowest points, beside."""
+        ring = corners[[0, 1, 2, 3, 0]]
         if self.is_known:
-            return float(np.median(ground_beside(self.points, self.tree, [corners[[0, 1, 2, 3, 0]]])))
-        near = self.tree.query_ball_point(corners.mean(axis=0), float(np.ptp(corners, axis=0).max()))
-        return float(np.quantile(self.points[near, 2], 0.01))
+            return float(np.median(ground_beside(self.points, self.tree, [ring])))
+        around = self.tree.query_ball_point(sampled_rings([ring], _BESIDE), _BESIDE)
+        # Infinite if nothing is seen there.
+        return float(np.median([self.points[near, 2].min() for near in around if near] or np.inf))
 
 
 def _gables(

@@ -132,6 +132,10 @@ def test_ground_on_a_slope_or_far_off_and_gentle_slopes_make_gables_too(rng):
     for points in (hillside, lonely, gentle):
         found = gables_of(points, classes, plane)
         assert found.columns["z7"] == pytest.approx([GROUND] * 7, abs=0.25)
+    # Without classes, the lowest points next to the eaves: each within 2 m, so up to 0.4 m lower on this slope.
+    for points in (hillside, gentle):
+        found = gables_of(points, np.zeros_like(classes), plane)
+        assert found.columns["z7"] == pytest.approx([GROUND] * 7, abs=0.5)
 
 
 def test_valleys_single_planes_and_level_roofs_are_no_gables(rng):
