@@ -160,7 +160,7 @@ def toy_merge(
 @stage(
     "Toys",
     writes=("cluster_id",),
-    input_layers=(InputLayer("areas", "Areas", "Polygon", "Boxes of these number the points.", optional=True),),
+    input_layers=(InputLayer("areas", "Areas", "Boxes of these number the points.", optional=True),),
 )
 def toy_mask(xyz, areas=None, *, monitor=None):
     """Number the points by the box they are in, with the attribute ``id`` of its polygon."""
@@ -174,9 +174,9 @@ def toy_mask(xyz, areas=None, *, monitor=None):
 @stage(
     "Toys",
     input_layers=(
-        InputLayer("old", "Old map", "Polygon", "What it was."),
-        InputLayer("new", "New map", "Polygon", "What it is."),
-        InputLayer("extra", "Extra", "Point", "Anything.", optional=True),
+        InputLayer("old", "Old map", "What it was."),
+        InputLayer("new", "New map", "What it is."),
+        InputLayer("extra", "Extra", "Anything.", "Point", optional=True),
     ),
     layers=(Layer("arrows", "Arrows", "LineString", (Field("length", float, "How far.", "m"),)),),
     measures=(Measure("longest", "Longest", "m"),),

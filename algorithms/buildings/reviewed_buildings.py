@@ -22,7 +22,6 @@ KEPT, DELETED, CHANGED = "kept", "deleted", "changed"
 REVIEWED = InputLayer(
     "reviewed",
     "Reviewed buildings",
-    "Polygon",
     "Footprints of an earlier run after their review (attribute review). Buildings that were kept or changed stay as "
     "they are drawn, with their attributes; deleted ones stay away.",
     optional=True,

@@ -35,29 +35,16 @@ def page_pieces(models: Collection[ExportedModel], called: str, frame: MapFrame)
     yield after
 
 
-def _layer(name: str, title: str, text: str) -> InputLayer:
-    return InputLayer(name, title, "Polygon", text, optional=True, upright=True)
-
-
 @stage(
     "3D",
     tags="3D,export,GLB,glTF,3D Tiles,Cesium,tileset,web,browser,CityJSON,metadata",
     input_layers=(
-        _layer("buildings", "Buildings", "Grounds of the buildings, with the attributes that files keep."),
-        _layer("walls", "Walls", "Walls of the same run; an attribute 'building' says of which building."),
-        _layer("roofs", "Roofs", "Roofs of the same run."),
-        _layer("openings", "Windows and doors", "Windows and doors of the same run, where it has some."),
-        _layer("terrain", "Terrain", "Triangles of the terrain of the same run, where it has some."),
-        InputLayer(
-            "cityjson",
-            "CityJSON",
-            "Polygon",
-            "A CityJSON or CityJSONSeq file of any program, instead of layers; its levels of detail are kept.",
-            optional=True,
-            upright=True,
-            endings=ENDINGS,
-            read=read_cityjson,
-        ),
+        InputLayer("buildings", optional=True, upright=True),
+        InputLayer("walls", optional=True, upright=True),
+        InputLayer("roofs", optional=True, upright=True),
+        InputLayer("openings", "Windows and doors", optional=True, upright=True),
+        InputLayer("terrain", optional=True, upright=True),
+        InputLayer("cityjson", "CityJSON", upright=True, endings=ENDINGS, read=read_cityjson, optional=True),
     ),
     input_title="Point cloud with colors",
     files=(
@@ -99,10 +86,18 @@ def export_models(
         Coordinates (m) of points that color the faces.
     red, green, blue : ndarrays of shape (n,), optional
         Their colors.
-    buildings, walls, roofs, openings, terrain : LayerFeatures, optional
-        Layers of "Reconstruct roofs" or "Model city block".
+    buildings : LayerFeatures, optional
+        Grounds of the buildings, with the attributes that files keep.
+    walls : LayerFeatures, optional
+        Walls of the same run; an attribute 'building' says of which building.
+    roofs : LayerFeatures, optional
+        Roofs of the same run.
+    openings : LayerFeatures, optional
+        Windows and doors of the same run, where it has some.
+    terrain : LayerFeatures, optional
+        Triangles of the terrain of the same run, where it has some.
     cityjson : LayerFeatures, optional
-        Faces of a CityJSON file.
+        A CityJSON or CityJSONSeq file of any program, instead of layers; its levels of detail are kept.
 
     Returns
     -------

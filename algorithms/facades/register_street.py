@@ -38,9 +38,7 @@ _MEANINGS = {
     "Facades",
     title="Register street scan",
     tags="registration,alignment,shift,coregistration,mobile mapping,terrestrial,airborne,facade,street,Peng",
-    input_layers=(
-        InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings, from the airborne cloud."),
-    ),
+    input_layers=(InputLayer("footprints"),),
     layers=PIERCED,
     measures=_MEASURES,
     input_title="Airborne point cloud",
@@ -75,7 +73,7 @@ def register_street(
     reference_classification : ndarray of shape (m,), uint8
         Its classes; ground, water and noise are no facades. All points may be unclassified.
     footprints : LayerFeatures
-        Outlines of the buildings.
+        Outlines of the buildings, from the airborne cloud.
 
     Returns
     -------

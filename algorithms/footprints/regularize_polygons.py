@@ -44,14 +44,7 @@ _FIELDS = (
     title="Regularize footprints",
     tags="regularize,simplify,orthogonalize,right angles,square,generalize,raster,network,deep learning,segmentation,"
     "Microsoft,Google,Overture,outlines,shared borders,topology,corners",
-    input_layers=(
-        InputLayer(
-            "polygons",
-            "Polygons",
-            "Polygon",
-            "Outlines of buildings: traced from rasters, by networks or from clouds, or drawn by hand.",
-        ),
-    ),
+    input_layers=(InputLayer("polygons"),),
     layers=(Layer("regularized", "Regularized footprints", "Polygon", _FIELDS, style="regularized"),),
 )
 def regularize_polygons(
@@ -77,7 +70,7 @@ def regularize_polygons(
     Parameters
     ----------
     polygons : LayerFeatures
-        Outlines of buildings.
+        Outlines of buildings: traced from rasters, by networks or from clouds, or drawn by hand.
 
     Returns
     -------

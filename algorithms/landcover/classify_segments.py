@@ -35,15 +35,7 @@ def _limit(text: str, within: str) -> Any:
     tags="pick,select,operator,manual,interactive,assign,class,segments,terrain,outlines,reclassify",
     writes=("classification",),
     layers=(Layer("segments", "Segments", "Polygon", _FIELDS, style="picked_segments"),),
-    input_layers=(
-        InputLayer(
-            "selection",
-            "Segments to pick",
-            "Polygon",
-            "The outlines that an earlier run made, of which those are selected or left that are to be picked.",
-            optional=True,
-        ),
-    ),
+    input_layers=(InputLayer("selection", "Segments to pick", optional=True),),
 )
 def classify_segments(
     xyz,
@@ -86,7 +78,7 @@ def classify_segments(
     height_above_ground : ndarray of shape (n,), float32, optional
         Heights, m; needed to limit them.
     selection : LayerFeatures, optional
-        Segments to pick, with the attribute ``id``, their number.
+        The outlines that an earlier run made, of which those are selected or left that are to be picked.
 
     Returns
     -------

@@ -83,14 +83,7 @@ _FIELDS = (
     title="Heights of buildings",
     tags="height,heights,LoD1,LoD1.2,3DBAG,OpenStreetMap,Overture,cadastre,base map,eaves,ridge,volume,roof type,"
     "percentile,zonal statistics,attributes,extrusion",
-    input_layers=(
-        InputLayer(
-            "footprints",
-            "Footprints",
-            "Polygon",
-            "Outlines of buildings from any map: a cadastre, OpenStreetMap, Overture, 'Extract footprints'.",
-        ),
-    ),
+    input_layers=(InputLayer("footprints"),),
     layers=(Layer("buildings", "Buildings", "Polygon", _FIELDS, style="building_heights"),),
     cost=10.0,
     reach=_REACH,
@@ -115,7 +108,7 @@ def compute_building_heights(
     gps_time : ndarray of shape (n,), float64, optional
         Adjusted standard GPS time (s), for the date; times of a week (0 to 604,800 s) have none.
     footprints : LayerFeatures
-        Outlines of the buildings.
+        Outlines of buildings from any map: a cadastre, OpenStreetMap, Overture, 'Extract footprints'.
 
     Returns
     -------

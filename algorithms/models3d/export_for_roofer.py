@@ -14,7 +14,7 @@ from .roof_partition import inside_rings
     "3D",
     tags="3D,roofer,3DBAG,LoD2,LoD1.2,LoD1.3,export,CityJSONSeq,roofprint",
     selects=True,
-    input_layers=(InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings that are modelled."),),
+    input_layers=(InputLayer("footprints"),),
     layers=(
         Layer(
             "roofprints",
@@ -50,7 +50,7 @@ def export_for_roofer(
     classification : ndarray of shape (n,)
         Classes; points of 2 and 6 are kept.
     footprints : LayerFeatures
-        Outlines of the buildings.
+        Outlines of the buildings that are modelled.
 
     Returns
     -------

@@ -41,16 +41,9 @@ OPENING_FIELDS = (
     "3D",
     tags="3D,LoD3,city block,street,facade,window,door,roof,solid,city model,CityJSON,mobile mapping,airborne,Peng",
     input_layers=(
-        InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings, from the airborne cloud."),
-        InputLayer(
-            "facades",
-            "Facades",
-            "Polygon",
-            "Upright polygons of the walls seen from the street, in the frame of the cloud, as 'Register street scan' "
-            "makes them.",
-            upright=True,
-        ),
-        InputLayer("openings", "Windows and doors", "Polygon", "Polygons in the planes of the facades.", upright=True),
+        InputLayer("footprints"),
+        InputLayer("facades", upright=True),
+        InputLayer("openings", "Windows and doors", upright=True),
     ),
     layers=(
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
@@ -84,9 +77,12 @@ def reconstruct_block(
     classification : ndarray of shape (n,)
         Its classes; points of class 6 are modelled, points of class 2 are the ground.
     footprints : LayerFeatures
-        Outlines of the buildings.
-    facades, openings : LayerFeatures
-        Walls, windows and doors seen from the street.
+        Outlines of the buildings, from the airborne cloud.
+    facades : LayerFeatures
+        Upright polygons of the walls seen from the street, in the frame of the cloud, as 'Register street scan' makes
+        them.
+    openings : LayerFeatures
+        Polygons in the planes of the facades.
 
     Returns
     -------

@@ -54,14 +54,7 @@ _ITEMS = (NamedModel, "footprints", "terrain")
     "3D",
     tags="3D,LoD1.2,LoD1.3,LoD2.0,LoD2.2,LoD2.3,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,CityGML,OBJ,3DBAG,"
     "ridge,gable,hip,dormer,overhang,eave,soffit",
-    input_layers=(
-        InputLayer(
-            "footprints",
-            "Footprints",
-            "Polygon",
-            "Outlines of the buildings: from 'Extract footprints', or any other map of roofs or walls.",
-        ),
-    ),
+    input_layers=(InputLayer("footprints"),),
     layers=(
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
         Layer("walls", "Walls", "Polygon", SOFFIT_WALL_FIELDS, style="model_walls"),
@@ -108,7 +101,7 @@ def reconstruct_roofs(
     classification : ndarray of shape (n,)
         Classes; points of class 6 are modelled, points of class 2 are the ground.
     footprints : LayerFeatures
-        Outlines of the buildings.
+        Outlines of the buildings: from 'Extract footprints', or any other map of roofs or walls.
 
     Returns
     -------

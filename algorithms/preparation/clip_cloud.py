@@ -12,16 +12,7 @@ from ..stage import InputLayer, LayerFeatures, stage, tunable
     "Preparation",
     tags="las,laz,copc,pdal,clip,crop,cut,polygon,mask,extent,window,area,subset,extract,outside,erase,lasclip",
     selects=True,
-    input_layers=(
-        InputLayer(
-            "polygons",
-            "Polygons",
-            "Polygon",
-            "Areas whose points are kept: a district, parcels, a mask. They may overlap and have holes. Without a "
-            "layer the extent alone cuts.",
-            optional=True,
-        ),
-    ),
+    input_layers=(InputLayer("polygons", optional=True),),
 )
 def clip_cloud(
     xyz,
@@ -40,7 +31,8 @@ def clip_cloud(
     xyz : ndarray of shape (n, 3)
         Coordinates, m.
     polygons : LayerFeatures, optional
-        Polygons in meters, each a list of closed rings, the exterior first; None keeps every point.
+        Areas whose points are kept: a district, parcels, a mask. They may overlap and have holes. Without a layer the
+        extent alone cuts.
 
     Returns
     -------

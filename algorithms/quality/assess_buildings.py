@@ -66,16 +66,7 @@ _OBJECTS = Layer(
     layers=(_OBJECTS,),
     measures=_MEASURES,
     reference="The same points with the true values; or give polygons of the true buildings.",
-    input_layers=(
-        InputLayer(
-            "reference_map",
-            "True buildings",
-            "Polygon",
-            "Polygons of the buildings in place of a reference cloud: a base map, a cadastre or an earlier result. Of "
-            "the points within, all are building, crowns over a roof included.",
-            optional=True,
-        ),
-    ),
+    input_layers=(InputLayer("reference_map", "True buildings", optional=True),),
 )
 def assess_buildings(
     xyz,
@@ -110,7 +101,8 @@ def assess_buildings(
     reference_classification : ndarray of shape (m,), optional
         True classes.
     reference_map : LayerFeatures, optional
-        Polygons of the true buildings, where there is no reference cloud.
+        Polygons of the buildings in place of a reference cloud: a base map, a cadastre or an earlier result. Of the
+        points within, all are building, crowns over a roof included.
 
     Returns
     -------

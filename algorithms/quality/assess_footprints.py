@@ -95,21 +95,9 @@ _MEASURES = (
     tags="assess,validation,cadastre,base map,change detection,accuracy,evaluation,reference,polygons,outlines,IoU,"
     "PoLiS,Hausdorff,corners,squareness,merged,split,completeness,correctness",
     input_layers=(
-        InputLayer("footprints", "Footprints", "Polygon", "Outlines of buildings that are to be assessed."),
-        InputLayer(
-            "reference_map",
-            "Reference",
-            "Polygon",
-            "Buildings that are trusted: a cadastre, a base map, an earlier result.",
-        ),
-        InputLayer(
-            "area",
-            "Area compared",
-            "Polygon",
-            "Where both layers are compared: buildings and footprints with half of their area within. Without it, the "
-            "next parameter decides.",
-            optional=True,
-        ),
+        InputLayer("footprints"),
+        InputLayer("reference_map", "Reference"),
+        InputLayer("area", "Area compared", optional=True),
     ),
     layers=(_BUILDINGS,),
     measures=_MEASURES,
@@ -141,11 +129,12 @@ def assess_footprints(
     Parameters
     ----------
     footprints : LayerFeatures
-        Polygons to assess.
+        Outlines of buildings that are to be assessed.
     reference_map : LayerFeatures
-        Polygons that are trusted.
+        Buildings that are trusted: a cadastre, a base map, an earlier result.
     area : LayerFeatures, optional
-        Polygons of the area compared.
+        Where both layers are compared: buildings and footprints with half of their area within. Without it, the next
+        parameter decides.
 
     Returns
     -------

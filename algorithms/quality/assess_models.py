@@ -91,14 +91,7 @@ _MEASURES = (
 @stage(
     "Quality",
     tags="3D,LoD2,city model,roof,accuracy,rms,distance,evaluation,validation,RMSE",
-    input_layers=(
-        InputLayer(
-            "roofs",
-            "Roofs",
-            "Polygon",
-            "Roof faces with heights, of any program; faces with the same attribute 'building' are one building.",
-        ),
-    ),
+    input_layers=(InputLayer("roofs"),),
     layers=(_FACES, _BUILDINGS),
     measures=_MEASURES,
 )
@@ -124,7 +117,7 @@ def assess_models(
     classification : ndarray of shape (n,)
         Classes; points of class 6 are compared.
     roofs : LayerFeatures
-        Faces with heights, rings (k, 3).
+        Roof faces with heights, of any program; faces with the same attribute 'building' are one building.
 
     Returns
     -------

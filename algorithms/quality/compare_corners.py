@@ -76,14 +76,8 @@ _MEASURES = (
     "Quality",
     tags="cadastre,land registry,map,update,change detection,changes,displacement,shift,accuracy,footprints,RMSE",
     input_layers=(
-        InputLayer("footprints", "Footprints", "Polygon", "New outlines of buildings."),
-        InputLayer(
-            "old_map",
-            "Old map",
-            "Polygon",
-            "Buildings to compare with, cut to the area that was surveyed; without a map, all footprints are new.",
-            optional=True,
-        ),
+        InputLayer("footprints"),
+        InputLayer("old_map", optional=True),
     ),
     layers=(_DISPLACEMENTS, _BUILDINGS),
     measures=_MEASURES,
@@ -112,9 +106,9 @@ def compare_corners(
     Parameters
     ----------
     footprints : LayerFeatures
-        Polygons of the new outlines.
+        New outlines of buildings.
     old_map : LayerFeatures, optional
-        Polygons to compare with.
+        Buildings to compare with, cut to the area that was surveyed; without a map, all footprints are new.
 
     Returns
     -------

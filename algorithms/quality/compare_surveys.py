@@ -86,13 +86,8 @@ _MEASURES = (
     "Quality",
     tags="change detection,changes,update,new,demolished,epochs,earlier survey,monitoring,cadastre,footprints,height",
     input_layers=(
-        InputLayer("footprints", "Footprints", "Polygon", "Buildings of the new survey, cut to the area of both."),
-        InputLayer(
-            "earlier",
-            "Footprints of the earlier survey",
-            "Polygon",
-            "Buildings of the earlier survey, cut to the area of both.",
-        ),
+        InputLayer("footprints"),
+        InputLayer("earlier", "Footprints of the earlier survey"),
     ),
     layers=(_BUILDINGS,),
     measures=_MEASURES,
@@ -128,9 +123,9 @@ def compare_surveys(
     Parameters
     ----------
     footprints : LayerFeatures
-        Polygons of the new survey.
+        Buildings of the new survey, cut to the area of both.
     earlier : LayerFeatures
-        Polygons of the earlier survey.
+        Buildings of the earlier survey, cut to the area of both.
 
     Returns
     -------

@@ -39,15 +39,7 @@ def _shown(footprints: LayerFeatures) -> np.ndarray:
     "Quality",
     title="Report on buildings",
     tags="report,summary,statistics,map,doubtful,confidence,PDF,print",
-    input_layers=(
-        InputLayer(
-            "footprints",
-            "Footprints",
-            "Polygon",
-            "Footprints of buildings, from 'Extract footprints' or any other source; heights, volumes and confidences "
-            "are read from their attributes 'height', 'volume' and 'confidence'.",
-        ),
-    ),
+    input_layers=(InputLayer("footprints"),),
     measures=(
         Measure("buildings", "Buildings"),
         Measure("area", "Area of all buildings", "m²"),
@@ -73,7 +65,8 @@ def report_buildings(
     classification : ndarray of shape (n,), uint8, optional
         ASPRS classes of these points.
     footprints : LayerFeatures
-        Polygons with any of the attributes ``id``, ``height``, ``volume``, ``confidence``, ``reason`` and ``evidence``.
+        Footprints of buildings, from 'Extract footprints' or any other source; heights, volumes and confidences are
+        read from their attributes 'height', 'volume' and 'confidence'.
 
     Returns
     -------

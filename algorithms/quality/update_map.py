@@ -105,15 +105,8 @@ def _update_in_windows(
     tags="update,change detection,cadastre,base map,new,demolished,gone,extension,annex,shifted,maintenance,"
     "OpenStreetMap,conflation",
     input_layers=(
-        InputLayer("old_map", "Old map", "Polygon", "Buildings with their attributes, from any source."),
-        InputLayer(
-            "footprints",
-            "New footprints",
-            "Polygon",
-            "New outlines of buildings, from 'Detect buildings' or another source; without them they are extracted "
-            "from the classified points.",
-            optional=True,
-        ),
+        InputLayer("old_map"),
+        InputLayer("footprints", "New footprints", optional=True),
     ),
     layers=(
         Layer("updated_map", "Updated map", "Polygon", _FIELDS, style="updated_map"),
@@ -168,9 +161,10 @@ def update_map(
     reference_classification : ndarray of shape (m,), optional
         Their classes; where none has class 6, every point but noise may be of a roof.
     old_map : LayerFeatures
-        Buildings of the map.
+        Buildings with their attributes, from any source.
     footprints : LayerFeatures, optional
-        New outlines.
+        New outlines of buildings, from 'Detect buildings' or another source; without them they are extracted from the
+        classified points.
 
     Returns
     -------

@@ -22,16 +22,8 @@ _SIDES = 16
     "Shapes",
     tags="pipe,tube,sphere,tank,3D,surface,view,polygon,industry",
     input_layers=(
-        InputLayer(
-            "axes", "Axes of cylinders", "LineString", "Lines with heights and the attributes 'id' and 'radius'."
-        ),
-        InputLayer(
-            "centers",
-            "Centers of spheres",
-            "Point",
-            "Points with heights and the attributes 'id' and 'radius'.",
-            optional=True,
-        ),
+        InputLayer("axes", "Axes of cylinders", geometry="LineString"),
+        InputLayer("centers", "Centers of spheres", geometry="Point", optional=True),
     ),
     layers=(Layer("pipes", "Pipes and spheres", "Polygon", _FIELDS, style="pipes"),),
     packages=(),
@@ -51,9 +43,9 @@ def reconstruct_pipes(
     Parameters
     ----------
     axes : LayerFeatures
-        Axes as lines with heights, from 'Detect cylinders'.
+        Lines with heights and the attributes 'id' and 'radius'.
     centers : LayerFeatures, optional
-        Centers as points with heights, from 'Detect spheres'.
+        Points with heights and the attributes 'id' and 'radius'.
 
     Returns
     -------

@@ -9,7 +9,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from .arguments import REFERENCE_PREFIX, check_arrays
-from .docstrings import described, description, sections, summary, with_tunables, with_values
+from .docstrings import ARGUMENTS, TUNABLES, described, description, sections, summary, with_tunables, with_values
 from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
 from .tunables import Param, Tunable, in_words
@@ -247,12 +247,14 @@ def _checked(function: Callable, declared: Stage) -> Callable:
 def _declared(function: Callable, title: str, group: str, tags: str, fields: dict[str, Any]) -> Stage:
     """Return the declaration of a function: what its signature and docstring say, and the ``fields`` given."""
     doc = with_values(inspect.cleandoc(function.__doc__ or ""), function.__globals__)
-    helps = described(doc)
+    helps = described(doc, TUNABLES)
     hints = typing.get_type_hints(function)
     reads: list[str] = []
     optional: list[str] = []
     tunables = {}
-    layers = {input_layer.name for input_layer in fields.get("input_layers", ())}
+    texts = described(doc, ARGUMENTS)
+    input_layers = tuple(one.described(texts.get(one.name, "")) for one in fields.pop("input_layers", ()))
+    layers = {input_layer.name for input_layer in input_layers}
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY:
             if name not in (MONITOR, SAMPLING):
@@ -267,7 +269,9 @@ def _declared(function: Callable, title: str, group: str, tags: str, fields: dic
             (reads if parameter.default is parameter.empty else optional).append(name)
     if helps:
         raise TypeError(f"{function.__name__} describes {next(iter(helps))!r}, no tunable or one that has its help.")
-    return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **fields)
+    return Stage(
+        function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, input_layers=input_layers, **fields
+    )
 
 
 def _check_declaration(declared: Stage) -> None:

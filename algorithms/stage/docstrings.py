@@ -8,8 +8,9 @@ from typing import Any
 
 from .tunables import Tunable
 
-_TUNABLES = "Other Parameters"
-_HEADINGS = ("Parameters", "Returns", "Raises", _TUNABLES, "Notes", "References", "Examples", "See Also")
+# Sections that describe the arrays and layers of a stage, and its tunables.
+ARGUMENTS, TUNABLES = "Parameters", "Other Parameters"
+_HEADINGS = (ARGUMENTS, "Returns", "Raises", TUNABLES, "Notes", "References", "Examples", "See Also")
 
 
 # A constant of a module, or a field of one, as docstrings name it.
@@ -66,9 +67,9 @@ def description(doc: str) -> str:
     return before_first_section(doc.partition("\n\n")[2]).strip()
 
 
-def described(doc: str) -> dict[str, str]:
-    """Return the descriptions of the tunables in a docstring by their names, each on one line."""
-    parts = re.split(r"^(\w+)\n", sections(doc).get(_TUNABLES, ""), flags=re.MULTILINE)
+def described(doc: str, title: str) -> dict[str, str]:
+    """Return the descriptions in a section of a docstring by the names that they describe, each on one line."""
+    parts = re.split(r"^(\w+)(?: : .*)?\n", sections(doc).get(title, ""), flags=re.MULTILINE)
     return {name: " ".join(text.split()) for name, text in zip(parts[1::2], parts[2::2])}
 
 
@@ -89,6 +90,6 @@ def with_tunables(doc: str, tunables: Collection[Tunable], samples: bool = False
     if not rows:
         return doc
     rows.append("monitor : Monitor, optional\n    Receives progress, automatic values and warnings.")
-    heading, text = f"{_TUNABLES}\n{'-' * len(_TUNABLES)}\n", "\n".join(rows)
-    written = sections(doc).get(_TUNABLES)
+    heading, text = f"{TUNABLES}\n{'-' * len(TUNABLES)}\n", "\n".join(rows)
+    written = sections(doc).get(TUNABLES)
     return doc.replace(heading + written, heading + text) if written else f"{doc}\n\n{heading}{text}\n"

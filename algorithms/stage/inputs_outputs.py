@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Optional, Protocol, Union
 
 import numpy as np
+
+from .tunables import in_words
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,8 @@ class Layer:
 class InputLayer:
     """A vector layer that a stage reads.
 
-    ``name`` is the positional argument and the input (``OLD_MAP``), ``geometry`` is one of
+    ``name`` is the positional argument and the input (``OLD_MAP``). Without a ``title`` the dialog calls it by its name
+    in words, without ``help`` it says what the docstring of the stage says of the argument. ``geometry`` is one of
     ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`LayerFeatures` with
     all attributes of the layer, or None where an ``optional`` one is not given. Parts of a
     multipart geometry come one by one, each with the attributes of the whole. ``upright`` polygons have no area in
@@ -84,14 +87,18 @@ class InputLayer:
     """
 
     name: str
-    title: str
-    geometry: str
-    help: str
+    title: str = ""
+    help: str = ""
+    geometry: str = "Polygon"
     optional: bool = False
     advanced: bool = False
     upright: bool = False
     endings: tuple[str, ...] = ()
     read: Optional[Callable[[str], tuple[LayerFeatures, str]]] = None
+
+    def described(self, text: str) -> InputLayer:
+        """Return the layer with its name in words as the title, and this text as its help, where it has none."""
+        return replace(self, title=self.title or in_words(self.name), help=self.help or text)
 
     @property
     def objects(self) -> str:

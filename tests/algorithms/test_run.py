@@ -109,8 +109,8 @@ def merge_toy(
     "Toys",
     title="Toy raster",
     input_layers=(
-        InputLayer("area", "Area", "Polygon", "Where."),
-        InputLayer("spots", "Spots", "Point", "What.", optional=True),
+        InputLayer("area", help="Where."),
+        InputLayer("spots", "Spots", "What.", "Point", optional=True),
     ),
     rasters=(Raster("low", "Lowest"), Raster("high", "Highest")),
     measures=(Measure("spots", "Spots"),),
@@ -125,7 +125,7 @@ def rasterize_toy(xyz, intensity=None, area=None, spots=None, *, monitor=None):
 @stage(
     "Toys",
     title="Toy map",
-    input_layers=(InputLayer("old", "Old map", "Polygon", "Before."),),
+    input_layers=(InputLayer("old", "Old map", "Before."),),
     measures=(Measure("n", "N"),),
 )
 def compare_toy(old, *, monitor=None):
@@ -546,7 +546,7 @@ def test_sampling_needs_the_points_of_one_cloud():
     ("declared", "sentence"),
     [
         ({"of_whole": ("middle",)}, "takes 'middle' of the whole, so it must take its sampling"),
-        ({"input_layers": (InputLayer("map", "Map", "Point", ""),)}, "has no argument of that name"),
+        ({"input_layers": (InputLayer("map"),)}, "has no argument of that name"),
         ({"creates": ("xyz",)}, "can't read anything"),
         ({"selects": True, "merges": True}, "make it two stages"),
         ({"writes": ("xyz",)}, "it must select them"),

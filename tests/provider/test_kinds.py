@@ -171,7 +171,7 @@ def read(provider, context, town_file):
     """Return a layer as a stage would be given it, and the warnings, in meters from the town's origin."""
 
     def read(kind, rows, cloud=None, **options):
-        input_layer = InputLayer("areas", "Areas", kind, "Boxes.", upright=options.pop("upright", False))
+        input_layer = InputLayer("areas", "Areas", "Boxes.", kind, upright=options.pop("upright", False))
         layer = vector(options.pop("layer_kind", kind), rows, **options)
         context.project().addMapLayer(layer)
         algorithm = provider.algorithm("toymask").create()

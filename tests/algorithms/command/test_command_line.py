@@ -79,7 +79,7 @@ def test_layers_are_read_as_stages_want_them(tmp_path):
     shapes = [{"type": "Polygon", "coordinates": [clockwise, hole]}, {"type": "Point", "coordinates": [1, 2, 3]}]
     shapes.append({"type": "MultiLineString", "coordinates": [[[0, 0], [1, 1]], [[2, 2], [3, 3]]]})
     path, monitor = features(tmp_path / "all.geojson", *shapes), Monitor()
-    wanted = InputLayer("areas", "Areas", "Polygon", "Some.")
+    wanted = InputLayer("areas", "Areas", "Some.")
     read, code = read_layer(path, wanted, monitor)
     assert [signed_area(ring) for ring in read.geometries[0]] == [81.0, -9.0]
     assert (code, read.columns["id"].tolist(), len(monitor.warnings)) == ("EPSG:25832", [0], 1)

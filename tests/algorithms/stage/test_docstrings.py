@@ -4,7 +4,7 @@ from typing import Optional
 
 import pytest
 
-from lidar_buildings.algorithms.stage import stage, tunable
+from lidar_buildings.algorithms.stage import InputLayer, stage, tunable
 
 _WIDTH = 1250.5
 
@@ -126,3 +126,24 @@ def test_a_section_is_added_at_the_end_where_all_tunables_are_shared():
 
     made = stage("Toys", title="Toy", writes=("cluster_id",))(toy)
     assert made.__doc__.startswith("Count.\n\nOther Parameters\n----------------\ncolor : str or None, default None\n")
+
+
+def test_a_layer_says_what_the_docstring_says_of_it_unless_it_has_its_own_words():
+    def toy(areas, zones, *, monitor=None):
+        """Count.
+
+        Parameters
+        ----------
+        areas : LayerFeatures
+            Where points
+            are counted.
+        zones : LayerFeatures
+            Not shown.
+        """
+
+    layers = InputLayer("areas"), InputLayer("zones", "Zone map", "Where not.")
+    made = stage("Toys", title="Toy", input_layers=layers)(toy).stage
+    assert [(one.title, one.help) for one in made.input_layers] == [
+        ("Areas", "Where points are counted."),
+        ("Zone map", "Where not."),
+    ]
