@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.boxes import connect
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
-from ..geometry.groups import items, placed, run_starts
+from ..geometry.groups import items, placed, run_starts, split_groups
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
 from ..rules import rule, rules
@@ -147,7 +147,7 @@ class Decks:
         rows, number = _of_chosen(rows, number, chosen, count)
         size = np.bincount(number, minlength=len(chosen))
         is_smooth = _roughness(along[rows], height[rows], number, size) <= ON_DECK.rough
-        below = _count_below(along, height, first[chosen], last[chosen], self.min_height)
+        below = _n_below(along, height, first[chosen], last[chosen], self.min_height)
         raised[order[rows[(is_smooth & (below <= DECK.most_below * size))[number]]]] = True
         return raised
 
@@ -176,16 +176,13 @@ class Decks:
         most = ON_DECK.rough * CLOSED.cell**2 / self.cell
         return ends & (np.bincount(which[beside], minlength=len(end)) <= most)
 
-    def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray):
-        """Yield the rows of parts that are large enough."""
+    def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray) -> list[np.ndarray]:
+        """Return the rows of parts that are large enough."""
         grid = fixed_grid_over(xyz[candidates], self.reach / 2)
         cells = distinct(part.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz[candidates]))[0]
         area = np.bincount(cells // (grid.rows * grid.columns)) * grid.size**2
-        is_large = (area >= self.min_area)[part]
-        candidates, part = candidates[is_large], part[is_large]
-        order = np.argsort(part, kind="stable")
-        if len(order):
-            yield from np.split(candidates[order], run_starts(part[order])[1:])
+        parts = zip(split_groups(part, len(area)), area)
+        return [candidates[rows] for rows, size in parts if size >= self.min_area]
 
     def _is_joined(self, deck: np.ndarray, others: np.ndarray, axis: np.ndarray) -> bool:
         """Return whether terrain continues a deck at both ends along its ``axis`` (2,)."""
@@ -288,9 +285,7 @@ def _of_chosen(rows: np.ndarray, number: np.ndarray, chosen: np.ndarray, count: 
     return rows[kept], renumbered[number[kept]]
 
 
-def _count_below(
-    along: np.ndarray, height: np.ndarray, first: np.ndarray, last: np.ndarray, least: float
-) -> np.ndarray:
+def _n_below(along: np.ndarray, height: np.ndarray, first: np.ndarray, last: np.ndarray, least: float) -> np.ndarray:
     """Count the points (m,) at least ``least`` m under each piece, where slanting beams do not reach."""
     which, item = items(last - first + 1)
     rows = first[which] + item

@@ -155,8 +155,7 @@ def _bare_earth(
     # The border includes the edge of the cloud.
     is_object = np.bincount(number, raised, n) >= MAJORITY * np.maximum(n_border, 1)
     is_object &= area <= max_object_area
-    is_large = area >= min_area
-    return placed((~is_object & is_large)[of], member, len(points))
+    return placed((~is_object & (area >= min_area))[of], member, len(points))
 
 
 def _is_low(points: np.ndarray, cell: float, step: float) -> np.ndarray:

@@ -50,12 +50,8 @@ def parse_classes(text: str, label: str = "Ignored classes", most: int = 255) ->
     """
     classes: set[int] = set()
     for part in filter(None, (piece.strip() for piece in text.split(","))):
-        ends = [end.strip() for end in part.split("-")]
-        if (
-            len(ends) > 2
-            or not all(end.isdecimal() and int(end) <= most for end in ends)
-            or int(ends[0]) > int(ends[-1])
-        ):
+        ends = [int(end) if end.strip().isdecimal() else most + 1 for end in part.split("-")]
+        if len(ends) > 2 or not ends[0] <= ends[-1] <= most:
             raise ValueError(f"{label} must be numbers from 0 to {most} and ranges such as 64-67, got {part!r}.")
-        classes.update(range(int(ends[0]), int(ends[-1]) + 1))
+        classes.update(range(ends[0], ends[-1] + 1))
     return np.array(sorted(classes), dtype=np.int64)

@@ -13,7 +13,7 @@ import numpy as np
 from .crs import Crs, crs_records, read_crs
 from .dimensions import DIMENSIONS, Dimension
 from .header import LARGEST_STEP, LAX, Header
-from .point_formats import OF_COPC, Layout
+from .point_formats import Layout
 from .point_records import PointRecords, find_extra, is_written_as, unit_factor
 from .printable import shown
 
@@ -247,7 +247,7 @@ class Cloud:
                 known[alias.lower()] = known[dimension.disk[0].lower()]
         for at, extra in enumerate(layout.extras):
             if extra.is_scalar and extra.name:
-                known.setdefault(extra.name.lower(), (extra.name, partial(self._decoded, at)))
+                known.setdefault(extra.name.lower(), (extra.name, partial(extra.decode, self.points[f"extra{at}"])))
         for name in layout.names:
             disk = "".join(word.capitalize() for word in name.split("_"))
             value = known.get(name.lower()) or (disk, partial(layout.get, self.points, name))
@@ -259,9 +259,6 @@ class Cloud:
         values = self.get(dimension.name)
         values = values if values.ndim == 1 else values[:, i]
         return values + self.origin[i] if dimension.name == "xyz" else values
-
-    def _decoded(self, extra: int) -> np.ndarray:
-        return self.header.layout.extras[extra].decode(self.points[f"extra{extra}"])
 
     def to_map(self, coordinates: np.ndarray) -> np.ndarray:
         """Return local meters (m, 2 or 3) as float64 coordinates of the file, in its CRS and units."""
@@ -277,8 +274,7 @@ class Cloud:
 
     def records(self, for_copc: bool = False) -> PointRecords:
         """Return the settings of the output's records."""
-        convert = OF_COPC.__getitem__ if for_copc else int
-        return PointRecords(self.points, self.header.layout, self._changes, self.crs, convert)
+        return PointRecords(self.points, self.header.layout, self._changes, self.crs, for_copc)
 
 
 def origin_before(low: np.ndarray) -> np.ndarray:
@@ -336,9 +332,8 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     header.offset = np.floor(coordinates.min(axis=0) / _ORIGIN_STEP) * _ORIGIN_STEP
     steps = np.rint((coordinates - header.offset) / header.scale)
     if steps.max() > LARGEST_STEP:
-        raise ValueError(
-            f"The cloud spans {np.ptp(xyz, axis=0).max():.0f} m, more than a file of millimeters can hold."
-        )
+        span = np.ptp(xyz, axis=0).max()
+        raise ValueError(f"The cloud spans {span:.0f} m, more than a file of millimeters can hold.")
     points = np.zeros(len(xyz), header.layout.dtype)
     for i, axis in enumerate("XYZ"):
         points[axis] = steps[:, i]

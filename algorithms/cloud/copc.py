@@ -9,22 +9,10 @@ from ..geometry.groups import run_starts
 from ..stage import Monitor
 from .copc_index import ENTRY, INFO
 from .crs import stated_wkt
-from .header import (
-    COPC_HIERARCHY,
-    COPC_INFO,
-    EVLR,
-    LASZIP,
-    OF_OLD_POINTS,
-    WAVEFORMS,
-    WAVEFORMS_INSIDE,
-    WAVEFORMS_OUTSIDE,
-    WKT_BIT,
-    Header,
-    Vlr,
-)
+from .header import COPC_HIERARCHY, COPC_INFO, EVLR, LASZIP, OF_OLD_FILES, WAVEFORM_BITS, WKT_BIT, Header, Vlr
 from .laspy_library import need_lazrs
 from .laz import POINTS_PER_CHUNK
-from .points import AT_ONCE
+from .points import AT_ONCE, bounds_of
 
 # Levels of the grid within a node: 2^7 = 128 cells along its side. One point of each is shown at the node's level.
 _GRID_LEVELS = 7
@@ -72,8 +60,7 @@ def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree
 
 def _cube(points: np.ndarray, header: Header) -> tuple[np.ndarray, float]:
     """Return the least corner (3,) and the side of the root cube, in coordinates of the file."""
-    ends = np.array([[points[axis].min(), points[axis].max()] for axis in "XYZ"], float).T
-    low, high = ends * header.scale + header.offset
+    low, high = bounds_of(points, header)
     # One step wider, so that the largest coordinate lies inside the last cell.
     return low, float((high - low).max() + header.scale.max())
 
@@ -144,16 +131,15 @@ def _in_leaves(nodes: np.ndarray, level: int) -> np.ndarray:
 def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return keys (m, 4) and ends (m,) of the nodes of points sorted by level and code."""
     nodes = codes >> (np.uint64(3) * (np.uint64(_BITS) - levels.astype(np.uint64)))
-    changes = (nodes[1:] != nodes[:-1]) | (levels[1:] != levels[:-1])
-    first = np.flatnonzero(np.concatenate(([True], changes)))
+    first = np.union1d(run_starts(nodes), run_starts(levels))
     keys = [(int(levels[i]), *(_gathered(int(nodes[i]), axis) for axis in range(3))) for i in first]
     return np.array(keys, np.int32), np.append(first[1:], len(codes))
 
 
 def copc_header(header: Header) -> Header:
     """Return ``header`` in the form of COPC: LAS 1.4, the info record first, no waveforms, no LAStools index."""
-    kept = header.without(*OF_OLD_POINTS, WAVEFORMS)
-    encoding = kept.encoding & ~(WAVEFORMS_INSIDE | WAVEFORMS_OUTSIDE) | (WKT_BIT if stated_wkt(kept) else 0)
+    kept = header.without(*OF_OLD_FILES)
+    encoding = kept.encoding & ~WAVEFORM_BITS | (WKT_BIT if stated_wkt(kept) else 0)
     info = Vlr(*COPC_INFO, bytes(INFO.size), description=b"COPC info")
     return replace(kept, minor=4, user_bytes=b"", gap=b"", waveforms_at=0, encoding=encoding, vlrs=[info, *kept.vlrs])
 

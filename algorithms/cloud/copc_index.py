@@ -56,8 +56,8 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
     if not np.array_equal(found, held):
         raise _damaged(path, f"it names {len(found)} nodes that are not the {len(held)} chunks of the file")
     keys, points = nodes["key"].astype(np.int64), found[:, 2]
-    side, corner = np.full(2, 2 * half), np.array([x, y]) - half
-    return nodes_of(path, keys, points, corner, side, header.scale[:2], spacing)
+    root = np.array([[x - half, y - half], [2 * half, 2 * half]])
+    return nodes_of(path, keys, points, root, header.scale[:2], spacing)
 
 
 def _nodes(path: Path, stream: BinaryIO, at: int, size: int, most: int) -> np.ndarray:

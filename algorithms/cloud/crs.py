@@ -1,7 +1,6 @@
 """The coordinate reference system of a cloud: one record, made when the cloud is opened and handed on from there."""
 
 import re
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Callable, Optional
@@ -13,23 +12,7 @@ from ..stage import Monitor
 from .authority import Authority, Definition, authority_here
 from .header import LARGEST_VLR, WKT_BIT, Header, Vlr
 from .printable import shown
-from .units import (
-    GEOKEYS,
-    MODEL,
-    PROJECTED,
-    PROJECTION,
-    USER_DEFINED,
-    Units,
-    code_of_keys,
-    define_system,
-    geokey_records,
-    geokeys,
-    name_of_length,
-    text_of_keys,
-    units_of_geokeys,
-    units_of_wkt,
-    with_named_units,
-)
+from .units import PROJECTION, USER_DEFINED, GeoKeys, Units, geokeys_of, name_of_length, units_of_wkt, with_named_units
 
 # User and record ids of the VLRs with WKT.
 _WKT = ((PROJECTION, 2112), (b"liblas", 2112))
@@ -118,15 +101,15 @@ def read_crs(header: Header, authority: Optional[Authority] = None, given: str =
     ValueError
         If coordinates are degrees or geocentric, or not true to scale in any direction.
     """
-    keys, wkt, text = geokeys(header), stated_wkt(header), header.named or given
-    if authority is None and (wkt or text or define_system(keys)):
+    keys, wkt, text = GeoKeys(header), stated_wkt(header), header.named or given
+    if authority is None and (wkt or text or keys.define_system):
         authority = authority_here()
     # Files that have only the one that their bit does not name are common.
-    if wkt and define_system(keys) and header.layout.is_old and not header.encoding & WKT_BIT:
+    if wkt and keys.define_system and header.layout.is_old and not header.encoding & WKT_BIT:
         wkt = ""
     crs = crs_of_text(wkt, authority)
     if not crs.identity:
-        other = _crs_of_keys(header, authority) if define_system(keys) or not text else crs_of_text(text, authority)
+        other = _crs_of_keys(keys, authority) if keys.define_system or not text else crs_of_text(text, authority)
         crs = replace(other, warnings=(*(crs.warnings if wkt else ()), *other.warnings))
     return _on_the_ground(crs, header, authority) if authority and crs.plane else crs
 
@@ -155,19 +138,18 @@ def _unread(text: str) -> Crs:
     return Crs(text, warnings=(f"The WKT of the file can't be read ({shown(text, 40)}); assign its CRS again.",))
 
 
-def _crs_of_keys(header: Header, authority: Optional[Authority]) -> Crs:
+def _crs_of_keys(keys: GeoKeys, authority: Optional[Authority]) -> Crs:
     """Return the system of a file with GeoKeys, or with nothing."""
-    keys = geokeys(header)
-    if not define_system(keys):
-        units, warnings = units_of_geokeys(keys, None) if keys else (None, ())
+    if not keys.define_system:
+        units, warnings = keys.units(None) if keys else (None, ())
         return Crs("", "", "", "", "", *(units or Units()), (*warnings, _ONLY_UNIT if units else NO_CRS))
-    code = code_of_keys(keys)
-    known = authority.define("", geokey_records(header)) if authority else None
+    code = keys.code
+    known = authority.define("", keys.records) if authority else None
     if authority and known is None and code:
         # Many files have the code of a vertical datum in place of the code of a vertical system.
-        known = authority.define(text_of_keys(keys)) or authority.define(f"EPSG:{code}")
+        known = authority.define(keys.text) or authority.define(f"EPSG:{code}")
     of_system = units_of_wkt(known.wkt) if known else None
-    units, warnings = units_of_geokeys(keys, of_system)
+    units, warnings = keys.units(of_system)
     stated = f"EPSG:{code}" if code else ""
     if units is None:
         warnings = (*warnings, _without_unit(stated))
@@ -309,9 +291,9 @@ def crs_of_tiles(headers: Sequence[Header], names: Sequence[str], read: CrsReade
 
 def header_with_crs(header: Header, crs: Crs) -> Header:
     """Return the header of a file that is written in a system: with its records where they lack or can't count."""
-    own, keys = stated_wkt(header), geokeys(header)
+    own, keys = stated_wkt(header), GeoKeys(header)
     if header.layout.is_old:
-        if own or define_system(keys) or not crs.identity:
+        if own or keys.define_system or not crs.identity:
             return header
         code = crs.plane if is_epsg_code(crs.plane) and crs.vertical == crs.horizontal else ""
         vlrs, bits = crs_records(code or crs.wkt or crs.stated)
@@ -329,8 +311,7 @@ def crs_records(text: str) -> tuple[list[Vlr], int]:
     if text and '"' not in text:
         if not is_epsg_code(text):
             raise ValueError(f"The CRS {text!r} can't be stored; give WKT or EPSG:code.")
-        numbers = (1, 1, 0, 2, MODEL, 0, 1, 1, PROJECTED, 0, 1, int(text[5:]))
-        return [Vlr(*GEOKEYS, struct.pack(f"<{len(numbers)}H", *numbers), description=b"GeoKeys")], 0
+        return [geokeys_of(int(text[5:]))], 0
     if not text:
         return [], WKT_BIT
     return [Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")], WKT_BIT

@@ -55,12 +55,8 @@ class Ept:
             self.fields = [_field(one) for one in content["schema"][: MOST_EXTRAS + 1]]
             names = {name for name, *_ in self.fields}
             self.srs, span = content.get("srs") or {}, float(content.get("span") or 0)
-            is_sound = bool(np.isfinite(ends).all() and (ends[:, 1] >= ends[:, 0]).all())
-            is_sound &= (
-                len(names) == len(self.fields) <= MOST_EXTRAS
-                and bool((ends[0, 1] > ends[0, 0]).all())
-                and 0 <= self.count < 2**62
-            )
+            is_box = np.isfinite(ends).all() and (ends[:, 1] >= ends[:, 0]).all() and (ends[0, 1] > ends[0, 0]).all()
+            is_sound = is_box and len(names) == len(self.fields) <= MOST_EXTRAS and 0 <= self.count < 2**62
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError, IndexError):
             is_sound = False
         if not is_sound:
@@ -108,8 +104,7 @@ class Ept:
         else:
             layout, scale, offset = self._layout(), *self._grid()
         header = Header(count=self.count, scale=scale, offset=offset, low=self.bounds[0], high=self.bounds[1])
-        vlrs, bits = crs_records(_system(self.srs))
-        header.vlrs, header.encoding = vlrs, bits
+        header.vlrs, header.encoding = crs_records(_system(self.srs))
         return header.with_layout(layout)
 
     def _grid(self) -> tuple[np.ndarray, np.ndarray]:
@@ -139,8 +134,7 @@ class Ept:
             values = stored[name]
             if name in ("X", "Y", "Z"):
                 axis = "XYZ".index(name)
-                is_kept = dtype.kind == "i" and scale == header.scale[axis] and offset == header.offset[axis]
-                if not is_kept:
+                if dtype.kind != "i" or scale != header.scale[axis] or offset != header.offset[axis]:
                     values = values * (scale or 1.0) + offset
                     values = np.rint((values - header.offset[axis]) / header.scale[axis])
                 if len(values) and not max(values.max(), -values.min()) <= LARGEST_STEP:
@@ -289,8 +283,8 @@ def _nodes(ept: Ept, keys: list[tuple], counts: Any = ()) -> Nodes:
     margin = np.full(2, max([*Header().scale, *(scale for name, _, scale, _ in ept.fields if name in ("X", "Y"))]))
     points = np.array(counts if len(counts) else [0] * len(keys), np.int64)
     found = np.array(keys, np.int64).reshape(-1, 4)
-    side = ept.high - ept.low
-    return nodes_of(ept.path, found, points, ept.low[:2], side[:2], margin, ept.spacing)
+    root = np.array([ept.low, ept.high - ept.low])[:, :2]
+    return nodes_of(ept.path, found, points, root, margin, ept.spacing)
 
 
 def _page(file: Path) -> dict[tuple, int]:

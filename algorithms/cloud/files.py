@@ -240,9 +240,8 @@ def open_named(
         As of :func:`read_cloud`.
     """
     files, headers = open_headers(list(named), monitor)
-    return files, [
-        replace(header, named=named[file].crs, reach=box, spacing=spacing) for file, header in zip(files, headers)
-    ]
+    crs = (named[file].crs for file in files)
+    return files, [replace(header, named=own, reach=box, spacing=spacing) for header, own in zip(headers, crs)]
 
 
 def touching(named: dict[Path, Named], box: Optional[np.ndarray]) -> dict[Path, Named]:

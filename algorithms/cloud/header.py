@@ -40,9 +40,10 @@ SIZES = {**dict.fromkeys(range(3), bytes_of("bounds").stop), 3: bytes_of("wavefo
 # The first minor version of LAS that has a point format; laspy supports versions from 1.1 on.
 _FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 
-# Bits of the encoding: the CRS is a WKT; waveforms are in the file, in a file of their own.
+# Bits of the encoding: the CRS is a WKT; waveforms are in the file, in a file of their own, in either.
 WKT_BIT = 16
-WAVEFORMS_INSIDE, WAVEFORMS_OUTSIDE = 2, 4
+_WAVEFORMS_INSIDE, _WAVEFORMS_OUTSIDE = 2, 4
+WAVEFORM_BITS = _WAVEFORMS_INSIDE | _WAVEFORMS_OUTSIDE
 # Most bytes of the payload of a VLR, and most extra dimensions that it describes.
 LARGEST_VLR = np.iinfo(np.uint16).max
 MOST_EXTRAS = LARGEST_VLR // DESCRIPTOR_SIZE
@@ -59,9 +60,11 @@ WAVEFORMS = (b"LASF_Spec", 65535)
 COPC_INFO, COPC_HIERARCHY = (b"copc", 1), (b"copc", 1000)
 # LAStools' index of the points by their positions in the file.
 LAX = (b"LAStools", 30)
-# Records that become invalid when points are recompressed, and when they change or are reordered.
+# Records that become invalid when points are recompressed, and when they change or are reordered; and those that a file
+# of other points, or of other formats, lacks.
 OF_OLD_CHUNKS = (LASZIP, COPC_INFO, COPC_HIERARCHY)
 OF_OLD_POINTS = (*OF_OLD_CHUNKS, LAX)
+OF_OLD_FILES = (*OF_OLD_POINTS, WAVEFORMS)
 
 
 @dataclass
@@ -134,7 +137,7 @@ class Header:
     @property
     def has_waveforms_outside(self) -> bool:
         """Whether the points refer to waveforms in a file of their own (.wdp)."""
-        return self.layout.has_waveforms and bool(self.encoding & WAVEFORMS_OUTSIDE)
+        return self.layout.has_waveforms and bool(self.encoding & _WAVEFORMS_OUTSIDE)
 
     def find(self, key: tuple[bytes, int]) -> Optional[Vlr]:
         """Return the first VLR or EVLR of that user and record id, or None."""
@@ -216,7 +219,7 @@ class Header:
         las.start_of_first_evlr = stream.seek(0, 2) if self.evlrs else 0
         las.number_of_evlrs = len(self.evlrs)
         for record in self.evlrs:
-            if record.key == WAVEFORMS and self.encoding & WAVEFORMS_INSIDE:
+            if record.key == WAVEFORMS and self.encoding & _WAVEFORMS_INSIDE:
                 las.start_of_waveform_data_packet_record = stream.tell()
             record.write(stream, extended=True)
         las.mins, las.maxs = (bound * self.scale + self.offset for bound in (las.mins, las.maxs))
@@ -337,7 +340,7 @@ class _Reader:
         if n_evlrs:
             self.stream.seek(start)
             header.evlrs = [self._record(EVLR, self.total) for _ in range(n_evlrs)]
-        if header.waveforms_at and header.encoding & WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
+        if header.waveforms_at and header.encoding & _WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
             if header.waveforms_at > self.total:
                 raise truncated(self.path, f"waveforms should start at byte {header.waveforms_at} of {self.total}")
             self.stream.seek(header.waveforms_at)

@@ -82,8 +82,8 @@ class _Laz:
                 "program that made it" + (" or install laszip." if unread[0] in known else ".")
             )
 
-    def table_at(self) -> int:
-        """Return the position of the chunk table."""
+    def table_at(self, per_chunk: int) -> int:
+        """Return the position of the chunk table, whose number of chunks was checked."""
         total = self.path.stat().st_size
         self.stream.seek(self.header.points_at)
         (position,) = self._unpacked(_TABLE_POSITION)
@@ -93,9 +93,10 @@ class _Laz:
             (position,) = self._unpacked(_TABLE_POSITION)
         if not self.chunks_at <= position < total:
             raise truncated(self.path, f"its chunk table should be at byte {position} of {total}")
+        self._check_number(position, per_chunk)
         return position
 
-    def check_number(self, table_at: int, per_chunk: int) -> None:
+    def _check_number(self, table_at: int, per_chunk: int) -> None:
         """Check the number of chunks against the bytes before the table, and the number of points against the chunks.
 
         Each chunk starts with one whole record.
@@ -126,11 +127,6 @@ class _Laz:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold {sum(points)}")
         ends = self.chunks_at + np.cumsum(sizes, dtype=np.int64)
         return np.column_stack([ends - sizes, sizes, points]).astype(np.int64)
-
-    def check_pointwise(self) -> None:
-        """Refuse layers in points that are compressed in one go: laszip ends the process on them."""
-        if not self.header.layout.is_old:
-            raise truncated(self.path, "its LASzip record describes layered points without chunks")
 
     def check_layers(self, chunks: np.ndarray, record: bytes, stream: BinaryIO, origin: int = 0) -> None:
         """Check the sizes of the layers, which are allocated before they are read, against the sizes of their chunks.
@@ -263,15 +259,16 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
     backend = _backend(*((_LAZRS, _LASZIP) if _is_for_lazrs(record) else (_LASZIP, _LAZRS)))
     stream_at = header.points_at
     if record[0] == _POINTWISE:
-        laz.check_pointwise()
+        # laszip ends the process on layers in points that are compressed in one go.
+        if not header.layout.is_old:
+            raise truncated(path, "its LASzip record describes layered points without chunks")
         if has_backend(_LAZRS_IN_TURN):
             record = struct.pack("<H", _CHUNKED) + record[2:]
             backend, stream_at = need_laspy().LazBackend[_LAZRS_IN_TURN], 0
             with explained(path):
                 stream = io.BufferedReader(_OneChunk(stream, header, record), 2**20)
     else:
-        table_at = laz.table_at()
-        laz.check_number(table_at, _chunk_size(record))
+        table_at = laz.table_at(_chunk_size(record))
         if has_backend(_LAZRS):
             laz.check_layers(laz.check_chunks(table_at, record), record, stream)
     if _chunk_size(record) != _VARIABLE_CHUNKS:
@@ -302,9 +299,8 @@ def open_chunks(path: Path, header: Header, stream: BinaryIO) -> tuple[np.ndarra
         If the file is shorter than its header states, or lazrs is not installed.
     """
     laz = _Laz(path, header, stream)
-    record, table_at = laz.record(), laz.table_at()
-    laz.check_number(table_at, _chunk_size(record))
-    chunks = laz.check_chunks(table_at, record)
+    record = laz.record()
+    chunks = laz.check_chunks(laz.table_at(_chunk_size(record)), record)
 
     def read(some: np.ndarray, out: np.ndarray) -> None:
         stream.seek(int(some[0, 0]))
@@ -329,8 +325,7 @@ def first_records(path: Path, header: Header, stream: BinaryIO) -> list[int]:
     record = laz.record()
     if record[0] == _POINTWISE:
         return [header.points_at]
-    table_at = laz.table_at()
-    laz.check_number(table_at, _chunk_size(record))
+    table_at = laz.table_at(_chunk_size(record))
     if not has_backend(_LAZRS):
         return [laz.chunks_at]
     starts, sizes, _ = laz.check_chunks(table_at, record).T

@@ -42,13 +42,7 @@ class Nodes:
 
 
 def nodes_of(
-    path: Path,
-    keys: np.ndarray,
-    points: np.ndarray,
-    corner: np.ndarray,
-    side: np.ndarray,
-    margin: np.ndarray,
-    spacing: float,
+    path: Path, keys: np.ndarray, points: np.ndarray, root: np.ndarray, margin: np.ndarray, spacing: float
 ) -> Nodes:
     """Return the nodes of an octree.
 
@@ -60,8 +54,8 @@ def nodes_of(
         Level, column, row and layer of each node.
     points : ndarray of shape (m,), int64
         Points of each node.
-    corner, side : ndarray of shape (2,)
-        Lower corner and sides of the root in plan.
+    root : ndarray of shape (2, 2)
+        Lower corner of the root in plan, and its sides.
     margin : ndarray of shape (2,)
         How far coordinates may be rounded, also on the faces of nodes.
     spacing : float
@@ -78,8 +72,8 @@ def nodes_of(
     if is_odd.any():
         key = tuple(keys[is_odd][0, :3].tolist())
         raise truncated(path, f"of its index, it names a node {key} (level, column, row)")
-    sides = side / (2.0**level)[:, None]
-    low = corner + position * sides
+    sides = root[1] / (2.0**level)[:, None]
+    low = root[0] + position * sides
     above = np.where(level > 0, 2.0 * spacing / 2.0**level, np.inf)
     return Nodes(low - margin, low + sides + margin, points, above)
 

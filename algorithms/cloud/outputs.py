@@ -200,7 +200,7 @@ class ResultFiles:
     def discard(self) -> None:
         """Remove the working folders, with everything that was not put in place."""
         for entry in self._entries:
-            entry.discard()
+            entry.working.remove()
 
 
 def _in_real_folder(path: Path) -> Path:
@@ -239,8 +239,8 @@ class _Entry:
 
     def __init__(self, target: Path, final: Path, companions: list[Path]) -> None:
         self.target, self.final, self.companions = target, final, companions
-        self._working = _WorkingFolder(final.parent)
-        self.folder = self._working.path
+        self.working = _WorkingFolder(final.parent)
+        self.folder = self.working.path
 
     def put_in_place(self, undo: ExitStack) -> None:
         """Move the files to their targets, and note how to undo that."""
@@ -261,10 +261,6 @@ class _Entry:
             else:
                 undo.callback(_remove, path, new.stat().st_ino)
             new.replace(path)
-
-    def discard(self) -> None:
-        """Remove the working folder."""
-        self._working.remove()
 
 
 def _kept(path: Path, aside: Path, new: Path) -> bool:

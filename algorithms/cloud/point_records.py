@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from typing import Callable, Optional, Union
+from typing import Optional, Union
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from .crs import Crs
 from .dimensions import DIMENSIONS, Dimension
 from .extra_bytes import ExtraField, new_field
 from .header import LARGEST_STEP, Header
-from .point_formats import FORMATS, UPGRADED, Layout
+from .point_formats import FORMATS, OF_COPC, UPGRADED, Layout
 
 Index = Union[slice, np.ndarray]
 # Name of a field, and which one of that name.
@@ -46,26 +46,20 @@ class PointRecords:
         What stages have set, by Python name, in meters.
     crs : Crs
         With the units of the file.
-    convert : callable, optional
-        Gives the output's point format for the format that the changes need (COPC takes 6 to 8 only).
+    for_copc : bool
+        Whether the output has a point format that COPC takes: 6 to 8 only.
     """
 
     def __init__(
-        self,
-        points: np.ndarray,
-        layout: Layout,
-        changes: dict[str, np.ndarray],
-        crs: Crs,
-        convert: Callable[[int], int] = lambda point_format: point_format,
+        self, points: np.ndarray, layout: Layout, changes: dict[str, np.ndarray], crs: Crs, for_copc: bool
     ) -> None:
         self.points, self.source = points, layout
-        standard = {name: values for name, values in changes.items() if DIMENSIONS[name].standard}
-        added = {name: values for name, values in changes.items() if name not in standard}
-        needed = _needed_format(layout, standard)
+        self._standard = {name: values for name, values in changes.items() if DIMENSIONS[name].standard}
+        added = {name: values for name, values in changes.items() if name not in self._standard}
+        needed = _needed_format(layout, self._standard)
         self.is_upgraded = needed != layout.point_format
-        self._standard = standard
         extras, self._added = _extras(layout, added, crs)
-        self.layout = Layout(convert(needed), extras)
+        self.layout = Layout(OF_COPC[needed] if for_copc else needed, extras)
         self._as_read = not changes and self.layout == layout
 
     def take(self, index: Index) -> np.ndarray:
@@ -104,20 +98,15 @@ def _extras(
         dimension = DIMENSIONS[name]
         for component, disk in enumerate(dimension.disk):
             at = find_extra(layout, dimension, component)
+            field = new_field(disk, dimension.dtype, dimension.description)
             if at is None:
                 at = len(fields)
-                fields.append(new_field(disk, dimension.dtype, dimension.description))
+                fields.append(field)
             else:
-                fields[at] = _overwritten(fields[at], disk, dimension)
+                # A field of the same name and numbers keeps what else the file says of it.
+                fields[at] = fields[at].without_range() if is_stored_as(fields[at], disk, dimension) else field
             values_at[at] = values if values.ndim == 1 else values[:, component], unit_factor(dimension, crs)
     return tuple(fields), values_at
-
-
-def _overwritten(old: ExtraField, disk: str, dimension: Dimension) -> ExtraField:
-    """Return the field that takes the place of ``old``: itself if it holds the same numbers under the same name."""
-    if is_stored_as(old, disk, dimension):
-        return old.without_range()
-    return new_field(disk, dimension.dtype, dimension.description)
 
 
 def is_stored_as(field: ExtraField, disk: str, dimension: Dimension) -> bool:

@@ -120,10 +120,10 @@ def _measured(path: Path, size: int, changed: int) -> Optional[tuple[np.ndarray,
     ``size`` and ``changed`` are the state of the file, for which the answer is kept.
     """
     header = read_header(path)
-    if _can_be(header, *_bounds(header, _probes(path, header))):
+    if _can_be(header, *bounds_of(_probes(path, header), header)):
         return None
-    found = [_bounds(header, points) for _, points in read_chunks(path, header, Monitor())]
-    low, high = np.min([low for low, _ in found], axis=0), np.max([high for _, high in found], axis=0)
+    found = [bounds_of(points, header) for _, points in read_chunks(path, header, Monitor())]
+    low, high = np.min(found, axis=(0, 1)), np.max(found, axis=(0, 1))
     return None if _can_be(header, low, high) else (low, high)
 
 
@@ -138,11 +138,10 @@ def _can_be(header: Header, low: np.ndarray, high: np.ndarray) -> bool:
     return bool((holds & (high - low >= 0.01 * (header.high - header.low))).all())
 
 
-def _bounds(header: Header, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the least and the greatest coordinates (3,) of records (n,)."""
-    ends = np.array([[points[axis].min(), points[axis].max()] for axis in "XYZ"], float)
-    low, high = (ends * header.scale[:, None] + header.offset[:, None]).T
-    return low, high
+def bounds_of(points: np.ndarray, header: Header) -> np.ndarray:
+    """Return the least and the greatest coordinates (2, 3) of records (n,)."""
+    ends = np.array([[points[axis].min(), points[axis].max()] for axis in "XYZ"], float).T
+    return ends * header.scale + header.offset
 
 
 def _probes(path: Path, header: Header) -> np.ndarray:

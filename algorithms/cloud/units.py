@@ -9,12 +9,12 @@ from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
-from .header import Header
+from .header import Header, Vlr
 from .printable import shown
 
 # User id of the VLRs of coordinate reference systems, and record ids of GeoKeys: numbers, doubles and texts.
 PROJECTION = b"LASF_Projection"
-GEOKEYS, _DOUBLES, _TEXTS = ((PROJECTION, number) for number in (34735, 34736, 34737))
+_DIRECTORY, _DOUBLES, _TEXTS = ((PROJECTION, number) for number in (34735, 34736, 34737))
 
 # EPSG codes of length units, as GeoKeys give them, in meters.
 _LENGTHS = {
@@ -32,7 +32,7 @@ _NAMES = {9001: "metre", 9002: "foot", 9003: "US survey foot"}
 USER_DEFINED = 32767
 # GeoKeys: kind of the coordinates; codes of the geographic, the projected and the vertical system; the projection, by
 # code and by method.
-MODEL, _GEOGRAPHIC, PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
+_MODEL, _GEOGRAPHIC, _PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
 _CONVERSION, _METHOD = 3074, 3075
 # GeoKeys: code and size of the unit in plan, code of the unit of heights.
 _LINEAR_UNITS, _LINEAR_UNIT_SIZE, _VERTICAL_UNITS = 3076, 3077, 4099
@@ -131,10 +131,8 @@ def _refuse_ellipsoid(root: _Node) -> None:
     found = root.anywhere(*_ON_ELLIPSOID)
     if not found:
         return
-    system = next(iter(found[0].all("CS")), None)
-    cartesian = found[0].keyword == "GEOCCS" or (
-        system is not None and "cartesian" in map(str.lower, map(str, system.values))
-    )
+    kinds = [str(value).lower() for system in found[0].all("CS") for value in system.values]
+    cartesian = found[0].keyword == "GEOCCS" or "cartesian" in kinds
     raise _not_plane(str(found[0].values[0]) if found[0].values else found[0].keyword, cartesian)
 
 
@@ -192,66 +190,68 @@ def _value(piece: str) -> Union[str, float]:
         return piece
 
 
-def geokey_records(header: Header) -> tuple[tuple[int, bytes], ...]:
-    """Return the records of GeoKeys: tag and payload of each."""
-    found = ((key[1], header.find(key)) for key in (GEOKEYS, _DOUBLES, _TEXTS))
-    return tuple((tag, record.data) for tag, record in found if record is not None and record.data)
+class GeoKeys(dict[int, Any]):
+    """The GeoKeys of a file with numbers: short ones as they are, others from the doubles."""
+
+    def __init__(self, header: Header) -> None:
+        found = ((key[1], header.find(key)) for key in (_DIRECTORY, _DOUBLES, _TEXTS))
+        #: Tag and payload of each record
+        self.records = tuple((tag, record.data) for tag, record in found if record is not None and record.data)
+        records = dict(self.records)
+        directory, doubles = records.get(_DIRECTORY[1], b""), records.get(_DOUBLES[1], b"")
+        numbers = struct.unpack(f"<{len(directory) // 2}H", directory[: len(directory) // 2 * 2])
+        for start in range(4, len(numbers) - 3, 4):
+            key, position, _, value = numbers[start : start + 4]
+            if position == 0:
+                self[key] = value
+            elif position == _DOUBLES[1] and len(doubles) >= 8 * (value + 1):
+                self[key] = struct.unpack_from("<d", doubles, 8 * value)[0]
+
+    @property
+    def code(self) -> int:
+        """EPSG code of the horizontal system, 0 without one."""
+        codes = (self.get(_PROJECTED, 0), 0 if _PROJECTED in self else self.get(_GEOGRAPHIC, 0))
+        return next((code for code in codes if 0 < code < USER_DEFINED), 0)
+
+    @property
+    def text(self) -> str:
+        """The codes as a text, with the heights' code: "EPSG:26915+5703"."""
+        height = self.get(_VERTICAL, 0)
+        return f"EPSG:{self.code}" + (f"+{height}" if 0 < height < USER_DEFINED else "")
+
+    @property
+    def define_system(self) -> bool:
+        """Whether they define a horizontal system, by a code or by parameters, and not just a unit or nothing."""
+        return bool(self.code or _METHOD in self or 0 < self.get(_CONVERSION, 0) < USER_DEFINED)
+
+    def units(self, known: Optional[Units]) -> tuple[Optional[Units], tuple[str, ...]]:
+        """Return the units that they give, else those ``known`` of their codes, None without either; and warnings.
+
+        Raises
+        ------
+        ValueError
+            If the coordinates are degrees or geocentric, or a unit is no length.
+        """
+        model = self.get(_MODEL)
+        on_ellipsoid = self.get(_GEOGRAPHIC, 0) not in (0, USER_DEFINED) and not self.get(_PROJECTED)
+        if model in (_MODEL_GEOGRAPHIC, _MODEL_GEOCENTRIC) or (on_ellipsoid and _LINEAR_UNITS not in self):
+            raise _not_plane(f"EPSG:{self.get(_GEOGRAPHIC, 'unknown')}", model == _MODEL_GEOCENTRIC)
+        own = _LENGTHS.get(self.get(_LINEAR_UNITS, 0))
+        warnings: tuple[str, ...] = ()
+        size = _length(self[_LINEAR_UNIT_SIZE]) if _LINEAR_UNIT_SIZE in self else None
+        if size == 1 and own not in (None, 1):
+            warnings = (_mismatch(_NAMES.get(self[_LINEAR_UNITS], f"EPSG:{self[_LINEAR_UNITS]}")),)
+        else:
+            own = size or own
+        horizontal = own or (known.horizontal if known else 1.0)
+        vertical = _LENGTHS.get(self.get(_VERTICAL_UNITS, 0))
+        if vertical is None:
+            # Heights without a unit of their own have the plane's.
+            vertical = known.vertical if known and (_VERTICAL in self or not own) else horizontal
+        return (Units(horizontal, vertical) if own or known else None), warnings
 
 
-def geokeys(header: Header) -> dict[int, Any]:
-    """Return the GeoKeys with numbers: short ones as they are, others from the doubles."""
-    records = dict(geokey_records(header))
-    directory, doubles = records.get(GEOKEYS[1], b""), records.get(_DOUBLES[1], b"")
-    numbers = struct.unpack(f"<{len(directory) // 2}H", directory[: len(directory) // 2 * 2])
-    keys: dict[int, Any] = {}
-    for start in range(4, len(numbers) - 3, 4):
-        key, position, _, value = numbers[start : start + 4]
-        if position == 0:
-            keys[key] = value
-        elif position == _DOUBLES[1] and len(doubles) >= 8 * (value + 1):
-            keys[key] = struct.unpack_from("<d", doubles, 8 * value)[0]
-    return keys
-
-
-def code_of_keys(keys: dict[int, Any]) -> int:
-    """Return the EPSG code of the horizontal system in GeoKeys, 0 without one."""
-    codes = (keys.get(PROJECTED, 0), 0 if PROJECTED in keys else keys.get(_GEOGRAPHIC, 0))
-    return next((code for code in codes if 0 < code < USER_DEFINED), 0)
-
-
-def text_of_keys(keys: dict[int, Any]) -> str:
-    """Return the codes in GeoKeys as a text, with the heights' code: "EPSG:26915+5703"."""
-    height = keys.get(_VERTICAL, 0)
-    return f"EPSG:{code_of_keys(keys)}" + (f"+{height}" if 0 < height < USER_DEFINED else "")
-
-
-def define_system(keys: dict[int, Any]) -> bool:
-    """Whether GeoKeys define a horizontal system, by a code or by parameters, and not just a unit or nothing."""
-    return bool(code_of_keys(keys) or _METHOD in keys or 0 < keys.get(_CONVERSION, 0) < USER_DEFINED)
-
-
-def units_of_geokeys(keys: dict[int, Any], known: Optional[Units]) -> tuple[Optional[Units], tuple[str, ...]]:
-    """Return the units that GeoKeys give, else those ``known`` of their codes, None without either; and warnings.
-
-    Raises
-    ------
-    ValueError
-        If the coordinates are degrees or geocentric, or a unit is no length.
-    """
-    model = keys.get(MODEL)
-    on_ellipsoid = keys.get(_GEOGRAPHIC, 0) not in (0, USER_DEFINED) and not keys.get(PROJECTED)
-    if model in (_MODEL_GEOGRAPHIC, _MODEL_GEOCENTRIC) or (on_ellipsoid and _LINEAR_UNITS not in keys):
-        raise _not_plane(f"EPSG:{keys.get(_GEOGRAPHIC, 'unknown')}", model == _MODEL_GEOCENTRIC)
-    own = _LENGTHS.get(keys.get(_LINEAR_UNITS, 0))
-    warnings: tuple[str, ...] = ()
-    size = _length(keys[_LINEAR_UNIT_SIZE]) if _LINEAR_UNIT_SIZE in keys else None
-    if size == 1 and own not in (None, 1):
-        warnings = (_mismatch(_NAMES.get(keys[_LINEAR_UNITS], f"EPSG:{keys[_LINEAR_UNITS]}")),)
-    else:
-        own = size or own
-    horizontal = own or (known.horizontal if known else 1.0)
-    vertical = _LENGTHS.get(keys.get(_VERTICAL_UNITS, 0))
-    if vertical is None:
-        # Heights without a unit of their own have the plane's.
-        vertical = known.vertical if known and (_VERTICAL in keys or not own) else horizontal
-    return (Units(horizontal, vertical) if own or known else None), warnings
+def geokeys_of(code: int) -> Vlr:
+    """Return the record of the GeoKeys that give the EPSG code of a projected system."""
+    numbers = (1, 1, 0, 2, _MODEL, 0, 1, 1, _PROJECTED, 0, 1, code)
+    return Vlr(*_DIRECTORY, struct.pack(f"<{len(numbers)}H", *numbers), description=b"GeoKeys")

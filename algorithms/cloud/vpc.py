@@ -14,7 +14,7 @@ import numpy as np
 from ..stage import Monitor
 from .catalog_json import read_json
 from .crs import Crs, stated_wkt, storable
-from .header import LARGEST_STEP, OF_OLD_POINTS, WAVEFORMS, WKT_BIT, Header, Vlr
+from .header import LARGEST_STEP, OF_OLD_FILES, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, EPT, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import fill_merged, merged_layout
 from .points import open_header, points_within, read_chunks, thinned
@@ -321,7 +321,7 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
         monitor.warn(f"The {what} count GPS time in different ways; the values are kept as they are.")
     layout = merged_layout([header.layout for header in headers])
     scale, offset = _grid(headers, what)
-    reduced = [header.without(*OF_OLD_POINTS, WAVEFORMS) for header in headers]
+    reduced = [header.without(*OF_OLD_FILES) for header in headers]
     merged = replace(
         reduced[0],
         minor=max(header.minor for header in headers),
@@ -356,7 +356,6 @@ def _grid(headers: list[Header], what: str) -> tuple[np.ndarray, np.ndarray]:
     far = np.maximum(np.abs(low - offset), np.abs(high - offset)) > scale * LARGEST_STEP
     offset[far] = np.round((low + high)[far] / 2)
     if (np.maximum(offset - low, high - offset) > scale * LARGEST_STEP).any():
-        raise ValueError(
-            f"The {what} span {(high - low).max():.0f} units, too far for their scale {scale.min():g}; take fewer."
-        )
+        span, step = (high - low).max(), scale.min()
+        raise ValueError(f"The {what} span {span:.0f} units, too far for their scale {step:g}; take fewer.")
     return scale, offset

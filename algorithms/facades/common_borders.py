@@ -35,9 +35,8 @@ def with_common_borders(facades: Sequence[Facade], reach: float, monitor: Monito
                 neighbors[j].add(i)
                 _offer(lines[i], edge_a, off_a, line)
                 _offer(lines[j], edge_b, off_b, line)
-    return [
-        replace(facade, ring=_moved(facade, lines[k]), neighbors=len(neighbors[k])) for k, facade in enumerate(facades)
-    ]
+    rings = [_moved(facade, own) for facade, own in zip(facades, lines)]
+    return [replace(facade, ring=ring, neighbors=len(own)) for facade, ring, own in zip(facades, rings, neighbors)]
 
 
 def _near_pairs(facades: Sequence[Facade], reach: float, monitor: Monitor) -> Iterator[tuple[int, int]]:
@@ -62,8 +61,8 @@ def _edges_along(facade: Facade, point: np.ndarray, direction: np.ndarray, reach
     steps = np.diff(facade.ring, axis=0)
     length = np.linalg.norm(steps, axis=1)
     across = np.array([-way[1], way[0]])
-    off = np.abs((facade.ring - position) @ across)
-    off = np.maximum(off[:-1], off[1:])
+    corners_off = np.abs((facade.ring - position) @ across)
+    off = np.maximum(corners_off[:-1], corners_off[1:])
     found = (np.abs(steps @ way) >= np.cos(np.radians(SAME_WAY)) * length) & (off <= reach) & (length >= _LEAST_COMMON)
     return [(int(edge), float(off[edge])) for edge in np.flatnonzero(found)]
 

@@ -143,12 +143,10 @@ def extract_openings(
     return facade_features(pierced), _features(found)
 
 
-def _searched(
-    facades: list[Facade], xyz: np.ndarray, max_depth: float, min_size: float, monitor: Monitor
-) -> list[tuple[Facade, list[Opening]]]:
+def _searched(facades: list[Facade], xyz: np.ndarray, max_depth: float, min_size: float, monitor: Monitor) -> Found:
     """Return facades with their openings, without those that fill openings of others; larger ones come first."""
     is_filling = np.zeros(len(xyz), bool)
-    found: list[tuple[Facade, list[Opening]]] = []
+    found: Found = []
     for done, facade in enumerate(sorted(facades, key=lambda facade: -facade.area), start=1):
         monitor.progress((done - 1) / len(facades))
         # What fills openings of others is no facade: panes, curtains, shop fronts.
@@ -182,18 +180,16 @@ def _holes(facade: Facade, openings: list[Opening]) -> list[np.ndarray]:
     return holes
 
 
-def _features(found: list[tuple[Facade, list[Opening]]]) -> LayerFeatures:
+def _features(found: Found) -> LayerFeatures:
     """Return the openings as features."""
-    geometries, table = [], []
+    features, names = [], [field.name for field in OPENING_FIELDS[1:]]
     for facade, openings in found:
-        for opening, row, position in zip(openings, *(numbers.tolist() for numbers in _arrangement(openings))):
-            geometries.append([facade.frame.space(opening.ring)])
+        for opening, *place in zip(openings, *(numbers.tolist() for numbers in _arrangement(openings))):
             from_left, sill = (opening.box[0] - facade.ring.min(axis=0)).tolist()
-            size = (*opening.size.tolist(), ring_area(opening.ring))
-            numbers = (len(geometries), facade.number, opening.kind, row, position)
-            table.append((*numbers, *size, from_left, sill, opening.depth, opening.enclosed, opening.seen))
-    columns = {field.name: [row[k] for row in table] for k, field in enumerate(OPENING_FIELDS)}
-    return LayerFeatures(geometries, columns)
+            size = (*opening.size.tolist(), ring_area(opening.ring), from_left, sill)
+            facts = (facade.number, opening.kind, *place, *size, opening.depth, opening.enclosed, opening.seen)
+            features.append(([facade.frame.space(opening.ring)], dict(zip(names, facts))))
+    return LayerFeatures.numbered(features, OPENING_FIELDS)
 
 
 def _arrangement(openings: list[Opening]) -> tuple[np.ndarray, np.ndarray]:

@@ -135,12 +135,8 @@ def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: 
     label, count = raster.groups()
     group = _joined(behind[:, :2], label[raster.cell(behind[:, :2])], count)
     approach = Approach(wall, local[(distance > max(FROM_WALL, off_wall)) & (distance <= BEFORE), :2])
-    found = []
-    for chosen in members(group).values():
-        made = _opening(facade, raster, wall, behind[chosen], own[chosen], approach, min_size)
-        if made is not None:
-            found.append(made)
-    return sorted(found, key=lambda opening: tuple(opening.box[0]))
+    made = (_opening(facade, raster, behind[k], own[k], approach, min_size) for k in members(group).values())
+    return sorted((one for one in made if one is not None), key=lambda opening: tuple(opening.box[0]))
 
 
 def _joined(positions: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
@@ -161,21 +157,14 @@ def _joined(positions: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
 
 
 def _opening(
-    facade: Facade,
-    raster: WallRaster,
-    wall: np.ndarray,
-    behind: np.ndarray,
-    points: np.ndarray,
-    approach: Approach,
-    min_size: float,
+    facade: Facade, raster: WallRaster, behind: np.ndarray, points: np.ndarray, approach: Approach, min_size: float
 ) -> Optional[Opening]:
     """Return the opening that points behind a wall show, None if they show none."""
     # There are too few points, or they are too close together, even with the sides moved out to the edges of the wall.
     if len(behind) < 4 or (np.ptp(behind[:, :2], axis=0) < min_size / 2).any():
         return None
-    spacing = facade.spacing
-    box = np.array([behind[:, :2].min(axis=0), behind[:, :2].max(axis=0)])
-    box, beside = _bounded(box, wall, raster.size, spacing)
+    spacing, box = facade.spacing, np.array([behind[:, :2].min(axis=0), behind[:, :2].max(axis=0)])
+    box, beside = _bounded(box, approach.wall, raster.size, spacing)
     if (box[1] - box[0] < min_size).any():
         return None
     is_door = approach.leads_to(box, bool(beside[3] >= MAJORITY))

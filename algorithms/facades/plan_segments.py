@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.polygons import area_vector
-from ..geometry.rings import signed_area
+from ..geometry.rings import sides_of_rings, signed_area
 from ..stage import LayerFeatures
 
 
@@ -93,15 +93,10 @@ def _ends(position: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 def outline_segments(footprints: LayerFeatures) -> PlanSegments:
     """Return the edges of the exterior rings of footprints."""
-    starts, ends, owners = [], [], []
-    for number, rings in enumerate(footprints.geometries):
-        ring = exterior(rings)
-        starts.append(ring[:-1])
-        ends.append(ring[1:])
-        owners.append(np.full(len(ring) - 1, number))
-    if not starts:
-        return PlanSegments(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, int))
-    return PlanSegments(np.concatenate(starts), np.concatenate(ends), np.concatenate(owners))
+    rings = [exterior(polygon) for polygon in footprints.geometries]
+    count = np.array([len(ring) - 1 for ring in rings], int)
+    start, end = np.moveaxis(sides_of_rings(rings), 1, 0)
+    return PlanSegments(start, end, np.repeat(np.arange(len(rings)), count))
 
 
 def exterior(rings: list) -> np.ndarray:

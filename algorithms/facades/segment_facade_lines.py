@@ -167,17 +167,13 @@ def are_of_facade_lines(
 
 def _period(gps_time: np.ndarray, source: np.ndarray) -> float:
     """Return the time (s) of one turn, from times (n,) in order by scanner: that between views of the sky."""
-    step = np.diff(gps_time)
-    step = step[(np.diff(source) == 0) & (step > 0)]
-    if not len(step):
+    step, is_same = np.diff(gps_time), np.diff(source) == 0
+    forward = step[is_same & (step > 0)]
+    if not len(forward):
         return float(np.ptp(gps_time))
-    pause = _PAUSE * float(np.median(step))
-    found: list[np.ndarray] = []
-    for number in np.unique(source):
-        time = gps_time[source == number]
-        ends = time[1:][np.diff(time) > pause]
-        found.append(np.diff(ends))
-    turns = np.concatenate(found)
+    is_end = is_same & (step > _PAUSE * float(np.median(forward)))
+    ends, scanner = gps_time[1:][is_end], source[1:][is_end]
+    turns = np.diff(ends)[np.diff(scanner) == 0]
     return float(np.median(turns)) if len(turns) else float(np.ptp(gps_time))
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.rings import is_valid
+from ..geometry.rings import is_valid, perimeter
 from ..rules import rules
 from ..stage import LayerFeatures
 from .facade_outline import ring_of_lines
@@ -88,8 +88,7 @@ def fitted_to_walls(footprints: LayerFeatures, walls: PlanSegments) -> tuple[Lay
         ring = _joined(_Ring(outline), pieces[number]) if pieces[number] else outline
         holes = [np.asarray(hole, float)[:, :2] for hole in rings[1:]]
         if pieces[number] and is_valid([ring, *holes]):
-            total = sum(float(np.hypot(*np.diff(piece.corners, axis=0).T).sum()) for piece in pieces[number])
-            seen[number] = min(1.0, total / float(np.hypot(*np.diff(ring, axis=0).T).sum()))
+            seen[number] = min(1.0, sum(perimeter(piece.corners) for piece in pieces[number]) / perimeter(ring))
         else:
             ring = outline
         geometries.append([ring, *holes])
@@ -138,7 +137,7 @@ def _pieces(chains: list[np.ndarray], rings: list[_Ring]) -> list[list[_Piece]]:
                 continue
             corners = samples[run][is_corner[run] | (np.arange(len(run)) % (len(run) - 1 or 1) == 0)]
             first, last = rings[number].nearest(corners[[0, -1]])[1]
-            length = float(np.hypot(*np.diff(corners, axis=0).T).sum())
+            length = perimeter(corners)
             # Walls that run against the ring are of a yard or of another building.
             if length >= _RULES.shortest and rings[number].between(first, last) <= 2 * length + _RULES.gap:
                 pieces[number].append(_Piece(corners, float(first), float(last)))

@@ -1,11 +1,10 @@
-"""Lines that cut a rectangle into cells, and the cheapest choice of cells."""
+"""Lines that cut a rectangle into cells."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..criteria import MICROMETER
-from .cheapest_labels import cheapest_cut
 
 
 @dataclass(frozen=True)
@@ -166,13 +165,8 @@ class Arrangement:
             following.setdefault(start, []).append((line, end))
         rings = []
         while following:
-            start = next(iter(following))
-            rings.append(_walk(following, start))
+            rings.append(_walk(following, next(iter(following))))
         return rings
-
-    def cheapest(self, cost: np.ndarray, if_inside: np.ndarray, if_outside: np.ndarray) -> np.ndarray:
-        """Return the cells (count,), bool, whose choice costs least; see :func:`cheapest_cut`."""
-        return cheapest_cut(self.edges.left, self.edges.right, cost, if_inside, if_outside)
 
 
 def sides_of(xy: np.ndarray, points: np.ndarray, directions: np.ndarray) -> np.ndarray:

@@ -37,9 +37,8 @@ def cell_polygons(cells: Subdivision, label: np.ndarray) -> list[CellPolygon]:
     corners = _corners(borders, cells.vertices)
     rings: dict[int, list[np.ndarray]] = {}
     for number, loop in _loops(borders, cells.vertices):
-        rings.setdefault(number, []).append(
-            _from_south_west(np.array([cells.vertices[v] for v in loop if v in corners]))
-        )
+        ring = np.array([cells.vertices[v] for v in loop if v in corners])
+        rings.setdefault(number, []).append(_from_south_west(ring))
     found = []
     for number in sorted(rings):
         members = np.flatnonzero(piece == number)
@@ -75,16 +74,12 @@ def _corners(borders: list[tuple[int, int, int]], vertices: list[tuple[float, fl
     for _, start, end in borders:
         beside.setdefault(start, set()).add(end)
         beside.setdefault(end, set()).add(start)
-    corners = set()
-    for vertex, others in beside.items():
-        if len(others) != 2:
-            corners.add(vertex)
-            continue
-        before, after = sorted(others)
-        # Closer than 2 mm to the line between its neighbors it is no corner.
-        if _bend(vertices[before], vertices[after], vertices[vertex]) > 0.002:
-            corners.add(vertex)
-    return corners
+    # Closer than 2 mm to the line between its neighbors it is no corner.
+    return {
+        vertex
+        for vertex, others in beside.items()
+        if len(others) != 2 or _bend(*(vertices[v] for v in (*sorted(others), vertex))) > 0.002
+    }
 
 
 def _bend(before: tuple, after: tuple, at: tuple) -> float:

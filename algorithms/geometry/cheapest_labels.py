@@ -88,10 +88,8 @@ def _takers(
     np.add.at(take, q[from_q], (second - both)[from_q])
     chosen, number = np.flatnonzero(wanted), np.cumsum(wanted) - 1
     take, edge_cost = take[chosen], np.maximum(first + second - both, 0.0)[inner]
-    ends, back = number[[p[inner], q[inner]]], np.zeros_like(edge_cost)
-    keeps = cheapest_cut(
-        ends[0], ends[1], edge_cost, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, STEPS_OF_LABELS
-    )
+    (one, other), back = number[[p[inner], q[inner]]], np.zeros_like(edge_cost)
+    keeps = cheapest_cut(one, other, edge_cost, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, STEPS_OF_LABELS)
     return mask_of(len(extra), chosen[~keeps])
 
 

@@ -345,8 +345,7 @@ def aligned(rings: list[list[Edge]], within: float) -> list[list[Edge]]:
     start, end = (np.array([getattr(edge, name) for edge in edges]) for name in ("start", "end"))
     length = np.hypot(*(end - start).T)
     unit = (end - start) / length[:, None]
-    is_free = np.ones(len(edges), bool)
-    line = np.arange(len(edges))
+    is_free, line = np.ones(len(edges), bool), np.arange(len(edges))
     for number in np.argsort(-length, kind="stable").tolist():
         if not is_free[number]:
             continue
@@ -360,11 +359,8 @@ def aligned(rings: list[list[Edge]], within: float) -> list[list[Edge]]:
         is_parallel = np.abs(unit @ unit[number]) >= 0.985
         own = is_free & is_beside & is_parallel & (off <= within) & (ring_of != ring_of[number])
         line[own], is_free[own] = number, False
-    moved, first = [], 0
-    for ring in rings:
-        moved.append(_on_lines(ring, [edges[i] for i in line[first : first + len(ring)]], within))
-        first += len(ring)
-    return moved
+    parts = np.split(line, np.cumsum([len(ring) for ring in rings])[:-1])
+    return [_on_lines(ring, [edges[i] for i in own], within) for ring, own in zip(rings, parts)]
 
 
 def _on_lines(ring: list[Edge], lines: list[Edge], within: float) -> list[Edge]:

@@ -139,16 +139,6 @@ def polygons_of(rings: list[np.ndarray]) -> list[list[int]]:
     return list(polygons.values())
 
 
-def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """Return the distances (n,) (m) of points (n, 2) to the nearest position on a line (m, 2)."""
-    return nearest_edge_distances(points, line[:-1], line[1:])
-
-
-def farthest(points: np.ndarray, line: np.ndarray) -> float:
-    """Return the largest distance (m) of points (n, 2) to the nearest position on a line."""
-    return float(distances_to(points, line).max())
-
-
 def nearest_edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """Return the distances (n,) (m) of points (n, 2) to the nearest of segments (m, 2), at least one."""
     nearest, step = np.empty(len(points)), max(1, PAIRS_AT_ONCE // len(starts))

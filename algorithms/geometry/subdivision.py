@@ -235,9 +235,7 @@ class Subdivision:
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
         """Return each edge between two cells once: its vertices (m, 2), and the cells to its left and right (m, 2)."""
         if self._edges is None:
-            pairs = [
-                (u, v, cell, self.cell_of[v, u]) for (u, v), cell in self.cell_of.items() if (v, u) in self.cell_of
-            ]
+            pairs = ((u, v, cell, self.cell_of.get((v, u), OUTSIDE)) for (u, v), cell in self.cell_of.items())
             table = np.array([pair for pair in pairs if pair[2] < pair[3]], int).reshape(-1, 4)
             self._edges = table[:, :2], table[:, 2:]
         return self._edges

@@ -127,16 +127,11 @@ class NamedModel:
 
     def record(self) -> dict[str, Any]:
         """Return it as plain values, which JSON keeps to the last bit."""
-        facts = {
-            field.name: getattr(self.model, field.name)
-            for field in fields(self.model)
-            if field.name not in ("solids", "walls")
-        }
+        facts = {name: value for name, value in vars(self.model).items() if name not in ("solids", "walls")}
         solids = {level: [_plain_solid(solid) for solid in some] for level, some in self.model.solids.items()}
         of_planes = {name: list(getattr(self.model, name).items()) for name in _OF_PLANES}
         rings = [np.asarray(ring).tolist() for ring in self.rings]
-        model = {**facts, **of_planes}
-        return {"rings": rings, "model": model, "solids": solids, "attributes": self.attributes}
+        return {"rings": rings, "model": {**facts, **of_planes}, "solids": solids, "attributes": self.attributes}
 
     @classmethod
     def of_record(cls, record: dict[str, Any], name: str) -> NamedModel:
@@ -260,6 +255,22 @@ def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
     rms, on, rim = (getattr(one.model, name).get(solid.planes[face], math.nan) for name in _OF_PLANES)
     facts.update(slope=slope, usable_area=area * on, eave=float(z.min()), ridge=float(z.max()), rms=rms)
     return {**facts, "parapet": rim if slope < FLAT else math.nan}
+
+
+def model_layers(models: Sequence[NamedModel]) -> tuple[LayerFeatures, LayerFeatures, LayerFeatures]:
+    """Return the grounds, walls and roofs of buildings."""
+    grounds = LayerFeatures.numbered([(one.rings, building_attributes(one)) for one in models], BUILDING_FIELDS)
+    of_map = [one.attributes or {} for one in models]
+    names = dict.fromkeys(name for facts in of_map for name in facts)
+    grounds.columns.update({name: [facts.get(name) for facts in of_map] for name in names})
+    return grounds, _face_layer(models, SOFFIT_WALL_FIELDS, WALL, SOFFIT), _face_layer(models, ROOF_FIELDS, ROOF)
+
+
+def _face_layer(models: Sequence[NamedModel], described: tuple[Field, ...], *kinds: str) -> LayerFeatures:
+    """Return the faces of some kinds."""
+    faces = [(one, solid, face) for one in models for kind in kinds for solid, face in faces_of(one.model.best, kind)]
+    features = [(face_rings(solid, face), face_attributes(one, solid, face)) for one, solid, face in faces]
+    return LayerFeatures.numbered(features, described)
 
 
 def roof_type(solids: Sequence[Solid]) -> str:

@@ -226,7 +226,6 @@ def _without_dormers(planes: RoofPlanes, spacing: float) -> RoofPlanes:
 def _level_tops(top: _Top, roof: Partition) -> Partition:
     """Return the partition of the roof with level tops, one for all parts that are not clearly apart in height."""
     part = _joined_parts(roof, top.settings.min_step)
-    inside = roof.label >= 0
     n = int(part.max()) + 1
     heights = np.zeros(n)
     is_roof = top.is_roof
@@ -237,8 +236,7 @@ def _level_tops(top: _Top, roof: Partition) -> Partition:
         z = top.xyz[rows, 2] if len(rows) else top.xyz[np.isin(top.planes.label, planes), 2]
         heights[number] = max(float(np.percentile(z, top.settings.percentile)), top.base + 0.5)
     coefficients = np.column_stack([np.zeros((n, 2)), heights])
-    cost = np.zeros((len(roof.cells), n))
-    return Partition(roof.cells, np.where(inside, part, -1), coefficients, cost)
+    return Partition(roof.cells, part, coefficients, np.zeros((len(roof.cells), n)))
 
 
 def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
@@ -247,13 +245,9 @@ def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
     one, other = roof.label[beside[:, 0]], roof.label[beside[:, 1]]
     rows = (one >= 0) & (other >= 0)
     positions = np.array(roof.cells.vertices)
-    planes = roof.coefficients
-    step = np.zeros(len(ends))
-    for k in (0, 1):
-        xy = positions[ends[:, k]]
-        difference = planes[one] - planes[other]
-        step = step + np.abs((difference[:, :2] * xy).sum(axis=1) + difference[:, 2]) / 2
-    rows &= (one == other) | (step < min_step)
+    difference = roof.coefficients[one] - roof.coefficients[other]
+    at_ends = (difference[:, None, :2] * positions[ends]).sum(axis=2) + difference[:, 2:]
+    rows &= (one == other) | (np.abs(at_ends).mean(axis=1) < min_step)
     _, group = components(beside[rows, 0], beside[rows, 1], len(roof.cells))
     inside = roof.label >= 0
     return placed(np.unique(group[inside], return_inverse=True)[1], inside, len(roof.cells), -1)

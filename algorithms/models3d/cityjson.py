@@ -146,17 +146,13 @@ def _building(one: NamedModel, vertices: Vertices) -> dict[str, Any]:
         parts = [_shell(one, solid, vertices, level == one.model.level) for solid in solids]
         first = np.cumsum([0, *(len(of_part) for _, of_part in parts)]).tolist()
         surfaces = [_numbered(surface, start) for (_, some), start in zip(parts, first) for surface in some]
-        values = [[list(range(start, end))] for start, end in zip(first, first[1:])]
-        boundaries = [[shell] for shell, _ in parts]
-        is_single = len(parts) == 1
-        geometry.append(
-            {
-                "type": "Solid" if is_single else "MultiSolid",
-                "lod": level,
-                "boundaries": boundaries[0] if is_single else boundaries,
-                "semantics": {"surfaces": surfaces, "values": values[0] if is_single else values},
-            }
-        )
+        values: list = [[list(range(start, end))] for start, end in zip(first, first[1:])]
+        boundaries: list = [[shell] for shell, _ in parts]
+        kind = "MultiSolid"
+        if len(parts) == 1:
+            kind, boundaries, values = "Solid", boundaries[0], values[0]
+        semantics = {"surfaces": surfaces, "values": values}
+        geometry.append({"type": kind, "lod": level, "boundaries": boundaries, "semantics": semantics})
     facts = in_units(building_attributes(one), BUILDING_FIELDS, vertices.frame)
     attributes = {**plain_facts(facts), **plain_facts(one.attributes or {})}
     return {"type": "Building", "attributes": attributes, "geometry": geometry}
@@ -176,12 +172,10 @@ def _shell(one: NamedModel, solid: Solid, vertices: Vertices, is_best: bool) -> 
     shell = [[[numbers[v] for v in ring] for ring in rings] for rings in solid.faces]
     surfaces = []
     for face, kind in enumerate(solid.kinds):
-        facts = (
-            plain_facts(in_units(face_attributes(one, solid, face), ROOF_FIELDS, vertices.frame))
-            if is_best and kind == ROOF
-            else {}
-        )
-        facts.pop("building", None)
+        facts: dict[str, Any] = {}
+        if is_best and kind == ROOF:
+            facts = plain_facts(in_units(face_attributes(one, solid, face), ROOF_FIELDS, vertices.frame))
+            facts.pop("building")
         surfaces.append({"type": SURFACES[kind], **facts})
     for face, wall in _walls_of_openings(solid).items():
         surfaces[face]["parent"] = wall

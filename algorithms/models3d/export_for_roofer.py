@@ -9,33 +9,21 @@ from ..stage import Field, InputLayer, Layer, LayerFeatures, feature_names, stag
 from .cityjson import unique_names
 from .roof_partition import inside_rings
 
+_FIELDS = (
+    Field("identificatie", str, "name of the building: the attribute id or fid of its footprint, once each"),
+    Field("points", int, "points of class 6 over it"),
+)
+
 
 @stage(
     "3D",
     tags="3D,roofer,3DBAG,LoD2,LoD1.2,LoD1.3,export,CityJSONSeq,roofprint",
     selects=True,
     input_layers=(InputLayer("footprints"),),
-    layers=(
-        Layer(
-            "roofprints",
-            "Roofprints",
-            "Polygon",
-            (
-                Field(
-                    "identificatie", str, "name of the building: the attribute id or fid of its footprint, once each"
-                ),
-                Field("points", int, "points of class 6 over it"),
-            ),
-        ),
-    ),
+    layers=(Layer("roofprints", "Roofprints", "Polygon", _FIELDS),),
 )
 def export_for_roofer(
-    xyz,
-    classification,
-    footprints,
-    *,
-    margin: float = tunable(10.0, within="[0, 1000] m"),
-    monitor=None,
+    xyz, classification, footprints, *, margin: float = tunable(10.0, within="[0, 1000] m"), monitor=None
 ):
     """Write the points of buildings and ground around footprints, and the footprints, as the program roofer reads them.
 

@@ -148,9 +148,8 @@ def _base_lines(models: list[NamedModel]) -> Iterator[np.ndarray]:
 def _noded(lines: list[np.ndarray], cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return nodes (n, 2), m, of lines and of the sides of patches, and the pieces (m, 2) of lines between nodes."""
     way, none = np.arange(0, PATCH + _STEP, _STEP), np.zeros(round(PATCH / _STEP) + 1)
-    sides = np.concatenate(
-        [np.column_stack(side) for side in ((way, none), (way, none + PATCH), (none, way), (none + PATCH, way))]
-    )
+    lines_of_sides = (way, none), (way, none + PATCH), (none, way), (none + PATCH, way)
+    sides = np.concatenate([np.column_stack(side) for side in lines_of_sides])
     border = np.unique((cells[:, None] * PATCH + sides).reshape(-1, 2), axis=0)
     plan = np.concatenate([*lines, border])
     near = spatial.cKDTree(plan).query_pairs(_SAME, output_type="ndarray")

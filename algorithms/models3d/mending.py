@@ -169,7 +169,7 @@ def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarra
     present = sorted({int(partition.label[cell]) for cell in around})
     height = {label: levels.height(vertex, label) for label in present}
     planes = partition.coefficients
-    best: Optional[tuple[bool, float, float, int, int]] = None
+    changes = []
     for position, cell in enumerate(around):
         own = int(partition.label[cell])
         if own < 0:
@@ -184,12 +184,11 @@ def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarra
                 continue
             loss = FORBIDDEN if label < 0 else float(partition.cost[cell, label] - partition.cost[cell, own])
             is_high = label >= 0 and bool((planes[label, :2] @ corners.T + planes[label, 2] > limit).any())
-            change = is_high, loss, area, cell, label
-            if best is None or change < best:
-                best = change
-    if best is not None:
-        partition.label[best[3]] = best[4]
-    return best is not None
+            changes.append((is_high, loss, area, cell, label))
+    if changes:
+        *_, cell, label = min(changes)
+        partition.label[cell] = label
+    return bool(changes)
 
 
 class _Mending:

@@ -26,11 +26,11 @@ _OPPOSITE = 15.0
 _EDGE = 0.02
 
 # The faces of a house by their vertices, from 1 as in the paper, counterclockwise seen from outside.
-FACES = {
-    ROOF: ((3, 4, 2, 1), (5, 6, 1, 2)),
-    WALL: ((7, 8, 4, 3), (8, 9, 5, 2, 4), (9, 10, 6, 5), (10, 7, 3, 1, 6)),
-    GROUND: ((10, 9, 8, 7),),
-}
+_FACES = (
+    *((ROOF, face) for face in ((3, 4, 2, 1), (5, 6, 1, 2))),
+    *((WALL, face) for face in ((7, 8, 4, 3), (8, 9, 5, 2, 4), (9, 10, 6, 5), (10, 7, 3, 1, 6))),
+    (GROUND, (10, 9, 8, 7)),
+)
 
 GABLE_FIELDS = (
     Field("id", int, "Number of the house, from 1"),
@@ -223,9 +223,7 @@ def _ridge(planes: Planes, a: int, b: int) -> tuple[np.ndarray, np.ndarray]:
     return point, level / np.linalg.norm(level)
 
 
-def _house(
-    xyz: np.ndarray, groups: list[np.ndarray], planes: Planes, a: int, b: int, ground: _Ground
-) -> Optional[House]:
+def _house(xyz: np.ndarray, groups: list, planes: Planes, a: int, b: int, ground: _Ground) -> Optional[House]:
     """Return the house under two roof planes, None without ground below its eaves."""
     point, along = _ridge(planes, a, b)
     across = np.array([-along[1], along[0], 0.0])
@@ -266,9 +264,9 @@ def _rise(normal: np.ndarray, across: np.ndarray) -> float:
 
 def _model(number: int, house: House) -> NamedModel:
     """Return a house as a model of a building."""
-    faces = [([[vertex - 1 for vertex in face]], kind) for kind, of_kind in FACES.items() for face in of_kind]
-    roofs = [number if kind == ROOF else -1 for number, (_, kind) in enumerate(faces)]
-    solid = Solid(house.vertices, [rings for rings, _ in faces], [kind for _, kind in faces], roofs)
+    rings, kinds = [[[vertex - 1 for vertex in face]] for _, face in _FACES], [kind for kind, _ in _FACES]
+    roofs = [number if kind == ROOF else -1 for number, kind in enumerate(kinds)]
+    solid = Solid(house.vertices, rings, kinds, roofs)
     base = float(house.vertices[6, 2])
     model = BuildingModel(base, "2.2", solids={"2.2": [solid]}, rms=house.rms, n_points=house.n_points)
     model.terrain, model.ridge = base, float(house.vertices[:, 2].max())
@@ -280,8 +278,7 @@ def _features(houses: list[House]) -> LayerFeatures:
     for number, house in enumerate(houses, start=1):
         own = house.vertices
         of_house = (*own[:6, :2].ravel().tolist(), *own[[0, 2, 6], 2].tolist(), house.rms)
-        faces = [(kind, face) for kind, all_faces in FACES.items() for face in all_faces]
-        for k, (kind, face) in enumerate(faces, start=1):
+        for k, (kind, face) in enumerate(_FACES, start=1):
             ring = own[[vertex - 1 for vertex in (*face, face[0])]]
             normal = area_vector(ring)
             size = float(np.linalg.norm(normal))

@@ -25,23 +25,13 @@ from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..sampling.points_on_top import are_low
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, TextFile, feature_names, stage, tunable
+from ..stage import InputLayer, Layer, LayerFeatures, Monitor, TextFile, feature_names, stage, tunable
 from . import cityjson, wavefront
-from .building_facts import (
-    BUILDING_FIELDS,
-    ROOF_FIELDS,
-    SOFFIT_WALL_FIELDS,
-    NamedModel,
-    building_attributes,
-    face_attributes,
-    face_rings,
-    faces_of,
-)
+from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, SOFFIT_WALL_FIELDS, NamedModel, model_layers
 from .building_models import LEVELS, Settings, model_building
 from .joined_terrain import PATCH, TERRAIN_FIELDS, on_terrain, terrain_layer, triangulate_terrain
 from .roof_limits import RADIUS
 from .roof_planes import STEEPEST
-from .solids import ROOF, SOFFIT, WALL
 
 # Number of footprints without a model that a warning names.
 _NAMED = 5
@@ -185,7 +175,7 @@ def reconstruct_roofs(
     """
     if not len(footprints):
         monitor.none_found("There are no footprints, so there are no models.")
-        return *_layers([]), terrain_layer([]), [], []
+        return *model_layers([]), terrain_layer([]), [], []
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)
     if tolerance is None:
@@ -199,7 +189,7 @@ def reconstruct_roofs(
     if terrain_tolerance and models:
         terrain = triangulate_terrain(ground, models, terrain_tolerance, monitor.part(0.8, 1.0))
         models, patches = on_terrain(models, terrain), terrain.models()
-    return *_layers(models), terrain_layer(patches), [*models, *patches], [*models, *patches]
+    return *model_layers(models), terrain_layer(patches), [*models, *patches], [*models, *patches]
 
 
 @dataclass(frozen=True)
@@ -279,25 +269,3 @@ def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monit
         named = "; ".join(f"{name}: {reason}" for name, reason in failed[:_NAMED])
         more = f"; and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
         monitor.warn(f"{len(failed)} of {count} footprints have points but no model ({named}{more}).")
-
-
-def _building_layer(models: list[NamedModel]) -> LayerFeatures:
-    """Return the grounds of buildings."""
-    layer = LayerFeatures.numbered([(one.rings, building_attributes(one)) for one in models], BUILDING_FIELDS)
-    of_map = [one.attributes or {} for one in models]
-    names = dict.fromkeys(name for facts in of_map for name in facts)
-    layer.columns.update({name: [facts.get(name) for facts in of_map] for name in names})
-    return layer
-
-
-def _layers(models: list[NamedModel]) -> tuple[LayerFeatures, LayerFeatures, LayerFeatures]:
-    """Return the grounds, walls and roofs of buildings."""
-    walls = _face_layer(models, SOFFIT_WALL_FIELDS, WALL, SOFFIT)
-    return _building_layer(models), walls, _face_layer(models, ROOF_FIELDS, ROOF)
-
-
-def _face_layer(models: list[NamedModel], described: tuple[Field, ...], *kinds: str) -> LayerFeatures:
-    """Return the faces of some kinds."""
-    faces = [(one, solid, face) for one in models for kind in kinds for solid, face in faces_of(one.model.best, kind)]
-    features = [(face_rings(solid, face), face_attributes(one, solid, face)) for one, solid, face in faces]
-    return LayerFeatures.numbered(features, described)

@@ -195,9 +195,8 @@ def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.nd
         fitted = planes_through(xyz, label)
         label = fitted.label
         options = label[neighbors]
-        scale = fitted.cosine
         a, b, c = fitted.coefficients[options].transpose(2, 0, 1)
-        off = np.abs(xyz[:, 2:] - a * xyz[:, :1] - b * xyz[:, 1:2] - c) * scale[options]
+        off = np.abs(xyz[:, 2:] - a * xyz[:, :1] - b * xyz[:, 1:2] - c) * fitted.cosine[options]
         off[options < 0] = np.inf
         best = np.argmin(off, axis=1)
         rows = np.arange(len(xyz))

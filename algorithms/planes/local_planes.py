@@ -112,13 +112,8 @@ def local_planes(
     n, tree = len(xyz), spatial.cKDTree(xyz, _LEAF)
     # Points at exactly the radius are near, however coordinates are rounded.
     count, reach = min(count, n), radius * (1 + 1e-7)
-    planes = LocalPlanes(
-        xyz,
-        np.zeros((n, 3), np.float32),
-        np.zeros((n, 3), np.float32),
-        np.full(n, np.inf, np.float32),
-        np.empty((n, count - 1), np.int32),
-    )
+    offset, normal = np.zeros((2, n, 3), np.float32)
+    planes = LocalPlanes(xyz, offset, normal, np.full(n, np.inf, np.float32), np.empty((n, count - 1), np.int32))
     inliers = {"least squares": _every, "robust": _without_outliers, "hough": _voted}[method]
 
     def work(rows: np.ndarray) -> None:

@@ -102,11 +102,8 @@ def segment_patches(
 def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _PointPlanes:
     """Return the planes of the neighborhoods of all points (n, 3), m."""
     tree = spatial.cKDTree(xyz, balanced_tree=False)
-    made = _PointPlanes(
-        np.empty((len(xyz), 4), np.float32),
-        np.empty(len(xyz), np.float32),
-        np.empty((len(xyz), neighborhood.n_named), np.int32),
-    )
+    planes, deviation = np.empty((len(xyz), 4), np.float32), np.empty(len(xyz), np.float32)
+    made = _PointPlanes(planes, deviation, np.empty((len(xyz), neighborhood.n_named), np.int32))
 
     def work(rows: np.ndarray) -> None:
         neighbors, centers, covariances = neighborhood.moments(tree, rows)

@@ -111,15 +111,13 @@ def _neighbors(voxel: np.ndarray, boxes: Boxes) -> tuple[np.ndarray, np.ndarray]
     count = np.bincount(voxel, minlength=len(boxes))
     start = np.cumsum(count) - count
     every = np.arange(len(boxes))
-    pairs = [_product(every, every, start, count)]
-    pairs += [_product(*boxes.beside(boxes, offset), start, count) for offset in around(1) if offset > (0, 0, 0)]
+    pairs = [_pairs(every, every, start, count)]
+    pairs += [_pairs(*boxes.beside(boxes, offset), start, count) for offset in around(1) if offset > (0, 0, 0)]
     a, b = (np.concatenate(side) for side in zip(*pairs))
     return a[a != b], b[a != b]
 
 
-def _product(
-    here: np.ndarray, there: np.ndarray, start: np.ndarray, count: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _pairs(here: np.ndarray, there: np.ndarray, start: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return every piece of the voxels ``here`` with every piece of those ``there``."""
     which, position = items(count[here] * count[there])
     first, second = np.divmod(position, count[there][which])

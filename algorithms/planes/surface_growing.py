@@ -6,8 +6,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from ..geometry.disjoint_sets import DisjointSets
-from ..geometry.groups import components
+from ..geometry.groups import DisjointSets, components, mask_of
 from ..stage import Monitor
 from ..threads import NEIGHBORS_AT_ONCE, ROWS_AT_ONCE, in_chunks
 from .best_pairs import common_deviation, merge_best_pairs
@@ -63,8 +62,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
 
 def _beside(planes: LocalPlanes, rows: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return the points among ``rows`` (m,) that have one of the ``others`` among their neighbors."""
-    is_other, is_beside = np.zeros(len(planes.xyz), bool), np.empty(len(rows), bool)
-    is_other[others] = True
+    is_other, is_beside = mask_of(len(planes.xyz), others), np.empty(len(rows), bool)
 
     def work(some: np.ndarray) -> None:
         is_beside[some] = is_other[planes.neighbors[rows[some]]].any(axis=1)
@@ -210,7 +208,7 @@ def grow_planes(
     if not best.any():
         return surface
     fitted = _first_planes(planes, surface, criteria)
-    fitted = _take_points(planes, surface, fitted, criteria, monitor.part(0, 0.4))
+    fitted = _grown(planes, surface, fitted, criteria, monitor.part(0, 0.4))
 
     def cost(parts: Planes, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         deviation = common_deviation(parts, one, other)
@@ -220,7 +218,7 @@ def grow_planes(
     fitted, joined = merge_best_pairs(fitted, *_adjacent(planes, surface, members), cost, monitor.part(0.4, 0.8))
     surface = np.where(surface >= 0, joined[surface], -1).astype(np.int32)
     # The refined planes hold more of the points at their edges.
-    _take_points(planes, surface, fitted, criteria, monitor.part(0.8, 1))
+    _grown(planes, surface, fitted, criteria, monitor.part(0.8, 1))
     return surface
 
 
@@ -253,9 +251,7 @@ def _join(planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold
     return rows[joins]
 
 
-def _take_points(
-    planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: Criteria, monitor: Monitor
-) -> Planes:
+def _grown(planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: Criteria, monitor: Monitor) -> Planes:
     """Let planes take the points next to them in rounds, and return the planes of all points then."""
 
     def hold(neighbor: np.ndarray, point: np.ndarray) -> np.ndarray:
@@ -278,9 +274,6 @@ def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray, rows: np.nd
     """Return planes fitted to further points ``rows`` (m,) of ``xyz``, whose plane is the number ``plane`` (m,)."""
     number, which = np.unique(plane, return_inverse=True)
     more = planes_of(xyz, which, len(number), rows)
-    both = Planes(
-        np.concatenate([fitted.count, more.count]),
-        np.concatenate([fitted.center, more.center]),
-        np.concatenate([fitted.covariance, more.covariance]),
-    )
-    return both.merged(np.concatenate([np.arange(len(fitted)), number]), len(fitted))
+    both = [(fitted.count, more.count), (fitted.center, more.center), (fitted.covariance, more.covariance)]
+    whole = Planes(*map(np.concatenate, both))
+    return whole.merged(np.concatenate([np.arange(len(fitted)), number]), len(fitted))

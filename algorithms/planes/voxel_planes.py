@@ -65,9 +65,7 @@ class VoxelPlanes:
             if not len(open_):
                 return
             on_plane = self._refined(points[open_], is_left[open_], self._best(points[open_], is_left[open_], shares))
-            is_plane = more_than_chance(
-                on_plane.sum(axis=1), is_left[open_].sum(axis=1), self.by_chance, self.shares.shape[1]
-            )
+            is_plane = more_than_chance(on_plane.sum(axis=1), is_left[open_].sum(axis=1), self.by_chance, len(shares))
             open_, on_plane = open_[is_plane], on_plane[is_plane]
             plane[index[open_][on_plane]] = number
             is_left[open_] &= ~on_plane

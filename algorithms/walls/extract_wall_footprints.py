@@ -316,8 +316,12 @@ class _Building:
     roof: np.ndarray  #: (n, 2): points of the roof from the origin, m, sorted by their coordinates
     walls: np.ndarray  #: (k, 2): points of the walls in the same way
     roof_rows: np.ndarray  #: (n,): rows of the roof's points in the cloud
-    roof_xyz: np.ndarray  #: (n, 3): points of the roof in this order, m, not from the origin
     surroundings: Surroundings
+
+    @cached_property
+    def roof_xyz(self) -> np.ndarray:
+        """Points (n, 3) of the roof in the order of the rows, m, not from the origin."""
+        return self.surroundings.xyz[self.roof_rows]
 
     @cached_property
     def roof_spacing(self) -> float:
@@ -337,16 +341,10 @@ class _Building:
 
     def parted(self, line: WallLine) -> list[_Building]:
         """Return the parts left and right of a line."""
-        roof, walls, rows = (line.across(xy) > 0 for xy in (self.roof, self.walls, self.roof_xyz[:, :2] - self.origin))
+        left = [line.across(xy) > 0 for xy in (self.roof, self.walls, self.roof_xyz[:, :2] - self.origin)]
         return [
-            replace(
-                self,
-                roof=self.roof[roof == side],
-                walls=self.walls[walls == side],
-                roof_rows=self.roof_rows[rows == side],
-                roof_xyz=self.roof_xyz[rows == side],
-            )
-            for side in (True, False)
+            replace(self, roof=self.roof[roof], walls=self.walls[walls], roof_rows=self.roof_rows[rows])
+            for roof, walls, rows in (left, [~is_left for is_left in left])
         ]
 
     def is_party(self, sides: np.ndarray) -> np.ndarray:
@@ -377,7 +375,7 @@ def _buildings(
     for number, rows in roofs.items():
         roof, own = (xyz[part[np.lexsort(xyz[part].T)], :2] for part in (rows, walls.get(number, rows[:0])))
         origin = roof.min(axis=0)
-        buildings.append(_Building(number, origin, roof - origin, own - origin, rows, xyz[rows], surroundings))
+        buildings.append(_Building(number, origin, roof - origin, own - origin, rows, surroundings))
     return buildings
 
 

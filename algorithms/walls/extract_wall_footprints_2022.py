@@ -268,12 +268,8 @@ class CornerPairs:
         left, right = cells.edges.left, cells.edges.right
         count, part = components(left[~is_wall], right[~is_wall], cells.count)
         passed = part[left[is_wall]], part[right[is_wall]]
-        passes = csgraph.shortest_path(
-            sparse.coo_matrix((np.ones(is_wall.sum()), passed), (count, count)),
-            directed=False,
-            unweighted=True,
-            indices=part[np.argmax(cells.is_border)],
-        )
+        graph, start = sparse.coo_matrix((np.ones(is_wall.sum()), passed), (count, count)), np.argmax(cells.is_border)
+        passes = csgraph.shortest_path(graph, directed=False, unweighted=True, indices=part[start])
         rings = [[at for _, at in ring] for ring in cells.outline(passes[part] % 2 == 1)]
         vertices = np.array([at for ring in rings for at in ring], np.int64)
         return [cells.positions[[*ring, ring[0]]] for ring in rings], np.isin(self.at, vertices)

@@ -47,22 +47,22 @@ class Surroundings:
     """Roofs and lowest points of a cloud (n, 3), m, in small cells; ``cluster_id`` (n,) numbers roofs from 1."""
 
     def __init__(self, xyz: np.ndarray, cluster_id: np.ndarray, sampling: CloudSampling) -> None:
-        self._xyz, self._cluster_id, self._sampling = xyz, cluster_id, sampling
+        self.xyz, self._cluster_id, self._sampling = xyz, cluster_id, sampling
 
     @cached_property
     def grid(self) -> Grid:
         """The cells."""
-        return grid_over(self._xyz, max(CELL, _CELL_SPACINGS * self._sampling.spacing))
+        return grid_over(self.xyz, max(CELL, _CELL_SPACINGS * self._sampling.spacing))
 
     @cached_property
     def _table(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers of the cells with points, ascending, the lowest elevation in each (m), and a roof in it, or 0."""
-        cells, which = distinct(self.grid.number(self._xyz))
+        cells, which = distinct(self.grid.number(self.xyz))
         order = np.argsort(which, kind="stable")
         starts = run_starts(which[order])
         # Of two roofs in a cell either one is next to a third.
         roof = np.maximum(np.maximum.reduceat(self._cluster_id[order], starts), 0)
-        return cells, np.minimum.reduceat(self._xyz[order, 2], starts), roof.astype(np.int64)
+        return cells, np.minimum.reduceat(self.xyz[order, 2], starts), roof.astype(np.int64)
 
     def _at(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the lowest elevation (n,), m, in the cells of positions (n, 2), NaN where empty, and a roof, or 0."""

@@ -107,9 +107,8 @@ class WallLine:
         if not self.is_seen:
             return turned
         offsets = xy[self.points] - self.point
-        return replace(
-            turned, along=offsets @ direction, deviation=float(np.sqrt(np.mean((offsets @ turned.normal) ** 2)))
-        )
+        deviation = float(np.sqrt(np.mean((offsets @ turned.normal) ** 2)))
+        return replace(turned, along=offsets @ direction, deviation=deviation)
 
     def centered(self, xy: np.ndarray) -> WallLine:
         """Move the line across to the median of its points, which is robust to a few points of something else."""
@@ -304,9 +303,8 @@ def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
     while open_lines:
         first = open_lines[0]
         apart = np.abs(np.angle(np.exp(4j * (angles[open_lines] - angles[first]))) / 4)
-        is_sure, may_be = (
-            apart <= np.minimum(DEVIATIONS * np.hypot(own[open_lines], own[first]), MOST) for own in (sure, unsure)
-        )
+        limits = (DEVIATIONS * np.hypot(own[open_lines], own[first]) for own in (sure, unsure))
+        is_sure, may_be = (apart <= np.minimum(limit, MOST) for limit in limits)
         group = [i for i, near in zip(open_lines, may_be) if near]
         deviations = np.where(is_sure, sure[open_lines], unsure[open_lines])[may_be]
         mean = np.angle(np.sum(np.exp(4j * angles[group]) / deviations**2)) / 4

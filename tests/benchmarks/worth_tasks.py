@@ -37,7 +37,7 @@ from lidar_buildings.algorithms.facades.plan_segments import (  # noqa: E402
     facade_segments,
     outline_segments,
 )
-from lidar_buildings.algorithms.facades.registration import register  # noqa: E402
+from lidar_buildings.algorithms.facades.register_street import register  # noqa: E402
 from lidar_buildings.algorithms.facades.segment_facade_lines import segment_facade_lines  # noqa: E402
 from lidar_buildings.algorithms.facades.street_walls import fitted_to_walls  # noqa: E402
 from lidar_buildings.algorithms.footprints.regularize_polygons import regularize_polygons  # noqa: E402
@@ -631,7 +631,6 @@ _MODELS = tuple(
         "overhangs",
         "reconstruct_roofs",
         "roof_limits",
-        "roof_lines",
         "roof_partition",
         "roof_planes",
         "solid_faces",
@@ -646,7 +645,6 @@ TASKS = {
     "walls": Task(
         (
             "walls.alleys",
-            "walls.cheapest_outline",
             "walls.extract_wall_footprints",
             "walls.roof_outline",
             "walls.surroundings",
@@ -657,9 +655,7 @@ TASKS = {
         _VILLAGES,
         _walls,
     ),
-    "wall_points": Task(
-        ("walls.bent_roofs", "walls.classify_roofs", "walls.classify_walls"), _VILLAGES[:2], _wall_points
-    ),
+    "wall_points": Task(("walls.classify_roofs", "walls.classify_walls"), _VILLAGES[:2], _wall_points),
     "walls_2022": Task(
         ("walls.extract_wall_footprints_2022", "walls.wall_lines"), (_VILLAGES[2], _VILLAGES[0]), _walls_2022
     ),
@@ -729,7 +725,6 @@ TASKS = {
         (
             "facades.approaches",
             "facades.common_borders",
-            "facades.curved_fronts",
             "facades.extract_facades",
             "facades.extract_openings",
             "facades.facade_frame",
@@ -805,7 +800,7 @@ TASKS = {
         _regularized,
     ),
     "register": Task(
-        ("facades.plan_segments", "facades.registration"),
+        ("facades.plan_segments", "facades.register_street"),
         (
             ((1.4, -0.9, 0.6), 0.4, 0.05, 1),
             ((-2.2, 2.6, -1.1), 0.2, 0.1, 2),

@@ -3,8 +3,7 @@
 import pytest
 
 from lidar_buildings.algorithms.cloud.header import Header
-from lidar_buildings.algorithms.cloud.units import Units, units_of_geokeys, units_of_wkt, with_named_units
-from lidar_buildings.algorithms.cloud.units import geokeys as keys_of
+from lidar_buildings.algorithms.cloud.units import GeoKeys, Units, units_of_wkt, with_named_units
 from lidar_buildings.tests.algorithms.cloud.crs_texts import geokeys
 
 FOOT, SURVEY_FOOT = 0.3048, 1200 / 3937
@@ -93,23 +92,23 @@ def test_what_is_no_wkt_is_unknown(text):
     ],
 )
 def test_geokeys(header, horizontal, vertical):
-    units, warnings = units_of_geokeys(keys_of(header), None)
+    units, warnings = GeoKeys(header).units(None)
     assert (units, warnings) == (pytest.approx((horizontal, vertical)), ())
 
 
 def test_units_that_keys_do_not_name_are_those_of_their_codes():
     known = Units(SURVEY_FOOT, FOOT)
-    assert units_of_geokeys(keys_of(geokeys((1024, 1), (3072, 2264))), known) == (known, ())
-    keys = keys_of(geokeys((1024, 1), (3072, 26910), (3076, 9001), (4096, 6360)))
-    assert units_of_geokeys(keys, Units(1, FOOT)) == ((1, FOOT), ())
-    assert units_of_geokeys(keys_of(geokeys((1024, 1), (3072, 2264))), None) == (None, ())
-    assert units_of_geokeys(keys_of(Header()), None) == (None, ())
+    assert GeoKeys(geokeys((1024, 1), (3072, 2264))).units(known) == (known, ())
+    keys = GeoKeys(geokeys((1024, 1), (3072, 26910), (3076, 9001), (4096, 6360)))
+    assert keys.units(Units(1, FOOT)) == ((1, FOOT), ())
+    assert GeoKeys(geokeys((1024, 1), (3072, 2264))).units(None) == (None, ())
+    assert GeoKeys(Header()).units(None) == (None, ())
 
 
 @pytest.mark.parametrize("keys", [((1024, 2), (2048, 4326)), ((2048, 4326),), ((1024, 3), (2048, 4978))])
 def test_geographic_geokeys_are_refused(keys):
     with pytest.raises(ValueError, match=r"degrees|geocentric"):
-        units_of_geokeys(keys_of(geokeys(*keys)), None)
+        GeoKeys(geokeys(*keys)).units(None)
 
 
 @pytest.mark.parametrize(
@@ -143,7 +142,7 @@ def test_other_units_stay_as_they_are(unit):
 
 
 def test_geokeys_that_give_a_foot_as_a_meter_mean_a_foot():
-    keys = keys_of(geokeys((1024, 1), (3072, 2264), (3076, 9003), (3077, "double"), doubles=(1.0,)))
-    units, (warned,) = units_of_geokeys(keys, None)
+    keys = GeoKeys(geokeys((1024, 1), (3072, 2264), (3076, 9003), (3077, "double"), doubles=(1.0,)))
+    units, (warned,) = keys.units(None)
     assert units.horizontal == pytest.approx(SURVEY_FOOT)
     assert "US survey foot" in warned

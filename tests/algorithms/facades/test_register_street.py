@@ -5,8 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.facades.plan_segments import PlanSegments, facade_segments, outline_segments
-from lidar_buildings.algorithms.facades.register_street import register_street
-from lidar_buildings.algorithms.facades.registration import register
+from lidar_buildings.algorithms.facades.register_street import register, register_street
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 from lidar_buildings.tests.blocks import outlines, seen_from
 

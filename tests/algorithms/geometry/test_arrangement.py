@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidar_buildings.algorithms.geometry.arrangement import Arrangement, sides_of
+from lidar_buildings.algorithms.geometry.cheapest_labels import cheapest_cut
 from lidar_buildings.algorithms.geometry.rings import signed_area
 
 LOW, HIGH = np.array([-10.0, -8.0]), np.array([10.0, 8.0])
@@ -126,7 +127,7 @@ def test_no_other_choice_of_cells_is_cheaper(seed):
         cut = inside[edges.left] != inside[edges.right]
         return cost[cut].sum() + if_inside[inside].sum() + if_outside[~inside].sum()
 
-    found = total(cells.cheapest(cost, if_inside, if_outside))
+    found = total(cheapest_cut(edges.left, edges.right, cost, if_inside, if_outside))
     least = min(total(np.array(choice, bool)) for choice in itertools.product((False, True), repeat=n))
     # Costs are rounded to a thousandth each.
     assert found == pytest.approx(least, abs=0.001 * (len(cost) + 2 * n))
@@ -137,9 +138,9 @@ def test_costs_beyond_32_bits_forbid_as_smaller_ones_do(forbidden):
     """Square meters next to large roofs cost more than fits, and such cells were taken for free."""
     cells = Arrangement(np.zeros((1, 2)), np.array([(0.0, 1.0)]), LOW, HIGH)
     cost = np.ones(1)
-    left, right = int(cells.edges.left[0]), int(cells.edges.right[0])
-    place = np.eye(2)
-    kept_out = cells.cheapest(cost, forbidden * place[right], 50 * place[left])
-    kept_in = cells.cheapest(cost, 50 * place[left], forbidden * place[right])
+    sides, place = (cells.edges.left, cells.edges.right), np.eye(2)
+    left, right = int(sides[0][0]), int(sides[1][0])
+    kept_out = cheapest_cut(*sides, cost, forbidden * place[right], 50 * place[left])
+    kept_in = cheapest_cut(*sides, cost, 50 * place[left], forbidden * place[right])
     assert kept_out[[left, right]].tolist() == [True, False]
     assert kept_in[[left, right]].tolist() == [False, True]

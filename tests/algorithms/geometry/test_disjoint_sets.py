@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lidar_buildings.algorithms.geometry.disjoint_sets import DisjointSets
-from lidar_buildings.algorithms.geometry.groups import components
+from lidar_buildings.algorithms.geometry.groups import DisjointSets, components
 
 
 def first_items(pairs, count):

@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.geometry.polylines import simplify
-from lidar_buildings.algorithms.geometry.rings import farthest
+from lidar_buildings.algorithms.geometry.rings import nearest_edge_distances
 from lidar_buildings.tests.builders import L_SHAPE
+
+
+def farthest(points, line):
+    """Return the largest distance of points from a line."""
+    return nearest_edge_distances(points, line[:-1], line[1:]).max()
 
 
 def traced(corners, rng, noise=0.1, step=0.3):

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.stage import Monitor
-from lidar_buildings.algorithms.walls.bent_roofs import with_bent_roofs
-from lidar_buildings.algorithms.walls.classify_roofs import classify_roofs
+from lidar_buildings.algorithms.walls.classify_roofs import classify_roofs, with_bent_roofs
 from lidar_buildings.tests.surfaces import box, mound, seen_from_above
 
 

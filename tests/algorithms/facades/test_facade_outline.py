@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from lidar_buildings.algorithms.facades.alpha_shape import trace_outlines, triangulated
+from lidar_buildings.algorithms.facades.facade_outline import trace_outlines, triangulated
 from lidar_buildings.algorithms.geometry.rings import perimeter, signed_area
 from lidar_buildings.tests.polygon_validity import assert_valid
 
