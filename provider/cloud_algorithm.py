@@ -18,20 +18,9 @@ from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.files import NOWHERE, check_readable, count_points, read_extent
 from ..algorithms.report.page import with_coordinates
 from ..algorithms.run import Results
-from ..algorithms.stage import (
-    CLOUD,
-    REPORT,
-    InputLayer,
-    Layer,
-    LayerFeatures,
-    Monitor,
-    Raster,
-    RasterSurface,
-    Report,
-    Stage,
-    TextFile,
-)
+from ..algorithms.stage import CLOUD, REPORT, InputLayer, Layer, LayerFeatures, Monitor, Raster, Stage, TextFile
 from ..algorithms.tiling.survey import Survey
+from . import inputs
 from .algorithm import CheckedAlgorithm
 from .caller import is_step
 from .clouds import cloud_path, files_read
@@ -47,23 +36,7 @@ from .input_layers import (
     read_input_layers,
     refuse_elsewhere,
 )
-from .inputs import (
-    CRS,
-    INPUT,
-    REFERENCE,
-    crs_parameter,
-    extent_box,
-    extent_parameter,
-    given_crs,
-    given_spacing,
-    input_parameter,
-    input_paths,
-    name_of_layer,
-    reference_parameter,
-    refuse_same,
-    spacing_parameter,
-    subject_of,
-)
+from .inputs import CRS, INPUT, REFERENCE
 from .layer_outputs import write_layer, write_text
 from .memory_needs import warn_if_memory_is_short
 from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_clouds
@@ -155,17 +128,17 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Declare inputs, tunables and outputs."""
         declared = self.declared
         if declared.reads_cloud:
-            self.addParameter(input_parameter(declared.merges, declared.input_title, self.needs_cloud))
+            self.addParameter(inputs.input_parameter(declared.merges, declared.input_title, self.needs_cloud))
         if self.compared is not None:
-            self.addParameter(reference_parameter(self.compared))
+            self.addParameter(inputs.reference_parameter(self.compared))
         for input_layer in self.layers:
             self.addParameter(input_layer_parameter(input_layer))
         self.add_tunables()
         if declared.reads_cloud:
-            self.addParameter(extent_parameter())
-            self.addParameter(spacing_parameter())
+            self.addParameter(inputs.extent_parameter())
+            self.addParameter(inputs.spacing_parameter())
         if declared.reads_cloud or self.creates:
-            self.addParameter(crs_parameter(SIMULATED_CRS if self.creates else None))
+            self.addParameter(inputs.crs_parameter(SIMULATED_CRS if self.creates else None))
         for made in self.made:
             self.addParameter(made.definition())
         for name, title in self.number_titles().items():
@@ -195,21 +168,19 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         # Others last as long as their layers.
         job.systems = [one.source.sourceCrs().authid() for one in layers if one.wanted.read]
         if declared.reads_cloud and (self.needs_cloud or given.has(INPUT)):
-            job.clouds = input_paths(given, declared.merges)
-            job.layer = name_of_layer(given.parameters.get(INPUT))
+            job.clouds = inputs.input_paths(given, declared.merges)
+            job.layer = inputs.name_of_layer(given.parameters.get(INPUT))
         if self.compared is not None and (declared.needs_reference or given.has(REFERENCE)):
             job.reference = cloud_path(given, REFERENCE)
-        job.crs = given_crs(given) if self.parameterDefinition(CRS) else job.crs
+        job.crs = inputs.given_crs(given) if self.parameterDefinition(CRS) else job.crs
         if job.clouds:
             crs = read_extent(job.clouds[0], crs_reader(job.crs), NOWHERE)[2]
-            job.box = extent_box(given, crs.plane)
-            spacing = given_spacing(given)
-            job.spacing = spacing / crs.factors if spacing else None
+            job.box, job.spacing = inputs.extent_box(given, crs.plane), inputs.given_spacing(given, crs.factors)
         read = [*files_read(job.paths), *input_layer_files(given, layers)]
         check_targets(self.destinationParameterDefinitions(), given.parameters, read, job.clouds)
         # A cloud that is classified anew may well be assessed by the classes that it had.
         if job.reference and (declared.needs_reference or all(made.declared != CLOUD for made in self.made)):
-            refuse_same(job.clouds, job.reference)
+            inputs.refuse_same(job.clouds, job.reference)
         for path in job.paths:
             check_readable(path, box=job.box)
         check_sizes(job.paths, job.box, job.spacing)
@@ -224,7 +195,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.alone = not is_step(feedback)
         warn_unknown_parameters(self, parameters, feedback)
         definitions = self.destinationParameterDefinitions()
-        subject = subject_of(self.job.paths, self.job.layer, feedback)
+        subject = inputs.subject_of(self.job.paths, self.job.layer, feedback)
         title = self.displayName() if self.alone else ""
         log = RunLog()
         with as_processing_errors(feedback), all_in_place(definitions, parameters, context, subject, title) as run:
@@ -244,10 +215,8 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             written = writer.write(self.job.wanted, results)
             written.update(writer.write_pages(self.job, results, log))
             monitor.end()
-            numbers = {
-                name: value for name, value in self.numbers(results, monitor.values).items() if value is not None
-            }
-            return {**run.final(written), **numbers}
+            numbers = self.numbers(results, monitor.values)
+            return {**run.final(written), **{name: one for name, one in numbers.items() if one is not None}}
         return {}
 
     def _read(self, given: Given, monitor: Monitor) -> Read:
@@ -289,7 +258,10 @@ class _Writer:
         if isinstance(declared, Layer):
             return write_layer(self.given, made.name, declared, results.layers[made.key], self.place, monitor)
         if isinstance(declared, Raster):
-            return self._write_raster(made.name, declared, results.rasters[made.key], monitor)
+            target = self.given.read("OutputLayer", made.name)
+            write_raster(declared, results.rasters[made.key], self.place, Path(target), monitor)
+            show_on_load(self.given.context, target, "Raster", Styler(layer_style(declared)))
+            return {made.name: target}
         if isinstance(declared, TextFile):
             return write_text(self.given, made.name, declared, results.files[made.key], self.place, monitor)
         cloud = results.cloud if made.key == CLOUD else results.clouds[made.key]
@@ -302,20 +274,13 @@ class _Writer:
         show_on_load(self.given.context, shown, "Cloud", styler)
         return {made.name: target}
 
-    def _write_raster(self, name: str, raster: Raster, surface: RasterSurface, monitor: Monitor) -> dict[str, str]:
-        target = self.given.read("OutputLayer", name)
-        write_raster(raster, surface, self.place, Path(target), monitor)
-        show_on_load(self.given.context, target, "Raster", Styler(layer_style(raster)))
-        return {name: target}
-
     def write_pages(self, job: Job, results: Results, log: RunLog) -> dict[str, str]:
         """Write the pages that are wanted, with what was run on which clouds and with which parameters."""
         written = {}
         for made in job.wanted:
-            report: Optional[Report] = results.reports.get(made.key)
-            if report is None:
-                continue
-            written[made.name] = target = self.given.read("FileOutput", made.name)
-            rows = about_run(self.given.algorithm.displayName(), job.paths, job.points, text_of(self.place.crs))
-            write_page(target, with_coordinates(report.html, self.place.to_map), rows, log.steps)
+            report = results.reports.get(made.key)
+            if report is not None:
+                written[made.name] = target = self.given.read("FileOutput", made.name)
+                rows = about_run(self.given.algorithm.displayName(), job.paths, job.points, text_of(self.place.crs))
+                write_page(target, with_coordinates(report.html, self.place.to_map), rows, log.steps)
         return written

@@ -152,9 +152,8 @@ def _path(given: Given, name: str, value: Any) -> Path:
         return _known(title, Path(value))
     if isinstance(value, str) and (on_web := web_file(value)):
         return _known(title, on_web)
-    layer = (
-        value if isinstance(value, QgsMapLayer) else QgsProcessingUtils.mapLayerFromString(value, given.context, False)
-    )
+    find = QgsProcessingUtils.mapLayerFromString
+    layer = value if isinstance(value, QgsMapLayer) else find(value, given.context, False)
     if layer is None:
         raise ValueError(f"{title} ({name}) must be a point cloud file or layer; nothing was found at {value}.")
     if not isinstance(layer, QgsPointCloudLayer):

@@ -33,6 +33,11 @@ def laz_sentence() -> str:
     return "" if packages.has_laz() else f"Only LAS files can be read and written. {_sentence(['lazrs'], ['lazrs'])}"
 
 
+def lacking_sentence(needed: Collection[str] = packages.ESSENTIAL) -> str:
+    """Return what is missing, of the needed packages or else for LAZ, and the command that mends it; "" for nothing."""
+    return missing_sentence(needed) or laz_sentence()
+
+
 def _sentence(missing: list[str], wanted: list[str]) -> str:
     if not missing:
         return ""

@@ -8,18 +8,7 @@ from processing.gui.ParametersPanel import ParametersPanel
 from processing.gui.wrappers import WidgetWrapper
 from qgis.core import Qgis
 from qgis.gui import QgsCollapsibleGroupBox, QgsExtentWidget
-from qgis.PyQt import sip
-from qgis.PyQt.QtWidgets import (
-    QAbstractSpinBox,
-    QComboBox,
-    QFormLayout,
-    QLabel,
-    QLayout,
-    QLineEdit,
-    QMenu,
-    QVBoxLayout,
-    QWidget,
-)
+from qgis.PyQt import QtWidgets, sip
 
 from ..algorithms.cloud.files import dimension_names
 from ..algorithms.presets import Preset, presets_of
@@ -59,7 +48,7 @@ class GroupedPanel(ParametersPanel):
         super().initWidgets()
         self._presets: list[Preset] = []
         # Python owns a widget put into a layout of QGIS, and deletes it with the last reference to it.
-        self._kept: list[QWidget] = []
+        self._kept: list[QtWidgets.QWidget] = []
         sections = sections_of(self.algorithm())
         for section in sections:
             for name, label in section.labels.items():
@@ -90,33 +79,33 @@ class GroupedPanel(ParametersPanel):
         definition = self.algorithm().parameterDefinition(name)
         return definition is not None and bool(definition.flags() & Qgis.ProcessingParameterFlag.Advanced)
 
-    def _parts(self, name: str) -> tuple[Optional[QWidget], Optional[QWidget]]:
+    def _parts(self, name: str) -> tuple[Optional[QtWidgets.QWidget], Optional[QtWidgets.QWidget]]:
         """Return the label and the widget of a parameter."""
         wrapper = self.wrappers[name]
         if isinstance(wrapper, WidgetWrapper):
             return wrapper.label, wrapper.widget
         return wrapper.wrappedLabel(), wrapper.wrappedWidget()
 
-    def _layout(self) -> Optional[QVBoxLayout]:
+    def _layout(self) -> Optional[QtWidgets.QVBoxLayout]:
         """Return the layout that holds the parameters."""
         for name in self.wrappers:
             if not self._is_advanced(name):
                 widget = self._parts(name)[1]
                 holder = widget.parentWidget() if widget is not None else None
-                if holder is not None and isinstance(holder.layout(), QVBoxLayout):
+                if holder is not None and isinstance(holder.layout(), QtWidgets.QVBoxLayout):
                     return holder.layout()
         return None
 
-    def _advanced(self) -> Optional[QWidget]:
+    def _advanced(self) -> Optional[QtWidgets.QWidget]:
         """Return QGIS's own group of advanced parameters."""
-        return next((box for box in self.findChildren(QWidget) if box.objectName() == "grpAdvanced"), None)
+        return next((box for box in self.findChildren(QtWidgets.QWidget) if box.objectName() == "grpAdvanced"), None)
 
     def _group(self, title: str, names: list[str]) -> QgsCollapsibleGroupBox:
         """Return a folded group of the widgets of some parameters."""
         box = QgsCollapsibleGroupBox(title)
         box.setObjectName(f"group{title}")
         box.setSaveCollapsedState(False)
-        inside = QVBoxLayout(box)
+        inside = QtWidgets.QVBoxLayout(box)
         for name in names:
             for part in self._parts(name):
                 if part is not None:
@@ -129,7 +118,8 @@ class GroupedPanel(ParametersPanel):
         """Hide QGIS's own group of advanced parameters when all of them are in other groups."""
         box = self._advanced()
         if box is not None:
-            inside = [widget for widget in box.findChildren(QWidget) if widget.objectName() != "" or widget.layout()]
+            widgets = box.findChildren(QtWidgets.QWidget)
+            inside = [widget for widget in widgets if widget.objectName() != "" or widget.layout()]
             holds = any(box.isAncestorOf(part) for name in self.wrappers for part in self._parts(name) if part)
             box.setVisible(bool(inside) and holds)
 
@@ -138,7 +128,7 @@ class GroupedPanel(ParametersPanel):
         if name not in self.wrappers:
             return
         shown, widget = self._parts(name)
-        labels = [part for part in (shown, widget) if isinstance(part, QLabel)]
+        labels = [part for part in (shown, widget) if isinstance(part, QtWidgets.QLabel)]
         # A check box is its own label.
         own = widget if shown is None and hasattr(widget, "setText") else None
         part = labels[0] if labels else own
@@ -152,16 +142,16 @@ class GroupedPanel(ParametersPanel):
                 widget = self._parts(name)[1] if name in self.wrappers else None
                 if widget is None:
                     continue
-                for spin in (widget, *widget.findChildren(QAbstractSpinBox)):
-                    if isinstance(spin, QAbstractSpinBox) and spin.specialValueText():
+                for spin in (widget, *widget.findChildren(QtWidgets.QAbstractSpinBox)):
+                    if isinstance(spin, QtWidgets.QAbstractSpinBox) and spin.specialValueText():
                         spin.setSpecialValueText(word)
                 if widget.metaObject().className() == "QgsExtentWidget":
                     # In Python it has the type of a plain widget.
                     extent = sip.cast(widget, QgsExtentWidget)
                     extent.setNullValueAllowed(True, word)
                     extent.clear()
-                for combo in (widget, *widget.findChildren(QComboBox)):
-                    if isinstance(combo, QComboBox) and combo.count() and combo.itemData(0) is None:
+                for combo in (widget, *widget.findChildren(QtWidgets.QComboBox)):
+                    if isinstance(combo, QtWidgets.QComboBox) and combo.count() and combo.itemData(0) is None:
                         combo.setItemText(0, word)
 
     def _add_pickers(self, sections: list[Section]) -> None:
@@ -170,7 +160,7 @@ class GroupedPanel(ParametersPanel):
             for name, kind in section.pickers.items():
                 field = self._parts(name)[1] if name in self.wrappers else None
                 holder = field.parentWidget() if field is not None else None
-                if not isinstance(field, QLineEdit) or holder is None or holder.layout() is None:
+                if not isinstance(field, QtWidgets.QLineEdit) or holder is None or holder.layout() is None:
                     continue
                 layout, at = holder.layout(), holder.layout().indexOf(field)
                 if kind == DIMENSION:
@@ -180,7 +170,7 @@ class GroupedPanel(ParametersPanel):
                 self._kept.append(picker)
                 layout.insertWidget(at, picker)
 
-    def _fill_with_dimensions(self, menu: QMenu, field: QLineEdit) -> None:
+    def _fill_with_dimensions(self, menu: QtWidgets.QMenu, field: QtWidgets.QLineEdit) -> None:
         """Fill a menu with the dimensions of the cloud that is chosen."""
         try:
             parameters = {INPUT: self.wrappers[INPUT].parameterValue()}
@@ -189,28 +179,25 @@ class GroupedPanel(ParametersPanel):
             names = []
         fill_with_names(names, menu, field)
 
-    def _fold_outputs(self, layout: QLayout) -> None:
+    def _fold_outputs(self, layout: QtWidgets.QLayout) -> None:
         """Fold all outputs but the first ones."""
-        names = [
-            one.name() for one in self.algorithm().destinationParameterDefinitions() if one.name() in self.wrappers
-        ]
+        made = self.algorithm().destinationParameterDefinitions()
+        names = [one.name() for one in made if one.name() in self.wrappers]
         if len(names) > _OUTPUTS + 1:
             layout.insertWidget(layout.count() - 1, self._group("More results", names[_OUTPUTS:]))
 
-    def _add_presets(self, layout: QVBoxLayout) -> None:
+    def _add_presets(self, layout: QtWidgets.QVBoxLayout) -> None:
         """Add the choice of a kind of cloud above all parameters."""
-        pipeline = getattr(self.algorithm(), "pipeline", None) or getattr(
-            getattr(self.algorithm(), "tiled", None), "pipeline", None
-        )
-        self._pipeline, self._presets = pipeline, presets_of(pipeline) if pipeline is not None else []
+        self._pipeline = getattr(self.algorithm(), "pipeline", None)
+        self._presets = presets_of(self._pipeline) if self._pipeline is not None else []
         if not self._presets:
             return
-        self.preset = QComboBox()
+        self.preset = QtWidgets.QComboBox()
         for preset in self._presets:
             self.preset.addItem(preset.title, preset.name)
         self.preset.setToolTip("Sets the parameters that are better set than measured for this kind of cloud.")
-        holder = QWidget()
-        form = QFormLayout(holder)
+        holder = QtWidgets.QWidget()
+        form = QtWidgets.QFormLayout(holder)
         form.setContentsMargins(0, 0, 0, 0)
         form.addRow("Kind of cloud", self.preset)
         self._kept.append(holder)

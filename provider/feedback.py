@@ -169,9 +169,8 @@ class ChainMonitor(FeedbackMonitor):
     def resolved(self, **values: Any) -> None:
         """Keep values; show those that the chain itself measures: how the cloud was sampled."""
         self.values.update(values)
-        for name, value in values.items():
-            if name == SAMPLING:
-                self._held.append(f"{_SAMPLING}{value}")
+        if SAMPLING in values:
+            self._held.append(f"{_SAMPLING}{values[SAMPLING]}")
 
     def inform(self, sentence: str) -> None:
         """Keep a sentence and show it below the line of its step."""
@@ -234,9 +233,7 @@ def show_heading(feedback: QgsProcessingFeedback, heading: str, rest: str = "") 
 
 def spoken_time(seconds: float) -> str:
     """Return a time as people say it, in seconds or minutes."""
-    if seconds < 90:
-        return f"{max(1, round(seconds))} s"
-    return f"{round(seconds / 60)} min"
+    return f"{max(1, round(seconds))} s" if seconds < 90 else f"{round(seconds / 60)} min"
 
 
 def warn_unknown_parameters(

@@ -5,16 +5,7 @@ from typing import Any
 
 from processing.gui.wrappers import DIALOG_BATCH, WidgetWrapper
 from qgis.core import QgsMapLayer, QgsPointCloudLayer, QgsProject, QgsSettings
-from qgis.PyQt.QtWidgets import (
-    QFileDialog,
-    QGridLayout,
-    QLineEdit,
-    QListWidget,
-    QMenu,
-    QPushButton,
-    QToolButton,
-    QWidget,
-)
+from qgis.PyQt import QtWidgets
 
 from .clouds import FILTER, names_of
 
@@ -24,26 +15,26 @@ _ROWS = 4
 _LAST_FOLDER = "Processing/LastInputPath"
 
 
-class FileList(QWidget):
+class FileList(QtWidgets.QWidget):
     """A list of files, folders and layers, with buttons that add and remove."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.list = QListWidget()
-        self.list.setSelectionMode(QListWidget.SelectionMode.ExtendedSelection)
+        self.list = QtWidgets.QListWidget()
+        self.list.setSelectionMode(QtWidgets.QListWidget.SelectionMode.ExtendedSelection)
         # 12 pixels for the frame and the spacing of rows.
         self.list.setMaximumHeight(_ROWS * self.list.fontMetrics().height() + 12)
-        self.layers = QToolButton()
+        self.layers = QtWidgets.QToolButton()
         self.layers.setText("Layers")
-        self.layers.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self.layers.setMenu(QMenu(self.layers))
+        self.layers.setPopupMode(QtWidgets.QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.layers.setMenu(QtWidgets.QMenu(self.layers))
         self.layers.menu().aboutToShow.connect(self._fill_menu)
-        grid = QGridLayout(self)
+        grid = QtWidgets.QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.addWidget(self.list, 0, 0, 5, 1)
         slots = {"Files…": self._add_files, "Folder…": self._add_folder, "Remove": self._remove}
         for row, (text, slot) in enumerate(slots.items()):
-            button = QPushButton(text)
+            button = QtWidgets.QPushButton(text)
             button.clicked.connect(slot)
             grid.addWidget(button, row, 1)
         grid.addWidget(self.layers, 3, 1)
@@ -64,13 +55,12 @@ class FileList(QWidget):
 
     def _add_files(self) -> None:
         start = QgsSettings().value(_LAST_FOLDER, "")
-        files, _ = QFileDialog.getOpenFileNames(self, "Point clouds", str(start), f"{FILTER};;VPC (*.vpc)")
+        files, _ = QtWidgets.QFileDialog.getOpenFileNames(self, "Point clouds", str(start), f"{FILTER};;VPC (*.vpc)")
         self._keep(files)
 
     def _add_folder(self) -> None:
-        folder = QFileDialog.getExistingDirectory(
-            self, "Folder of point clouds", str(QgsSettings().value(_LAST_FOLDER, ""))
-        )
+        start = str(QgsSettings().value(_LAST_FOLDER, ""))
+        folder = QtWidgets.QFileDialog.getExistingDirectory(self, "Folder of point clouds", start)
         self._keep([folder] if folder else [])
 
     def _keep(self, names: list[str]) -> None:
@@ -97,20 +87,20 @@ def clouds_of_project() -> list[QgsMapLayer]:
 class FilesWrapper(WidgetWrapper):
     """The list as QGIS's dialogs use it; a line of text with semicolons in batches."""
 
-    def createWidget(self) -> QWidget:  # noqa: N802 - QGIS asks for these names
+    def createWidget(self) -> QtWidgets.QWidget:  # noqa: N802 - QGIS asks for these names
         """Return the field."""
-        return QLineEdit() if self.dialogType == DIALOG_BATCH else FileList()
+        return QtWidgets.QLineEdit() if self.dialogType == DIALOG_BATCH else FileList()
 
     def setValue(self, value: Any) -> None:  # noqa: N802
         """Show a value: of a script, of the history, or of another dialog."""
         names = names_of(value) or []
-        if isinstance(self.widget, QLineEdit):
+        if isinstance(self.widget, QtWidgets.QLineEdit):
             self.widget.setText(";".join(names))
         else:
             self.widget.set_names(names)
 
     def value(self) -> list[str]:
         """Return the paths and layers in the field."""
-        if isinstance(self.widget, QLineEdit):
+        if isinstance(self.widget, QtWidgets.QLineEdit):
             return [name.strip() for name in self.widget.text().split(";") if name.strip()]
         return self.widget.names()

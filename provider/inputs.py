@@ -18,7 +18,7 @@ from qgis.core import (
 )
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
-from ..algorithms.stage import Stage
+from ..algorithms.stage import Declared, Stage
 from ..algorithms.tiling.settings import READ_SETTINGS, Setting
 from .caller import is_step
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
@@ -56,17 +56,12 @@ def input_parameter(
     if several:
         return with_help(CloudsParameter(INPUTS, "Point clouds"), "Files, layers or addresses on the web, one or more.")
     of_one = "File or layer of the points, or an address on the web (https://…) of COPC, EPT, VPC or STAC items."
-    definition = CloudParameter(INPUT, title)
-    if not is_needed:
-        definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Optional)
-    return with_help(definition, of_one)
+    return with_help(CloudParameter(INPUT, title, optional=not is_needed), of_one)
 
 
 def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:
     """Return the parameter of the second cloud that a stage reads."""
-    definition = CloudParameter(REFERENCE, stage.reference_title)
-    if not stage.needs_reference:
-        definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Optional)
+    definition = CloudParameter(REFERENCE, stage.reference_title, optional=not stage.needs_reference)
     return with_help(definition, f"File or layer. {stage.reference}")
 
 
@@ -136,8 +131,10 @@ def extent_box(given: Given, plane: str) -> Optional[np.ndarray]:
     return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])
 
 
-def given_spacing(given: Given) -> float:
-    """Return the spacing (m) of the points that a user gives, 0 where all points are read.
+def given_spacing(given: Given, factors: np.ndarray) -> Optional[np.ndarray]:
+    """Return the spacing of the points that a user gives, in units of the axes; None where all points are read.
+
+    ``factors`` (3,) are meters per unit.
 
     Raises
     ------
@@ -146,12 +143,11 @@ def given_spacing(given: Given) -> float:
     """
     raw = given.parameters.get(SPACING)
     if not is_given(raw):
-        return 0.0
-    spacing = given.read("Double", SPACING)
-    if not SPACINGS[0] <= spacing <= SPACINGS[1]:
-        low, high = SPACINGS
+        return None
+    spacing, (low, high) = given.read("Double", SPACING), SPACINGS
+    if not low <= spacing <= high:
         raise ValueError(f"{raw!r} ({SPACING}) is no spacing; give meters from {low:g} to {high:g}.")
-    return spacing
+    return spacing / factors
 
 
 def refuse_same(clouds: Sequence[Path], reference: Path) -> None:
@@ -178,6 +174,11 @@ def subject_of(clouds: Sequence[Path], layer: str, feedback: QgsProcessingFeedba
     It is "" for a step of a user's chain, which reads temporaries.
     """
     return (layer or subject_of_file(clouds[0])) if clouds and not is_step(feedback) else ""
+
+
+def result_title(stage: Stage, declared: Declared) -> str:
+    """Return what a result of a stage is called that is no cloud: what declares it has a title, a page the stage's."""
+    return stage.report_title if isinstance(declared, str) else declared.title
 
 
 def cloud_title(stages: Sequence[Stage]) -> str:

@@ -7,33 +7,14 @@ from pathlib import Path
 from typing import Any, Callable, Optional
 
 from qgis.core import Qgis, QgsApplication
+from qgis.PyQt import QtWidgets
 from qgis.PyQt.QtCore import QProcess, QProcessEnvironment, Qt
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QDialog,
-    QDialogButtonBox,
-    QLabel,
-    QMessageBox,
-    QPlainTextEdit,
-    QProgressDialog,
-    QPushButton,
-    QVBoxLayout,
-    QWidget,
-)
 
 from ..algorithms import packages
 from ..algorithms.cloud.header import SOFTWARE
 from ..algorithms.package_versions import forget_versions, installed_version, too_old
 from . import PROVIDER_ID
-from .dependencies import (
-    laz_sentence,
-    missing_sentence,
-    package_folder,
-    pip_arguments,
-    python,
-    shown_command,
-    system_command,
-)
+from .dependencies import lacking_sentence, package_folder, pip_arguments, python, shown_command, system_command
 from .paths import PLUGIN
 from .questions import is_answered_yes, push_with_button
 from .run_log import plugin_version
@@ -54,9 +35,7 @@ def installation_text() -> str:
         f"Folder for packages {package_folder()}",
         f"Folder of the plugin {PLUGIN}",
     ]
-    return "\n".join(
-        [*lines, "", missing_sentence(packages.REQUIRED.values()) or laz_sentence() or "Everything is installed."]
-    )
+    return "\n".join([*lines, "", lacking_sentence(packages.REQUIRED.values()) or "Everything is installed."])
 
 
 def show_installation(iface: Any) -> None:
@@ -64,26 +43,26 @@ def show_installation(iface: Any) -> None:
     InstallationDialog(iface.mainWindow()).exec()
 
 
-class InstallationDialog(QDialog):
+class InstallationDialog(QtWidgets.QDialog):
     """Versions in text to copy, a button that copies them, and one that installs what is missing."""
 
-    def __init__(self, parent: Optional[QWidget]) -> None:
+    def __init__(self, parent: Optional[QtWidgets.QWidget]) -> None:
         super().__init__(parent)
         self.setWindowTitle("LiDAR Buildings: installation")
         self.resize(720, 420)
-        self.text = QPlainTextEdit(installation_text())
+        self.text = QtWidgets.QPlainTextEdit(installation_text())
         self.text.setReadOnly(True)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons = QtWidgets.QDialogButtonBox(QtWidgets.QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
-        copy = QPushButton("Copy")
-        copy.clicked.connect(lambda: QApplication.clipboard().setText(self.text.toPlainText()))
-        buttons.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
-        self.install = QPushButton("Install…")
+        copy = QtWidgets.QPushButton("Copy")
+        copy.clicked.connect(lambda: QtWidgets.QApplication.clipboard().setText(self.text.toPlainText()))
+        buttons.addButton(copy, QtWidgets.QDialogButtonBox.ButtonRole.ActionRole)
+        self.install = QtWidgets.QPushButton("Install…")
         self.install.clicked.connect(self._install)
-        buttons.addButton(self.install, QDialogButtonBox.ButtonRole.ActionRole)
+        buttons.addButton(self.install, QtWidgets.QDialogButtonBox.ButtonRole.ActionRole)
         self.install.setVisible(bool(packages.absent()))
-        layout = QVBoxLayout(self)
-        layout.addWidget(QLabel("Add this text to a report of a problem."))
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.addWidget(QtWidgets.QLabel("Add this text to a report of a problem."))
         layout.addWidget(self.text)
         layout.addWidget(buttons)
 
@@ -93,13 +72,13 @@ class InstallationDialog(QDialog):
         self.install.setVisible(bool(packages.absent()))
 
 
-def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], bool]] = None) -> bool:
+def install_missing(parent: Optional[QtWidgets.QWidget], ask: Optional[Callable[[str], bool]] = None) -> bool:
     """Install the packages that are missing, after the user has seen the command; return whether all are there."""
     absent = packages.absent()
     by_system = system_command(absent)
     if by_system:
         what = "Packages of the system have to be installed in a terminal, then QGIS be started again"
-        QMessageBox.information(parent, SOFTWARE, f"{what}:\n\n{by_system}")
+        QtWidgets.QMessageBox.information(parent, SOFTWARE, f"{what}:\n\n{by_system}")
         return False
     if not absent or not (ask or (lambda command: _is_wanted(parent, command)))(shown_command(absent)):
         return not absent
@@ -109,22 +88,21 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
     remaining = packages.absent()
     if remaining:
         reason = output.strip().splitlines()[-1] if output.strip() else "the command gave no reason"
-        QMessageBox.warning(parent, SOFTWARE, f"Not installed: {', '.join(remaining)}. Python says: {reason}")
+        QtWidgets.QMessageBox.warning(parent, SOFTWARE, f"Not installed: {', '.join(remaining)}. Python says: {reason}")
     else:
-        again = "Everything is installed; start QGIS again."
-        done = again if replaces_loaded else "Everything is installed; the algorithms can run."
-        QMessageBox.information(parent, SOFTWARE, done)
+        what = "start QGIS again" if replaces_loaded else "the algorithms can run"
+        QtWidgets.QMessageBox.information(parent, SOFTWARE, f"Everything is installed; {what}.")
     return not remaining
 
 
-def _is_wanted(parent: Optional[QWidget], command: str) -> bool:
+def _is_wanted(parent: Optional[QtWidgets.QWidget], command: str) -> bool:
     question = "Run this command? It installs Python packages for QGIS alone, from the Python Package Index."
     return is_answered_yes(parent, SOFTWARE, f"{question}\n\n{command}")
 
 
-def _run(parent: Optional[QWidget], program: str, arguments: list[str]) -> str:
+def _run(parent: Optional[QtWidgets.QWidget], program: str, arguments: list[str]) -> str:
     """Run a program while a window shows that it is at work; return its output, or the reason why it did not start."""
-    waiting = QProgressDialog("Installing Python packages…", "Cancel", 0, 0, parent)
+    waiting = QtWidgets.QProgressDialog("Installing Python packages…", "Cancel", 0, 0, parent)
     waiting.setWindowTitle(SOFTWARE)
     waiting.setWindowModality(Qt.WindowModality.WindowModal)
     waiting.setMinimumDuration(0)
@@ -163,7 +141,7 @@ def warn_at_start(iface: Any) -> Callable[[], None]:
     return push_with_button(iface, SOFTWARE, text, "Install…", lambda: _installed(iface.mainWindow()), level)
 
 
-def _installed(parent: Optional[QWidget]) -> bool:
+def _installed(parent: Optional[QtWidgets.QWidget]) -> bool:
     """Install what is missing; return whether all is there, and have the toolbox ask then which algorithms can run."""
     is_complete = install_missing(parent)
     provider = QgsApplication.processingRegistry().providerById(PROVIDER_ID)

@@ -21,7 +21,7 @@ from ..algorithms.stage import CLOUD, REPORT
 from . import PROVIDER_ID
 from .clouds import FILTER
 from .input_layers import input_layer_name, input_layer_parameter
-from .inputs import INPUT, INPUTS, OUTPUT, REFERENCE, cloud_title
+from .inputs import INPUT, INPUTS, OUTPUT, REFERENCE, cloud_title, result_title
 from .parameters import parameter, parameter_name
 
 
@@ -134,8 +134,7 @@ def output_title(pipeline: Pipeline, output: Output) -> str:
         makers = [step.stage for step in pipeline.steps if step.stage.makes_cloud]
         title = cloud_title(makers if output.name == CLOUD else [stage])
     else:
-        declared = output.declared
-        title = stage.report_title if isinstance(declared, str) else declared.title
+        title = result_title(stage, output.declared)
     is_alone = output.name == output.of or (output.of == REPORT and title != "Report")
     return title if is_alone else output_label(output.step, title)
 
@@ -212,10 +211,8 @@ def _sources(pipeline: Pipeline, step: Step) -> dict[str, QgsProcessingModelChil
     if step.stage.reads_reference:
         found[REFERENCE] = _from_parameter(REFERENCE)
     for input_layer in step.stage.input_layers:
-        if input_layer.name in step.layers:
-            found[input_layer_name(input_layer)] = _from_child(*step.layers[input_layer.name].split("."))
-        else:
-            found[input_layer_name(input_layer)] = _from_parameter(input_layer_name(input_layer))
+        name, made = input_layer_name(input_layer), step.layers.get(input_layer.name)
+        found[name] = _from_child(*made.split(".")) if made else _from_parameter(name)
     return found
 
 

@@ -1,5 +1,6 @@
 """What users set for all runs, under Settings ▸ Options ▸ Processing ▸ Providers ▸ LiDAR Buildings."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Callable
 
@@ -41,9 +42,12 @@ class Option:
     def set(self, value: str) -> None:
         """Keep a value, and show it in the options."""
         QgsSettings().setValue(self.key, value)
-        config = _processing_config()
-        if config is not None and self.name in config.settings:
-            config.settings[self.name].value = value
+        # Another QGIS may have no class of that name.
+        with suppress(ImportError):
+            from processing.core.ProcessingConfig import ProcessingConfig
+
+            if self.name in ProcessingConfig.settings:
+                ProcessingConfig.settings[self.name].value = value
 
 
 SCHEDULERS = Option("LIDARBUILDINGS_SCHEDULERS", "Dask schedulers that may be used (addresses, with spaces between)")
@@ -72,15 +76,6 @@ def apply_options() -> None:
     use_threads(int(text) if text else None)
     allow_hosts(WEB_HOSTS.value.split())
     keep_in(WEB_CACHE.value)
-
-
-def _processing_config() -> Any:
-    """Return the class that holds the options of Processing; None where this QGIS has none of that name."""
-    try:
-        from processing.core.ProcessingConfig import ProcessingConfig
-    except ImportError:
-        return None
-    return ProcessingConfig
 
 
 def add_options() -> Callable[[], None]:

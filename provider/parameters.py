@@ -48,17 +48,16 @@ def help_text(tunable: Tunable) -> str:
 
 def parameter(tunable: Tunable) -> QgsProcessingParameterDefinition:
     """Return the Processing parameter of a tunable."""
-    definition = _MAKERS[tunable.type](tunable)
+    definition = _MAKERS[tunable.type](tunable, parameter_name(tunable), label(tunable))
     if tunable.param.advanced:
         definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
     definition.setHelp(help_text(tunable))
     return definition
 
 
-def _number(tunable: Tunable) -> QgsProcessingParameterDefinition:
-    definition = QgsProcessingParameterNumber(
-        parameter_name(tunable), label(tunable), _NUMBERS[tunable.type], tunable.default, tunable.is_optional
-    )
+def _number(tunable: Tunable, name: str, title: str) -> QgsProcessingParameterDefinition:
+    kind = _NUMBERS[tunable.type]
+    definition = QgsProcessingParameterNumber(name, title, kind, tunable.default, tunable.is_optional)
     # QGIS has inclusive bounds only: the dialog takes an open bound too, the core refuses it.
     if tunable.param.low is not None:
         definition.setMinimum(tunable.param.low)
@@ -76,30 +75,22 @@ def _decimals(tunable: Tunable) -> int:
     return max([3, *(-exponent for exponent in exponents if isinstance(exponent, int))])
 
 
-def _boolean(tunable: Tunable) -> QgsProcessingParameterDefinition:
-    return QgsProcessingParameterBoolean(parameter_name(tunable), label(tunable), tunable.default, tunable.is_optional)
+def _boolean(tunable: Tunable, name: str, title: str) -> QgsProcessingParameterDefinition:
+    return QgsProcessingParameterBoolean(name, title, tunable.default, tunable.is_optional)
 
 
-def _word(tunable: Tunable) -> QgsProcessingParameterDefinition:
+def _word(tunable: Tunable, name: str, title: str) -> QgsProcessingParameterDefinition:
     if tunable.param.choices:
-        return _enum(tunable)
-    return QgsProcessingParameterString(
-        parameter_name(tunable), label(tunable), tunable.default, optional=not tunable.default
-    )
+        return _enum(tunable, name, title)
+    return QgsProcessingParameterString(name, title, tunable.default, optional=not tunable.default)
 
 
-def _enum(tunable: Tunable) -> QgsProcessingParameterDefinition:
-    several = tunable.type is tuple
+def _enum(tunable: Tunable, name: str, title: str) -> QgsProcessingParameterDefinition:
+    choices, several = list(tunable.param.choices), tunable.type is tuple
     default = list(tunable.default) if several and tunable.default is not None else tunable.default
     # Static strings: a saved model keeps the word, not its position in today's list.
     return QgsProcessingParameterEnum(
-        parameter_name(tunable),
-        label(tunable),
-        list(tunable.param.choices),
-        allowMultiple=several,
-        defaultValue=default,
-        optional=tunable.is_optional,
-        usesStaticStrings=True,
+        name, title, choices, several, default, tunable.is_optional, usesStaticStrings=True
     )
 
 

@@ -8,7 +8,7 @@ from ..algorithms.stages import STAGES
 from ..algorithms.tiling.tiled_pipelines import TILED_PIPELINES
 from . import PROVIDER_ID
 from .cut_algorithm import CutAlgorithm
-from .dependencies import laz_sentence, missing_sentence
+from .dependencies import lacking_sentence
 from .paths import ICON
 from .pipeline_algorithm import PipelineAlgorithm
 from .rasters import EXTENSIONS as RASTER_EXTENSIONS
@@ -53,7 +53,7 @@ class Provider(QgsProcessingProvider):
 
     def warningMessage(self) -> str:  # noqa: N802 - QGIS asks for this name
         """Return the banner above the toolbox: which packages are missing, "" when none is."""
-        return missing_sentence() or laz_sentence()
+        return lacking_sentence()
 
     def defaultPointCloudFileExtension(self) -> str:  # noqa: N802 - QGIS asks for this name
         """Return the extension of temporary clouds: not compressed, since the next step reads them at once."""

@@ -18,21 +18,9 @@ from qgis.core import (
     QgsVectorLayer,
 )
 from qgis.gui import QgsMapTool, QgsRubberBand
+from qgis.PyQt import QtWidgets
 from qgis.PyQt.QtCore import QEvent, QSignalBlocker, Qt, QTimer
 from qgis.PyQt.QtGui import QColor, QKeySequence
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QComboBox,
-    QDockWidget,
-    QGridLayout,
-    QHeaderView,
-    QLabel,
-    QToolButton,
-    QTreeWidget,
-    QTreeWidgetItem,
-    QVBoxLayout,
-    QWidget,
-)
 
 from ..algorithms.buildings.reviewed_buildings import DELETED, KEPT, REVIEW, REVIEWED
 from ..algorithms.quality.map_changes import STATUS, UNCHANGED
@@ -76,13 +64,16 @@ _AROUND = 4.0
 # Color and width (pixels) of the outline of the current building on the map.
 _OUTLINE, _WIDTH = QColor(0, 229, 255), 3
 
+# The advice of an empty list.
+_NOTHING = "No building is listed; choose a layer of footprints, or list all."
+
 # Buttons in a row.
 _IN_ROW = 3
 
 
 def show_review(iface: Any, layer: Optional[QgsVectorLayer] = None) -> ReviewDock:
     """Open the window for a layer, else for the active one, or for the first that has a confidence."""
-    dock = iface.mainWindow().findChild(QDockWidget, REVIEW_WINDOW)
+    dock = iface.mainWindow().findChild(QtWidgets.QDockWidget, REVIEW_WINDOW)
     if dock is None:
         dock = ReviewDock(iface)
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, dock, [], True)
@@ -122,7 +113,7 @@ def offer_review(iface: Any, layer: QgsVectorLayer, context: QgsProcessingContex
     push_with_button(iface, "LiDAR Buildings", said, "Review buildings…", lambda: show_review(iface, find(made)))
 
 
-class ReviewDock(QDockWidget):
+class ReviewDock(QtWidgets.QDockWidget):
     """A list of the buildings of the active layer, the evidence for the current one, and the decisions."""
 
     def __init__(self, iface: Any) -> None:
@@ -140,25 +131,25 @@ class ReviewDock(QDockWidget):
         # Many signals of a layer end in one new list.
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.fill)
-        self.filter = QComboBox()
+        self.filter = QtWidgets.QComboBox()
         self.filter.currentIndexChanged.connect(self.fill)
-        self.list = QTreeWidget(rootIsDecorated=False, uniformRowHeights=True)
+        self.list = QtWidgets.QTreeWidget(rootIsDecorated=False, uniformRowHeights=True)
         self.list.setHeaderLabels(_COLUMNS.values())
-        self.list.header().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.list.header().setSectionResizeMode(QtWidgets.QHeaderView.ResizeMode.ResizeToContents)
         self.list.currentItemChanged.connect(self._show)
-        self.facts, self.count = QLabel(wordWrap=True), QLabel(wordWrap=True)
+        self.facts, self.count = QtWidgets.QLabel(wordWrap=True), QtWidgets.QLabel(wordWrap=True)
         self.views = PointViews()
-        self.setWidget(QWidget())
-        layout = QVBoxLayout(self.widget())
+        self.setWidget(QtWidgets.QWidget())
+        layout = QtWidgets.QVBoxLayout(self.widget())
         for widget in (self.filter, self.list, self.facts, self.views):
             layout.addWidget(widget)
         layout.addLayout(self._buttons())
         layout.addWidget(self.count)
         iface.currentLayerChanged.connect(self.follow)
 
-    def _buttons(self) -> QGridLayout:
+    def _buttons(self) -> QtWidgets.QGridLayout:
         """Return buttons, whose keys hold in this window and on the map."""
-        grid = QGridLayout()
+        grid = QtWidgets.QGridLayout()
         given = (
             ("Keep", "K", lambda _: self.decide(KEPT)),
             ("Delete", "D", lambda _: self.decide(DELETED)),
@@ -172,14 +163,14 @@ class ReviewDock(QDockWidget):
             ("Run again…", "", self.run_again),
         )
         for number, (text, key, run) in enumerate(given):
-            action = QAction(f"{text} ({key})" if key else text, self)
+            action = QtWidgets.QAction(f"{text} ({key})" if key else text, self)
             action.setShortcut(QKeySequence(key))
             action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
             action.triggered.connect(lambda _, run=run: self._try(run))
             self.visibilityChanged.connect(action.setEnabled)
             self.addAction(action)
             self.canvas.addAction(action)
-            button = QToolButton()
+            button = QtWidgets.QToolButton()
             button.setDefaultAction(action)
             grid.addWidget(button, *divmod(number, _IN_ROW))
         return grid
@@ -235,7 +226,7 @@ class ReviewDock(QDockWidget):
         fids = [one.id() for one in self._listed]
         row = fids.index(self._fid) if self._fid in fids else max(0, min(self.row, len(fids) - 1))
         self.list.clear()
-        self.list.addTopLevelItems([QTreeWidgetItem(self._texts(one)) for one in self._listed])
+        self.list.addTopLevelItems([QtWidgets.QTreeWidgetItem(self._texts(one)) for one in self._listed])
         self.go_to(row)
         self._count()
 
@@ -261,7 +252,7 @@ class ReviewDock(QDockWidget):
         self._end_division()
         self._band.reset(Qgis.GeometryType.Polygon)
         if self._fid is None:
-            self.facts.setText(_nothing())
+            self.facts.setText(_NOTHING)
             return
         layer, outline = self.review.layer, self.review.layer.getGeometry(self._fid)
         why = [self.review.value(self._listed[self.row], name) for name in ("reason", "evidence")]
@@ -330,7 +321,7 @@ class ReviewDock(QDockWidget):
     def _current(self) -> int:
         """Return the current building, or refuse."""
         if self._fid is None:
-            raise ValueError(_nothing())
+            raise ValueError(_NOTHING)
         return self._fid
 
     def _try(self, run: Callable[[Review], None]) -> None:
@@ -346,8 +337,3 @@ class ReviewDock(QDockWidget):
     def closeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt asks for this name
         self._begin(None)
         super().closeEvent(event)
-
-
-def _nothing() -> str:
-    """Return the advice of an empty list."""
-    return "No building is listed; choose a layer of footprints, or list all."

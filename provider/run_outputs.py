@@ -186,24 +186,22 @@ class Run:
 
     def __init__(self, definitions: list, parameters: dict, context: QgsProcessingContext, files: ResultFiles) -> None:
         self._files = files
-        self._clouds: list[Path] = []
+        self._with_view: list[Path] = []
         self.parameters = dict(parameters)
         for definition in definitions:
             value = parameters.get(definition.name())
             path = _file_to_write(definition, value, context)
-            if path is not None:
-                self.parameters[definition.name()] = _redirected(value, self._beside(definition, path))
-
-    def _beside(self, definition, path: Path) -> str:
-        if _is_cloud(definition):
-            self._clouds.append(path)
-        return str(self._files.beside(path, files_of(definition, str(path))[1:]))
+            if path is None:
+                continue
+            if _is_cloud(definition) and kind_of(path) != COPC:
+                self._with_view.append(path)
+            beside = files.beside(path, files_of(definition, str(path))[1:])
+            self.parameters[definition.name()] = _redirected(value, str(beside))
 
     def check(self) -> None:
         """Refuse to replace a file that was put where a cloud's view goes since the run began."""
-        for path in self._clouds:
-            if kind_of(path) != COPC:
-                check_copc_beside(path, ())
+        for path in self._with_view:
+            check_copc_beside(path, ())
 
     def final(self, value: Any) -> Any:
         """Return results with each path in a working folder replaced by its target's."""

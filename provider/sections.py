@@ -52,8 +52,7 @@ class Section:
 
 def sections_of(algorithm: Any) -> list[Section]:
     """Return the groups of the parameters of an algorithm of this plugin, in the order of its steps."""
-    tiled = getattr(algorithm, "tiled", None)
-    pipeline = tiled.pipeline if tiled is not None else getattr(algorithm, "pipeline", None)
+    pipeline, is_tiled = getattr(algorithm, "pipeline", None), hasattr(algorithm, "tiled")
     if pipeline is None:
         section = Section("")
         for setting in READ_SETTINGS.values():
@@ -64,10 +63,10 @@ def sections_of(algorithm: Any) -> list[Section]:
             section.add(parameter_name(tunable), tunable)
         return [section]
     sections = _of_steps(pipeline)
-    if tiled is not None:
+    if is_tiled:
         sections.append(Section("Survey: blocks, processes, files"))
-    section = sections[0 if tiled is None else -1]
-    for setting in (READ_SETTINGS if tiled is None else SETTINGS).values():
+    section = sections[-1 if is_tiled else 0]
+    for setting in (SETTINGS if is_tiled else READ_SETTINGS).values():
         section.add_setting(setting)
     section.labels[CRS] = "Coordinate reference system (of a cloud that names none)"
     return sections

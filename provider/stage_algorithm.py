@@ -18,7 +18,7 @@ from .destinations import Made
 from .feedback import FeedbackMonitor, announce
 from .given import Given
 from .input_layers import find_input_layers, read_input_layers
-from .inputs import cloud_title
+from .inputs import cloud_title, result_title
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .run_log import RunLog
 from .surveys import place_of_survey
@@ -93,8 +93,7 @@ class StageAlgorithm(CloudAlgorithm):
             found = run_in_windows(self.stage, read.surveys, {**read.layers}, monitor, **self.job.tunables)
             return Results(None, found.layers, found.report, reports={REPORT: found.report})
         self._log_earlier_dimensions(read, monitor)
-        cloud = read.clouds if self.stage.merges else read.clouds[0] if read.clouds else None
-        made = run_stage(self.stage, cloud, read.reference, monitor, read.layers, **self.job.tunables)
+        made = run_stage(self.stage, read.clouds, read.reference, monitor, read.layers, **self.job.tunables)
         self._warn_if_nothing_was_selected(read, made.cloud, monitor)
         reports = {REPORT: made.report} if made.report is not None else {}
         return Results(made.cloud, made.layers, made.report, made.rasters, made.files, reports=reports)
@@ -111,11 +110,10 @@ class StageAlgorithm(CloudAlgorithm):
 
     def _warn_if_nothing_was_selected(self, read: Read, selected: Any, monitor: Monitor) -> None:
         """Warn where a selection by the user is the whole cloud: an area or a limit was forgotten."""
-        if not (self.stage.selects and self.alone and self.job.box is None):
-            return
-        count = len(read.clouds[0])
-        if len(selected) == count:
-            monitor.warn(f"All {count:,} points stay: no extent is set, nor anything else that leaves points out.")
+        selects_alone = self.stage.selects and self.alone and self.job.box is None
+        if selects_alone and len(selected) == len(read.clouds[0]):
+            count = f"{len(selected):,}"
+            monitor.warn(f"All {count} points stay: no extent is set, nor anything else that leaves points out.")
 
     def _log_earlier_dimensions(self, read: Read, monitor: Monitor) -> None:
         """Log which dimensions of earlier runs are read; in a user's chain, where its own steps made them, none."""
@@ -132,8 +130,6 @@ def _made(stage: Stage) -> list[Made]:
     for name, declared in stage.outputs.items():
         is_one_of_several = isinstance(declared, Raster) and len(stage.rasters) > 1
         optional = declared != CLOUD and (has_other or bool(made) or is_one_of_several)
-        title = cloud_title([stage]) if name == CLOUD else stage.report_title
-        if not isinstance(declared, str):
-            title = declared.title
+        title = cloud_title([stage]) if name == CLOUD else result_title(stage, declared)
         made.append(Made(name.upper(), title, stage, declared, optional))
     return made

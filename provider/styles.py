@@ -256,7 +256,9 @@ def stack_results(context: QgsProcessingContext) -> None:
     """Put the layers of a run into the order of drawing: QGIS reverses it where a layer of the project is selected."""
     keys = {path: details.layerSortKey for path, details in context.layersToLoadOnCompletion().items()}
     root = context.project().layerTreeRoot()
-    found = {node: _key_of(node.layer(), keys) for node in root.findLayers() if node.layer() is not None}
+    # None for layers that are no results of this run.
+    layers = {node: node.layer() for node in root.findLayers() if node.layer() is not None}
+    found = {node: keys.get(layer.id(), keys.get(layer.source())) for node, layer in layers.items()}
     nodes = [node for node, key in found.items() if key is not None]
     wanted = sorted(nodes, key=lambda node: found[node] or 0, reverse=True)
     if wanted == nodes or len({node.parent() for node in nodes}) > 1:
@@ -283,11 +285,6 @@ def _height_of(node: QgsLayerTreeNode) -> int:
     """Return the rank of a layer in the tree, from the bottom; groups hold the polygons of a run."""
     layer = node.layer() if isinstance(node, QgsLayerTreeLayer) else None
     return next((i for i, kind in enumerate(_BELOW) if isinstance(layer, kind)), len(_BELOW))
-
-
-def _key_of(layer: QgsMapLayer, keys: dict[str, int]) -> Optional[int]:
-    """Return the key of a loaded result, None for any other layer."""
-    return keys.get(layer.id(), keys.get(layer.source()))
 
 
 def name_after(context: QgsProcessingContext, titles: Collection[str], subject: str, run: str = "") -> None:

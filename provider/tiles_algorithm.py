@@ -1,6 +1,5 @@
 """A composite in tiles as a Processing algorithm: a survey in, a folder of tiles and the layers of the whole out."""
 
-from collections.abc import Collection
 from pathlib import Path
 from typing import Any, Optional
 
@@ -31,6 +30,7 @@ from ..algorithms.tiling.tile_writing import SHOWN
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
 from ..algorithms.tiling.tiled_run import TilesOptions, TilesOutcome
 from ..algorithms.tiling.workers import Workers
+from . import inputs
 from .algorithm import CheckedAlgorithm
 from .caller import is_step, on_command_line
 from .clouds import CloudsParameter, survey_paths
@@ -40,20 +40,7 @@ from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .given import Given
 from .input_layers import GivenLayer, find_input_layers, input_layer_files, input_layer_parameter, read_input_layers
-from .inputs import (
-    INPUT,
-    OUTPUT,
-    REPORT,
-    cloud_title,
-    crs_parameter,
-    extent_box,
-    extent_parameter,
-    given_crs,
-    given_spacing,
-    spacing_parameter,
-    with_help,
-    with_setting,
-)
+from .inputs import INPUT, OUTPUT, REPORT
 from .layer_outputs import write_layer, write_text
 from .models import pipeline_parameters
 from .named_clouds import names_of_crs
@@ -87,7 +74,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     def __init__(self, tiled: TiledPipeline) -> None:
         super().__init__()
         self.tiled = self.declared = tiled
-        self.made = _made(tiled)
+        self.pipeline, self.made = tiled.pipeline, _made(tiled)
 
     def help(self) -> str:
         """Return the help as HTML."""
@@ -95,18 +82,18 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the composite's parameters, how it is worked on, and the outputs."""
-        self.addParameter(with_setting(CloudsParameter(INPUT, ""), SETTINGS))
-        for definition in pipeline_parameters(self.tiled.pipeline).values():
+        self.addParameter(inputs.with_setting(CloudsParameter(INPUT, ""), SETTINGS))
+        for definition in pipeline_parameters(self.pipeline).values():
             self.addParameter(definition)
-        for input_layer in self.tiled.pipeline.input_layers.values():
+        for input_layer in self.pipeline.input_layers.values():
             self.addParameter(input_layer_parameter(input_layer))
-        self.addParameter(extent_parameter())
-        self.addParameter(spacing_parameter())
-        self.addParameter(with_setting(crs_parameter(), SETTINGS))
+        self.addParameter(inputs.extent_parameter())
+        self.addParameter(inputs.spacing_parameter())
+        self.addParameter(inputs.with_setting(inputs.crs_parameter(), SETTINGS))
         for definition in _work_parameters():
             self.addParameter(definition)
         folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
-        self.addParameter(with_help(folder, "A tile for each file, and a virtual point cloud over all of them."))
+        self.addParameter(inputs.with_help(folder, "A tile for each file, and a virtual point cloud over all of them."))
         for made in self.made:
             self.addParameter(made.definition())
         self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
@@ -119,22 +106,20 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         given = Given(self, parameters, context)
         self.paths = survey_paths(given, INPUT)
         check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
-        self.files = files_of_survey(self.paths)
-        self.tunables = pipeline_tunables(given, self.tiled.pipeline)
-        self.crs = given_crs(given)
+        files = files_of_survey(self.paths)
+        self.tunables = pipeline_tunables(given, self.pipeline)
+        self.crs = inputs.given_crs(given)
         crs = crs_of_survey(self.paths, crs_reader(self.crs))
-        self.plane, spacing = crs.plane, given_spacing(given)
-        self.extent = extent_box(given, self.plane)
-        self.spacing = spacing / crs.factors if spacing else None
+        self.plane, self.spacing = crs.plane, inputs.given_spacing(given, crs.factors)
+        self.extent = inputs.extent_box(given, self.plane)
         check_sizes(self.paths, self.extent, self.spacing)
-        self.workers = _workers(given)
-        sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
-        layers = input_layer_files(given, self._given_layers(given))
-        check_targets(sinks, parameters, [*self.files, *layers])
+        self.workers, self.wanted = _workers(given), tuple(made.key for made in self.made if given.has(made.name))
+        self.sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
+        check_targets(self.sinks, parameters, [*files, *input_layer_files(given, self._given_layers(given))])
 
     def _given_layers(self, given: Given) -> list[GivenLayer]:
         """Return the layers that the composite is given."""
-        return find_input_layers(given, self.tiled.pipeline.input_layers.values())
+        return find_input_layers(given, self.pipeline.input_layers.values())
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the survey and of its virtual point cloud."""
@@ -149,10 +134,9 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         is_asked = self.parameterAsBool(parameters, LOAD, context)
         self.shows = is_asked and context.project() is not None and not (is_step(feedback) or on_command_line())
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
-        sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         cancelled = f"Cancelled; what was done is kept in {folder}, and the same run goes on with it."
         with as_processing_errors(feedback, cancelled):
-            with all_in_place(sinks, parameters, context, self._subject(folder), self.displayName()) as run:
+            with all_in_place(self.sinks, parameters, context, self._subject(folder), self.displayName()) as run:
                 results: dict[str, Any] = {}
                 given = Given(self, run.parameters, context)
                 outcome = self._run(folder, given, monitor, results)
@@ -174,7 +158,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Have QGIS load a virtual point cloud over the COPC files of the tiles."""
         files = [folder / SHOWN / f"{stem_of(tile)}{COPC}" for tile in outcome.tiles]
         shown = str(write_survey(outcome.survey, files, folder / SHOWN, context, monitor))
-        title = cloud_title([step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud])
+        title = inputs.cloud_title([step.stage for step in self.pipeline.steps if step.stage.makes_cloud])
         # Without the hint QGIS takes it for polygons in JSON.
         hint = QgsProcessingUtils.LayerHint.PointCloud
         details = QgsProcessingContext.LayerDetails(title, context.project(), VPC, hint)
@@ -188,15 +172,15 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def _cloud_style(self) -> Optional[str]:
         """Return the style of the tiles: of the last step that makes a cloud and has one."""
-        makers = [step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud]
+        makers = [step.stage for step in self.pipeline.steps if step.stage.makes_cloud]
         found = (style_of(stage.writes) for stage in reversed(makers))
         return next((style for style in found if style), None)
 
     def _run(self, folder: Path, given: Given, monitor: FeedbackMonitor, results: dict) -> TilesOutcome:
         """Run the survey, and write the rasters and text files that are wanted, which are added to the results."""
         tell_sizes(self.paths, self.extent, self.spacing, monitor)
-        side, wanted = given.parameters.get(BLOCK_SIDE), self._wanted(given)
-        declared = {made.key: made.declared for made in self.made if made.key in wanted}
+        side = given.parameters.get(BLOCK_SIDE)
+        declared = {made.key: made.declared for made in self.made if made.key in self.wanted}
 
         def find_layers(survey: Survey) -> dict[str, LayerFeatures]:
             part, place = monitor.part(_DONE, _DONE), place_of_survey(survey)
@@ -215,30 +199,20 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             if isinstance(file, TextFile):
                 results.update(write_text(given, name.upper(), file, content, place, part))
 
-        return run_in_tiles(
-            self.tiled.pipeline,
-            self.paths,
-            folder,
-            monitor.part(0.0, _DONE),
-            TilesOptions(
-                workers=self.workers,
-                block_side=None if side is None else given.read("Double", BLOCK_SIDE),
-                compressed=given.read("Bool", COMPRESSED),
-                read=crs_reader(self.crs),
-                extent=self.extent,
-                spacing=self.spacing,
-                wanted=wanted,
-                find_layers=find_layers,
-                take_raster=take_raster,
-                take_file=take_file,
-                shown=self.shows,
-            ),
-            **self.tunables,
+        options = TilesOptions(
+            workers=self.workers,
+            block_side=None if side is None else given.read("Double", BLOCK_SIDE),
+            compressed=given.read("Bool", COMPRESSED),
+            read=crs_reader(self.crs),
+            extent=self.extent,
+            spacing=self.spacing,
+            wanted=self.wanted,
+            find_layers=find_layers,
+            take_raster=take_raster,
+            take_file=take_file,
+            shown=self.shows,
         )
-
-    def _wanted(self, given: Given) -> tuple[str, ...]:
-        """Return the names of the outputs, other than the tiles, that the user wants."""
-        return tuple(made.key for made in self.made if given.has(made.name))
+        return run_in_tiles(self.pipeline, self.paths, folder, monitor.part(0.0, _DONE), options, **self.tunables)
 
     def _write_report(self, outcome: TilesOutcome, given: Given) -> dict:
         """Write the page of numbers, if it is wanted; return its output."""
@@ -249,14 +223,14 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         rows = about_run(self.displayName(), self.paths, outcome.points, self.plane)
         blocks = f"{outcome.blocks:,} of {outcome.side:g} m"
         rows.append(Row("Blocks", blocks, f"Tiles written: {len(outcome.tiles):,}. Sampling: {outcome.sampling}."))
-        steps, page = self._steps(outcome, self._wanted(given)), with_coordinates(report.html, place.to_map)
+        steps, page = self._steps(outcome), with_coordinates(report.html, place.to_map)
         write_page(target, page, rows, steps, "In all processes together.")
         return {REPORT: target}
 
-    def _steps(self, outcome: TilesOutcome, wanted: Collection[str]) -> list[StepFacts]:
+    def _steps(self, outcome: TilesOutcome) -> list[StepFacts]:
         """Return the steps that were run, their parameters as used and their seconds in all processes together."""
-        steps, run = [], self.tiled.pipeline.steps_for({CLOUD, *wanted})
-        for step, chosen in self.tiled.pipeline.by_step(self.tunables):
+        steps, run = [], self.pipeline.steps_for({CLOUD, *self.wanted})
+        for step, chosen in self.pipeline.by_step(self.tunables):
             if step not in run:
                 continue
             found = {name: outcome.values.get(f"{step.name}_{name}") for name in step.stage.tunables}
@@ -296,12 +270,8 @@ def _workers(given: Given) -> Workers:
 
 def _made(tiled: TiledPipeline) -> list[Made]:
     """Return the outputs other than the tiles."""
-    made = []
-    for output in tiled.outputs:
-        stage, declared = output.step.stage, output.declared
-        title = stage.report_title if isinstance(declared, str) else declared.title
-        made.append(Made(output.name.upper(), title, stage, declared))
-    return made
+    steps = [(one.name.upper(), one.step.stage, one.declared) for one in tiled.outputs]
+    return [Made(name, inputs.result_title(stage, declared), stage, declared) for name, stage, declared in steps]
 
 
 def _refuse_failures(outcome: TilesOutcome, folder: Path) -> None:
@@ -333,4 +303,4 @@ def _work_parameters() -> list[QgsProcessingParameterDefinition]:
     ]
     for definition in made[:-1]:
         definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
-    return [with_setting(definition, SETTINGS) for definition in made]
+    return [inputs.with_setting(definition, SETTINGS) for definition in made]

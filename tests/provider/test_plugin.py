@@ -352,7 +352,7 @@ def test_nothing_is_installed_without_a_yes(qgis_application, monkeypatch, witho
 def test_a_yes_runs_the_command_that_was_shown(qgis_application, monkeypatch, without_laz):
     started = []
     monkeypatch.setattr(installation, "_run", lambda parent, *command: started.append(command) or "it failed")
-    monkeypatch.setattr(installation.QMessageBox, "warning", lambda *words: started.append(words[-1]))
+    monkeypatch.setattr(QMessageBox, "warning", lambda *words: started.append(words[-1]))
     assert not installation.install_missing(None, lambda command: True)
     assert started[0] == (dependencies.python(), dependencies.pip_arguments(["lazrs"]))
     assert "lazrs" in started[1]
