@@ -8,36 +8,16 @@ from typing import Optional
 from .captions import captions
 from .cloud.dimensions import DIMENSIONS
 from .pipeline import Output, Pipeline, Step
-from .stage import (
-    CLOUD,
-    REFERENCE_PREFIX,
-    VALUES,
-    Field,
-    InputLayer,
-    Layer,
-    Raster,
-    Stage,
-    TextFile,
-    Tunable,
-    with_unit,
-)
+from .stage import CLOUD, REFERENCE_PREFIX, VALUES, InputLayer, Layer, Raster, Stage, TextFile, Tunable, with_unit
 
 
 def stage_help(stage: Stage) -> str:
     """Return everything that is known of a stage, as HTML that QGIS's help pane shows."""
-    return "\n".join(
-        part
-        for part in (
-            paragraphs(stage.summary),
-            paragraphs(stage.description),
-            _dimensions(stage),
-            _list("Parameters", [tunable_help(tunable) for tunable in stage.tunables.values()]),
-            _list("Outputs", outputs(stage)),
-            _section("Notes", stage.section("Notes")),
-            _section("References", stage.section("References")),
-        )
-        if part
-    )
+    parts = [paragraphs(stage.summary), paragraphs(stage.description), _dimensions(stage)]
+    parts.append(_list("Parameters", [tunable_help(tunable) for tunable in stage.tunables.values()]))
+    parts.append(_list("Outputs", outputs(stage)))
+    parts += [_section(title, stage.section(title)) for title in ("Notes", "References")]
+    return "\n".join(filter(None, parts))
 
 
 def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
@@ -45,26 +25,22 @@ def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
 
     ``made`` are texts of the outputs, where they differ from a run on one cloud.
     """
-    steps = [
-        f"<b>{step_title(step)}</b> ({html.escape(step.stage.title)}): {inline(step.stage.summary)}"
-        for step in pipeline.steps
-    ]
+    named = [(step_title(step), step.stage) for step in pipeline.steps]
+    steps = [f"<b>{title}</b> ({html.escape(stage.title)}): {inline(stage.summary)}" for title, stage in named]
     parts = [paragraphs(pipeline.summary), paragraphs(pipeline.description), _list("Steps", steps, ordered=True)]
-    rows: dict[str, list] = {"Parameters": [], **{f"Parameters: {step_title(step)}": [] for step in pipeline.steps}}
+    rows: dict[str, list] = {"Parameters": [], **{f"Parameters: {title}": [] for title, _ in named}}
     for name, (step, tunable) in pipeline.parameters.items():
         section = "Parameters" if name in pipeline.shared else f"Parameters: {step_title(step)}"
         rows[section].append(tunable_help(tunable, step.tunables.get(tunable.name, tunable.default)))
-    parts += [_list(title, items) for title, items in rows.items() if items]
-    input_layers = [input_layer_text(input_layer) for input_layer in pipeline.input_layers.values()]
-    parts.append(_list("Layers", input_layers))
+    parts += [_list(title, items) for title, items in rows.items()]
+    parts.append(_list("Layers", list(map(input_layer_text, pipeline.input_layers.values()))))
     if pipeline.compared is not None:
         parts.append(_list("Second cloud", [f"<b>REFERENCE</b>: {inline(pipeline.compared.reference)}"]))
     if made is None:
         in_order = sorted(pipeline.outputs, key=lambda output: output.name != "output")
         made = [output_text(pipeline, output) for output in in_order]
-    return "\n".join(
-        part for part in (*parts, _list("Outputs", made), _section("References", pipeline.references)) if part
-    )
+    parts += [_list("Outputs", made), _section("References", pipeline.references)]
+    return "\n".join(filter(None, parts))
 
 
 def output_text(pipeline: Pipeline, output: Output) -> str:
@@ -213,9 +189,8 @@ def _with_conditions(always: Iterable[str], written_if: dict[str, str]) -> str:
     groups: dict[str, list[str]] = {"": list(always)}
     for name, when in written_if.items():
         groups.setdefault(when, []).append(name)
-    return "; ".join(
-        f"{_disk_names(names)} {html.escape(when, quote=False)}".strip() for when, names in groups.items() if names
-    )
+    told = ((_disk_names(names), html.escape(when, quote=False)) for when, names in groups.items() if names)
+    return "; ".join(f"{disk} {when}".strip() for disk, when in told)
 
 
 def _chosen(stage: Stage) -> Optional[Tunable]:
@@ -234,7 +209,8 @@ def _result_text(stage: Stage, of: str, name: str) -> str:
     """Describe one output of a stage, under the name that it has for users."""
     declared = stage.outputs[of]
     if isinstance(declared, Layer):
-        attributes = listed(map(_field_text, declared.fields))
+        described = ((with_unit(one.name, one.unit), one.help.rstrip(".")) for one in declared.fields)
+        attributes = listed(f"<i>{html.escape(field)}</i>: {html.escape(text)}" for field, text in described)
         made = f"{html.escape(declared.title)}, with the attributes:\n{attributes}"
     elif isinstance(declared, Raster):
         made = f"{html.escape(with_unit(declared.title, declared.unit))}, a raster."
@@ -247,10 +223,6 @@ def _result_text(stage: Stage, of: str, name: str) -> str:
         measures = ", ".join(with_unit(measure.title, measure.unit) for measure in stage.measures)
         made = f"a page with {html.escape(measures)}; each is an output of its own too."
     return f"<b>{name}</b>: {made}"
-
-
-def _field_text(field: Field) -> str:
-    return f"<i>{html.escape(with_unit(field.name, field.unit))}</i>: {html.escape(field.help.rstrip('.'))}"
 
 
 def _dimensions(stage: Stage) -> str:

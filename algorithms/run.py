@@ -131,9 +131,8 @@ def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampl
     Cells begin at the ``corner`` (2,), m; None is the cloud's.
     """
     used = counted(cloud)
-    corner = _corner(cloud) if corner is None else corner
-    single = not has_several_returns(cloud)
-    return CloudSampling(lambda: cloud.get("xyz").compress(used, axis=0), single, corner, has_colors(cloud))
+    facts = not has_several_returns(cloud), _corner(cloud) if corner is None else corner, has_colors(cloud)
+    return CloudSampling(lambda: cloud.get("xyz").compress(used, axis=0), *facts)
 
 
 def _corner(cloud: Cloud) -> np.ndarray:
@@ -203,14 +202,10 @@ class _RunSampling:
             return self.given
         used = counted(cloud)
         if self.own is None or not is_same or not np.array_equal(used, self.counted):
-            self.log()
+            _log(self.own, self.monitor)
             self.own = sampling_of(cloud, self.corner)
             self.given, self.points, self.counted = None, cloud.points, used
         return self.own
-
-    def log(self) -> None:
-        """Report the measurements for the last steps to the monitor."""
-        _log(self.own, self.monitor)
 
 
 def _see_from(origin: np.ndarray, clouds: list[Cloud]) -> None:
@@ -298,10 +293,8 @@ def _warn_of_foreign(cloud: Cloud, written: Collection[str], monitor: Monitor) -
 
 def _clear(cloud: Cloud, written: Collection[str], monitor: Monitor) -> None:
     """Clear the dimensions that describe numbers which are written anew, but are not written themselves."""
-    stale = [
-        one for one in DIMENSIONS.values() if one.of in written and one.name not in written and cloud.has(one.name)
-    ]
-    known = [one for one in stale if not _is_undefined(cloud.get(one.name))]
+    stale = [one for one in DIMENSIONS.values() if one.of in written and one.name not in written]
+    known = [one for one in stale if cloud.has(one.name) and not _is_undefined(cloud.get(one.name))]
     for one in known:
         cloud.set(one.name, np.full(len(cloud), one.undefined, one.dtype))
     if known:
@@ -400,10 +393,8 @@ def run_pipeline(
     there = [name for name, one in {**given, REFERENCE: reference}.items() if one is not None]
     steps = pipeline.steps_for(names, there)
     # Later steps change the cloud that they work on: a cloud that is kept as it was is copied when it is made.
-    kept = {
-        output.step.name for output in pipeline.outputs if output.name in names and output.of == CLOUD != output.name
-    }
-    kept.update(step.cloud for step in steps)
+    clouds = [output for output in pipeline.outputs if output.of == CLOUD != output.name]
+    kept = {one.step.name for one in clouds if one.name in names} | {step.cloud for step in steps}
     copies: dict[str, Cloud] = {}
     outcomes: dict[str, Outcome] = {}
     current = cloud
@@ -424,7 +415,7 @@ def run_pipeline(
             of_run.after(step, current)
             if step.name in kept and outcome.cloud is not None:
                 copies[step.name] = outcome.cloud.copy()
-    of_run.log()
+    _log(of_run.own, monitor)
     results = _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
     results.selected = _selected_by_all(outcomes.values())
     return results

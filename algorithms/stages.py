@@ -1,8 +1,8 @@
 """The stages, in pipeline order. To add one: write its module, name it here, test it."""
 
-from collections.abc import Iterator, MutableMapping
+from collections import UserDict
 from importlib import import_module
-from typing import Optional
+from typing import Any
 
 from .stage import Stage
 
@@ -91,34 +91,19 @@ _MODULES = (
 )
 
 
-class _Stages(MutableMapping[str, Stage]):
+class _Stages(UserDict[str, Stage]):
     """Stages by name, in order. A module is imported when its stage is first asked for: no run needs all of them."""
 
     def __init__(self, modules: tuple[str, ...]) -> None:
         self._modules = {module.split(".")[-1]: module for module in modules}
-        self._stages: dict[str, Optional[Stage]] = dict.fromkeys(self._modules)
+        not_yet: Any = None
+        super().__init__(dict.fromkeys(self._modules, not_yet))
 
     def __getitem__(self, name: str) -> Stage:
-        stage = self._stages[name]
-        if stage is None:
+        if self.data[name] is None:
             module = import_module(f".{self._modules[name]}", __package__)
-            stage = self._stages[name] = getattr(module, name).stage
-        return stage
-
-    def __setitem__(self, name: str, stage: Stage) -> None:
-        self._stages[name] = stage
-
-    def __delitem__(self, name: str) -> None:
-        del self._stages[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._stages
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._stages)
-
-    def __len__(self) -> int:
-        return len(self._stages)
+            self.data[name] = getattr(module, name).stage
+        return self.data[name]
 
 
 STAGES = _Stages(_MODULES)

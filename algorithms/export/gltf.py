@@ -92,21 +92,16 @@ def _image_of(face: Face) -> np.ndarray:
 def _images(raw: bytes, file: _File) -> dict[str, Any]:
     """Return the one image of a file as glTF declares it."""
     image = {"bufferView": file.view(raw), "mimeType": "image/png"}
-    return {
-        "images": [image],
-        "samplers": [{"wrapS": 33071, "wrapT": 33071}],
-        "textures": [{"source": 0, "sampler": 0}],
-    }
+    sampler, texture = {"wrapS": 33071, "wrapT": 33071}, {"source": 0, "sampler": 0}
+    return {"images": [image], "samplers": [sampler], "textures": [texture]}
 
 
 def _material(kind: str, is_textured: bool) -> dict[str, Any]:
     # glTF stores linear light; screens and styles use the sRGB curve.
     shares = ((np.array(COLORS[kind]) / 255 + 0.055) / 1.055) ** 2.4
-    surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.9}
-    if is_textured:
-        surface["baseColorTexture"] = {"index": 0}
-    else:
-        surface["baseColorFactor"] = [*np.round(shares, 4).tolist(), 1.0]
+    plain = {"baseColorFactor": [*np.round(shares, 4).tolist(), 1.0]}
+    color = {"baseColorTexture": {"index": 0}} if is_textured else plain
+    surface = {"metallicFactor": 0.0, "roughnessFactor": 0.9, **color}
     return {"name": kind, "pbrMetallicRoughness": surface, "doubleSided": True}
 
 
@@ -178,16 +173,10 @@ def _primitives(
             places = [atlas.coordinates(row, rows[row][1].texture, corners[row]) for row in range(first, last)]
             attributes["TEXCOORD_0"] = np.concatenate(places)
         counts = len(np.unique(building[first:last])), last - first
-        made.append(
-            {
-                "attributes": {name: file.accessor(one) for name, one in attributes.items()},
-                "indices": file.accessor(np.concatenate(triangles), are_indices=True),
-                "material": material,
-                "extensions": {
-                    "EXT_mesh_features": {"featureIds": [_features(n, one) for one, n in enumerate(counts)]}
-                },
-            }
-        )
+        stored = {name: file.accessor(one) for name, one in attributes.items()}
+        indices = file.accessor(np.concatenate(triangles), are_indices=True)
+        features = {"EXT_mesh_features": {"featureIds": [_features(n, one) for one, n in enumerate(counts)]}}
+        made.append({"attributes": stored, "indices": indices, "material": material, "extensions": features})
     return made
 
 

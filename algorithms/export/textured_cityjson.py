@@ -36,11 +36,8 @@ def cityjson_pieces(models: Collection[ExportedModel], called: str, frame: MapFr
     if look.atlas is not None:
         image = f"{frame.file}.png"
         yield image, png(look.atlas.image)
-        appearance["appearance"] = {
-            "textures": [{"type": "PNG", "image": image}],
-            "vertices-texture": look.places,
-            "default-theme-texture": _THEME,
-        }
+        textures = {"textures": [{"type": "PNG", "image": image}], "vertices-texture": look.places}
+        appearance["appearance"] = {**textures, "default-theme-texture": _THEME}
     head = head_of(extent, vertices.translate, frame.crs)
     yield dumped({**head, **appearance, "CityObjects": objects, "vertices": vertices.rows}) + "\n"
 

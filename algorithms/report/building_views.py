@@ -94,30 +94,21 @@ def draw_sections(xyz: np.ndarray, kind: np.ndarray, ring: np.ndarray, colors: n
         heights = np.array([seen.min() - 1.0, seen.max() + 1.0])
         walls = [(np.column_stack([[at, at], heights]), color) for at in ends[:, axis]]
         plane = np.column_stack([turned[:, axis], xyz[:, 2]])[is_in]
-        low, high = np.column_stack([cut[:, axis], heights])
-        sections.append(_view(plane, plane[:, 1], kind[is_in], low, high, walls, colors))
-    low, high = boxes_around([[ring]])[0]
-    return [_view(xyz[:, :2], xyz[:, 2], kind, low, high, lines, colors), *sections]
+        sections.append(_view(plane, kind[is_in], np.column_stack([cut[:, axis], heights]), walls, colors))
+    return [_view(xyz, kind, boxes_around([[ring]])[0], lines, colors), *sections]
 
 
-def _view(
-    plan: np.ndarray,
-    depth: np.ndarray,
-    kind: np.ndarray,
-    low: np.ndarray,
-    high: np.ndarray,
-    lines: list[tuple[np.ndarray, str]],
-    colors: np.ndarray,
-) -> str:
-    """Return the SVG of points (n, 2), the greatest ``depth`` (n,) drawn last, and of colored lines over them.
+def _view(points: np.ndarray, kind: np.ndarray, box: np.ndarray, lines: list, colors: np.ndarray) -> str:
+    """Return the SVG of points (n, 2 or 3), the highest drawn last, and of lines (k, 2) over them, each with its color.
 
-    All are in meters within the box from ``low`` to ``high`` (2,).
+    All are in meters within a box (2, 2) of the first two axes; the last one is the height.
     """
+    low, high = box
     size = float(max((high - low) / (_WIDTH, _HEIGHT)))
     columns, rows = np.maximum(np.ceil((high - low) / size), 1).astype(int)
     image = np.zeros((rows, columns), np.uint8)
-    order = np.argsort(depth, kind="stable")
-    column, row = ((plan[order] - low) / size).astype(int).T
+    order = np.argsort(points[:, -1], kind="stable")
+    column, row = ((points[order, :2] - low) / size).astype(int).T
     for right, up in _DOT:
         image[np.clip(row + up, 0, rows - 1), np.clip(column + right, 0, columns - 1)] = 1 + kind[order]
     drawn = svg_image(image[::-1], colors, (0.0, 0.0, columns, rows))

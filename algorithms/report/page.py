@@ -169,12 +169,10 @@ def with_run(page: str, rows: Iterable[Row], steps: Iterable[StepFacts], of_seco
 def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
     """Return the HTML of a table under its heading; the first column names the rows, the others hold numbers."""
     names = "".join(f'<th scope="col">{html.escape(name)}</th>' for name in head)
-    lines = [
-        f'<tr><th scope="row">{html.escape(row[0])}</th>'
-        + "".join(f'<td class="number">{html.escape(value)}</td>' for value in row[1:])
-        + "</tr>"
-        for row in rows
-    ]
+    lines = []
+    for name, *values in rows:
+        cells = "".join(f'<td class="number">{html.escape(value)}</td>' for value in values)
+        lines.append(f'<tr><th scope="row">{html.escape(name)}</th>{cells}</tr>')
     return f"<h2>{html.escape(title)}</h2>\n<table>\n<tr>{names}</tr>\n" + "\n".join(lines) + "\n</table>\n"
 
 
@@ -256,9 +254,7 @@ class StepFacts:
 
 def _draw_steps(steps: list[StepFacts], of_seconds: str) -> str:
     """Return the HTML of the steps with their seconds, then of the parameters of each."""
-    times = [
-        Row(step.title, f"{step.seconds:.1f} s", " ".join(_sentence(note) for note in step.notes)) for step in steps
-    ]
+    times = [Row(step.title, f"{step.seconds:.1f} s", " ".join(map(_sentence, step.notes))) for step in steps]
     times.append(Row("All steps", f"{sum(step.seconds for step in steps):.1f} s", of_seconds))
     set_up = [f"<div>{draw_rows(step.title, step.parameters, 3)}</div>" for step in steps if step.parameters]
     parts = [draw_rows("Steps", times), "<h2>Parameters</h2>", '<div class="parameters">', *set_up, "</div>"]

@@ -119,11 +119,11 @@ class BlockResult:
     def edges(cls, path: Path) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Return the records inside and beside the edges from a file of :meth:`write`."""
         with np.load(path, allow_pickle=False) as stored:
-            kinds = [
+            inside, beside = (
                 {key.partition(".")[2]: stored[key] for key in stored.files if key.startswith(f"{kind}.")}
                 for kind in ("inside", "beside")
-            ]
-        return kinds[0], kinds[1]
+            )
+        return inside, beside
 
     @classmethod
     def items_of(cls, path: Path, kind: str) -> list[tuple[str, dict[str, Any]]]:

@@ -171,9 +171,8 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     point, stays = _result_points(window, made)
     values = _written(pipeline, made, point, task.survey.origin)
     core = inside(positions, task.block.box)
-    result = BlockResult(
-        window.source[core], window.position[core], stays[core] if made.selected is not None else stays[:0]
-    )
+    left = stays[core] if made.selected is not None else stays[:0]
+    result = BlockResult(window.source[core], window.position[core], left)
     result.dimensions = {name: of_all[core] for name, of_all in values.items()}
     _number(result, window, values, stays, positions, task.block)
     cuts = _keep_layers(result, pipeline, made, task, box)

@@ -94,9 +94,8 @@ def run_in_windows(
     given = given_layers(stage.name, stage.input_layers, layers)
     chosen, sampling = stage.check(tunables), _sampling(stage, surveys[0], monitor.part(0.0, 0.1))
     side, part = side_of_blocks(sampling.density, stage.reach_of(chosen)), monitor.part(0.1, 1.0)
-    return stage.unpack(
-        stage.windowed(partial(_points, surveys), side, **given, **chosen, sampling=sampling, monitor=part)
-    )
+    made = stage.windowed(partial(_points, surveys), side, **given, **chosen, sampling=sampling, monitor=part)
+    return stage.unpack(made)
 
 
 def _sampling(stage: Stage, survey: Survey, monitor: Monitor, layers: Any = None) -> CloudSampling:

@@ -78,11 +78,8 @@ def feature_numbers(pipeline: Pipeline, results: list[BlockResult]) -> dict[str,
     for name, layer in layers_of(pipeline).items():
         if layer.numbers:
             before = found.get(layer.numbers, [_NO_NUMBERS] * len(results))
-            own = [
-                np.asarray(one.layers[name].columns[_ID], np.int64) if name in one.layers else _NO_NUMBERS
-                for one in results
-            ]
-            found[layer.numbers] = [np.union1d(*both) for both in zip(before, own)]
+            own = [one.layers[name].columns[_ID] if name in one.layers else _NO_NUMBERS for one in results]
+            found[layer.numbers] = [np.union1d(one, np.asarray(ids, np.int64)) for one, ids in zip(before, own)]
     return found
 
 

@@ -170,10 +170,10 @@ class _Run:
 
     def _join(self, blocks: WorkedOn, outcome: TilesOutcome) -> dict[str, np.ndarray]:
         """Give objects that go on in the next block one number, and join layers; return the features kept of each."""
-        of_features = feature_numbers(self.settings.pipeline, blocks.found)
-        paths = [path for _, path in blocks.done]
+        found, paths = blocks.found, [path for _, path in blocks.done]
+        of_features = feature_numbers(self.settings.pipeline, found)
         blocks.numbers[:] = join_numbers(
-            blocks.done_blocks, blocks.found, lambda at: BlockResult.edges(paths[at]), of_features
+            blocks.done_blocks, found, lambda at: BlockResult.edges(paths[at]), of_features
         )
         outcome.layers, kept = self._layers(blocks, self.monitor.part(WORKED, JOINED))
         return kept
@@ -206,8 +206,7 @@ class _Run:
             pieces.mkdir()
             parts = self.monitor.part(SAMPLED, CUT).parts(len(large))
             for source, stem, part in zip(large, unique_stems(large), parts):
-                alone = self._opened([source.path])
-                cut_into_tiles(alone, side, pieces, stem, False, part)
+                cut_into_tiles(self._opened([source.path]), side, pieces, stem, False, part)
             (pieces / key).touch()
         rest = [source.path for source in self.survey.sources if source not in large]
         whole, paths = self.survey, [*rest, *sorted(pieces.glob(f"*{LAS}"))]
@@ -235,13 +234,11 @@ class _Run:
         blocks = blocks_of(self.survey, plan.side)
         tasks = [self._task(block, plan) for block in blocks]
         counts = [source.header.count for source in self.survey.sources]
-        known = {
-            number: task.result for number, task in enumerate(tasks) if BlockResult.is_complete(task.result, counts)
-        }
+        is_done = [BlockResult.is_complete(task.result, counts) for task in tasks]
+        known = {number: tasks[number].result for number in np.flatnonzero(is_done).tolist()}
         if known:
-            self.monitor.inform(
-                f"{len(known)} of {len(blocks)} blocks were worked on before and are taken as they are."
-            )
+            of_all = f"{len(known)} of {len(blocks)} blocks"
+            self.monitor.inform(f"{of_all} were worked on before and are taken as they are.")
         todo = [number for number in range(len(blocks)) if number not in known]
         log_block = self._block_log(len(todo), self.survey.expected * len(todo) / max(1, len(blocks)))
         wanted, part = [tasks[number] for number in todo], self.monitor.part(CUT, WORKED)
@@ -256,19 +253,12 @@ class _Run:
         settings, halo, samplings = self.settings, plan.halo, plan.samplings
         around = block.box + MOST_HALOS * halo * np.array([[-1], [1]])
         near, layers = self.survey.near(around), self._layers_in(around)
-        # Results identify files by their numbers, which change when a file is added or taken away.
-        key = self._key(
-            (self.survey.sources[one] for one in near),
-            near,
-            block.name,
-            block.side,
-            halo,
-            {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()},
-            str((self.survey.extent, self.survey.header.spacing)),
-            str(self.survey.crs),
-            [{part: of.tolist() for part, of in flat(one).items()} for one in layers.values() if one],
-        )
         part = replace(self.survey, sources=tuple(self.survey.sources[one] for one in near))
+        read = str((part.extent, part.header.spacing)), str(part.crs)
+        measured = {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()}
+        given = [{part: of.tolist() for part, of in flat(one).items()} for one in layers.values() if one]
+        # Results identify files by their numbers, which change when a file is added or taken away.
+        key = self._key(part.sources, near, block.name, block.side, halo, measured, *read, given)
         result = settings.work / f"block-{block.name}-{key}.npz"
         tunables = tunables_of(in_blocks(settings.pipeline), settings.tunables)
         run = settings.pipeline.name, settings.steps, tunables, samplings, layers, halo
@@ -316,16 +306,9 @@ class _Run:
                 column, of = owner[name]
                 layers[name] = join_belonging(of_blocks, clusters, column, kept[of])
                 continue
-            layers[name], kept[name] = join_features(
-                blocks.done_blocks,
-                of_blocks,
-                clusters,
-                self.survey.origin,
-                part,
-                declared[name],
-                references.get(declared[name].numbers),
-                [result.pieces.get(name, np.zeros(0, bool)) for result in found] if declared[name].whole else None,
-            )
+            layer, where = declared[name], (blocks.done_blocks, of_blocks, clusters, self.survey.origin)
+            pieces = [result.pieces.get(name, np.zeros(0, bool)) for result in found] if layer.whole else None
+            layers[name], kept[name] = join_features(*where, part, layer, references.get(layer.numbers), pieces)
         for dimension, of_features in references.items():
             refer_to_features(numbers, dimension, of_features.known)
         return {name: layers[name] for name in names}, kept

@@ -1,7 +1,6 @@
 """Settings of a run in tiles besides the parameters of the composite: titles and help for dialog and pages."""
 
 import html
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -18,7 +17,7 @@ class Setting:
         return f"<b>{html.escape(self.title)}</b> ({self.name}): {html.escape(self.help)}"
 
 
-def by_name(settings: Iterable[Setting]) -> dict[str, Setting]:
+def by_name(*settings: Setting) -> dict[str, Setting]:
     """Return settings by their names."""
     return {setting.name: setting for setting in settings}
 
@@ -39,55 +38,52 @@ _SPACING = Setting(
 _COMPRESSED = Setting("COMPRESSED", "Write LAZ", "Tiles are compressed (.laz); otherwise they are .las files.")
 
 # Of a cloud that is read as a whole.
-READ_SETTINGS = by_name((_EXTENT, _SPACING))
+READ_SETTINGS = by_name(_EXTENT, _SPACING)
 
 # Of a composite in tiles.
 SETTINGS = by_name(
-    (
-        _INPUT,
-        _EXTENT,
-        _SPACING,
-        Setting(
-            "CRS",
-            "Coordinate reference system",
-            "For clouds whose files name none, and for their results. Clouds that name one keep it.",
-        ),
-        Setting(
-            "BLOCK_SIDE",
-            "Side of a block (m, empty = automatic)",
-            "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
-            "the largest multiple of 10 m, from 100 to 1600 m, at which a block and the margin read around it hold at "
-            "most 5.3 million points. In dense clouds it is at least 1.25 times the margin, at most 100 m.",
-        ),
-        Setting(
-            "PROCESSES",
-            "Processes (empty = one for each core)",
-            "How many blocks are worked on at once; each takes about 2 GB of memory. Empty: one for each core, no more "
-            "than have room in three quarters of the memory.",
-        ),
-        Setting(
-            "SCHEDULER",
-            "Address of a Dask scheduler",
-            "For example tcp://head-node:8786 or tls://head-node:8786; empty: processes of this machine. The workers "
-            "must see the input and the output folder under the same paths.",
-        ),
-        Setting(
-            "CERTIFICATES",
-            "Certificates for tls",
-            "Three files of PEM, with semicolons between: certificate authority; certificate; key.",
-        ),
-        _COMPRESSED,
-        Setting(
-            "LOAD",
-            "Show the tiles on the map",
-            "Each tile is written as COPC too, into a folder 'shown' among the tiles, and a virtual point cloud over "
-            "these is loaded: QGIS shows the points of no other tiles. It takes as much space again. Without effect on "
-            "the command line.",
-        ),
-    )
+    _INPUT,
+    _EXTENT,
+    _SPACING,
+    Setting(
+        "CRS",
+        "Coordinate reference system",
+        "For clouds whose files name none, and for their results. Clouds that name one keep it.",
+    ),
+    Setting(
+        "BLOCK_SIDE",
+        "Side of a block (m, empty = automatic)",
+        "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
+        "the largest multiple of 10 m, from 100 to 1600 m, at which a block and the margin read around it hold at "
+        "most 5.3 million points. In dense clouds it is at least 1.25 times the margin, at most 100 m.",
+    ),
+    Setting(
+        "PROCESSES",
+        "Processes (empty = one for each core)",
+        "How many blocks are worked on at once; each takes about 2 GB of memory. Empty: one for each core, no more "
+        "than have room in three quarters of the memory.",
+    ),
+    Setting(
+        "SCHEDULER",
+        "Address of a Dask scheduler",
+        "For example tcp://head-node:8786 or tls://head-node:8786; empty: processes of this machine. The workers "
+        "must see the input and the output folder under the same paths.",
+    ),
+    Setting(
+        "CERTIFICATES",
+        "Certificates for tls",
+        "Three files of PEM, with semicolons between: certificate authority; certificate; key.",
+    ),
+    _COMPRESSED,
+    Setting(
+        "LOAD",
+        "Show the tiles on the map",
+        "Each tile is written as COPC too, into a folder 'shown' among the tiles, and a virtual point cloud over "
+        "these is loaded: QGIS shows the points of no other tiles. It takes as much space again. Without effect on "
+        "the command line.",
+    ),
 )
 
 # Of the tool that cuts.
-CUT_SETTINGS = by_name(
-    (_INPUT, Setting("SIDE", "Side of a tile (m)", "Tiles are squares of this side."), _EXTENT, _COMPRESSED)
-)
+_SIDE = Setting("SIDE", "Side of a tile (m)", "Tiles are squares of this side.")
+CUT_SETTINGS = by_name(_INPUT, _SIDE, _EXTENT, _COMPRESSED)

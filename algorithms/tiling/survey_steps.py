@@ -66,12 +66,8 @@ class SurveySteps:
 
     def _layers_of(self, step: Step, given: dict[str, Optional[LayerFeatures]]) -> dict[str, Optional[LayerFeatures]]:
         """Return the layers that a step reads, by the names that it gives them."""
-        return {
-            one.name: self.outcome.layers[self._names[made_by(step.layers[one.name])]]
-            if one.name in step.layers
-            else given.get(one.name)
-            for one in step.stage.input_layers
-        }
+        made = {name: self.outcome.layers[self._names[made_by(earlier)]] for name, earlier in step.layers.items()}
+        return {one.name: made.get(one.name, given.get(one.name)) for one in step.stage.input_layers}
 
     def _shown(self, view: Optional[View]) -> Optional[Cloud]:
         """Return the points that the tiles have kept, None without any."""

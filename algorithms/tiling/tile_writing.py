@@ -102,9 +102,8 @@ class TileWriter:
             outcome.points = in_files
         accounted = in_files + sum(tile.left_out for tile in written)
         if survey.is_whole and not outcome.failures and accounted != len(survey):
-            outcome.failures.append(
-                f"The tiles account for {accounted:,} of the {len(survey):,} points read; do not use them."
-            )
+            found = f"{accounted:,} of the {len(survey):,} points read"
+            outcome.failures.append(f"The tiles account for {found}; do not use them.")
 
     def _final_numbers(self, blocks: WorkedOn) -> list[Path]:
         """Write what the numbers of each block become; return the files."""

@@ -41,6 +41,7 @@ class TiledPipeline:
     """A composite that is run in tiles."""
 
     pipeline: Pipeline
+    group = "Models in tiles"  #: of the toolbox
 
     @property
     def name(self) -> str:
@@ -56,11 +57,6 @@ class TiledPipeline:
     def title(self) -> str:
         """Its name for users."""
         return f"{self.pipeline.title}, in tiles"
-
-    @property
-    def group(self) -> str:
-        """The group of the toolbox for the composites in tiles."""
-        return "Models in tiles"
 
     @property
     def tags(self) -> str:
@@ -80,10 +76,9 @@ class TiledPipeline:
     @property
     def outputs(self) -> list[Output]:
         """The outputs besides the tiles: layers, rasters, text files, and the report."""
-        made = [
-            one for kind in (Layer, Raster, TextFile) for one in self.pipeline.outputs if isinstance(one.declared, kind)
-        ]
-        return [*made, *([self.report] if self.report else [])]
+        kinds, made = (Layer, Raster, TextFile), self.pipeline.outputs
+        shown = [one for kind in kinds for one in made if isinstance(one.declared, kind)]
+        return [*shown, *([self.report] if self.report else [])]
 
     @property
     def report(self) -> Optional[Output]:

@@ -96,9 +96,8 @@ class Workers:
         security = None
         if self.certificates:
             authority, certificate, key = self.certificates
-            security = distributed.Security(
-                tls_ca_file=authority, tls_client_cert=certificate, tls_client_key=key, require_encryption=True
-            )
+            files = {"tls_ca_file": authority, "tls_client_cert": certificate, "tls_client_key": key}
+            security = distributed.Security(**files, require_encryption=True)
         try:
             client = distributed.Client(self.scheduler, timeout=ANSWER, security=security, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
