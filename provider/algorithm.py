@@ -154,9 +154,7 @@ class CheckedAlgorithm:
             self._made = make_in_main_thread(self.systems())
         return super().prepareAlgorithm(self.completed(parameters), context, feedback)  # type: ignore[misc]
 
-    def postProcessAlgorithm(  # noqa: N802
-        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> dict:
+    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
         """Make the CRS of results last."""
         renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
         return {}

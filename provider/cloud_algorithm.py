@@ -29,13 +29,7 @@ from .destinations import Made
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .given import Given
-from .input_layers import (
-    find_input_layers,
-    input_layer_files,
-    input_layer_parameter,
-    read_input_layers,
-    refuse_elsewhere,
-)
+from .input_layers import find_input_layers, input_layer_parameter, layer_files, read_input_layers, refuse_elsewhere
 from .inputs import CRS, INPUT, REFERENCE
 from .layer_outputs import write_layer, write_text
 from .memory_needs import warn_if_memory_is_short
@@ -176,7 +170,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         if job.clouds:
             crs = read_extent(job.clouds[0], crs_reader(job.crs), NOWHERE)[2]
             job.box, job.spacing = inputs.extent_box(given, crs.plane), inputs.given_spacing(given, crs.factors)
-        read = [*files_read(job.paths), *input_layer_files(given, layers)]
+        read = [*files_read(job.paths), *layer_files(given, layers)]
         check_targets(self.destinationParameterDefinitions(), given.parameters, read, job.clouds)
         # A cloud that is classified anew may well be assessed by the classes that it had.
         if job.reference and (declared.needs_reference or all(made.declared != CLOUD for made in self.made)):

@@ -12,15 +12,7 @@ import numpy as np
 from osgeo import gdal, osr
 from qgis.core import QgsCoordinateReferenceSystem
 
-from ..algorithms.cloud.authority import (
-    SAME_PLANE,
-    Area,
-    Definition,
-    identity_of,
-    nameless,
-    use_authority,
-    without_code,
-)
+from ..algorithms.cloud import authority
 from ..algorithms.cloud.crs import CrsReader, read_crs
 from .memory_files import gdal_errors, memory_folder
 
@@ -49,7 +41,7 @@ class _Gdal:
     """Systems by GDAL."""
 
     @lru_cache(maxsize=256)  # noqa: B019 - there is one for the life of the process
-    def define(self, text: str, keys: tuple[tuple[int, bytes], ...] = ()) -> Optional[Definition]:
+    def define(self, text: str, keys: tuple[tuple[int, bytes], ...] = ()) -> Optional[authority.Definition]:
         # As texts, which outlive the thread.
         try:
             with gdal_errors():
@@ -58,7 +50,7 @@ class _Gdal:
         except RuntimeError:
             return None
 
-    def to_radians(self, plane: str, positions: np.ndarray) -> tuple[np.ndarray, Optional[Area]]:
+    def to_radians(self, plane: str, positions: np.ndarray) -> tuple[np.ndarray, Optional[authority.Area]]:
         nowhere = np.full(np.shape(positions), np.inf)
         with gdal_errors():
             system = _system(plane)
@@ -66,7 +58,7 @@ class _Gdal:
                 return nowhere, None
             found = system.GetAreaOfUse()
             corners = "west_lon_degree", "south_lat_degree", "east_lon_degree", "north_lat_degree"
-            area = Area(*(getattr(found, corner) for corner in corners)) if found else None
+            area = authority.Area(*(getattr(found, corner) for corner in corners)) if found else None
             on_ellipsoid = system.CloneGeogCS()
             for one in (system, on_ellipsoid):
                 one.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
@@ -80,7 +72,7 @@ class _Gdal:
 
 
 GDAL = _Gdal()
-use_authority(GDAL)
+authority.use_authority(GDAL)
 
 
 def _system(text: str) -> osr.SpatialReference:
@@ -93,24 +85,24 @@ def _system(text: str) -> osr.SpatialReference:
     return system
 
 
-def _definition(whole: osr.SpatialReference) -> Definition:
+def _definition(whole: osr.SpatialReference) -> authority.Definition:
     system = whole.Clone()
     if system.IsCompound():
         system.StripVertical()
     system.DemoteTo2D()
     if not (system.IsProjected() or system.IsLocal()):
-        return Definition(_written(whole), "", _code(whole), "")
+        return authority.Definition(_written(whole), "", _code(whole), "")
     own, wkt = _code(system), system.ExportToWkt(_WKT2)
-    bare = _system(nameless(wkt))
+    bare = _system(authority.nameless(wkt))
     found = [one.GetAuthorityCode(None) for one in _same(bare) if one.GetAuthorityName(None) == "EPSG"]
-    identity = identity_of(found, system.ExportToProj4() if system.IsProjected() else wkt)
+    identity = authority.identity_of(found, system.ExportToProj4() if system.IsProjected() else wkt)
     own = own or (identity if identity.startswith("EPSG:") else "")
-    return Definition(_written(whole), own or without_code(wkt), _code(whole) or own, identity)
+    return authority.Definition(_written(whole), own or authority.without_code(wkt), _code(whole) or own, identity)
 
 
 def _same(system: osr.SpatialReference) -> list[osr.SpatialReference]:
     """Return the systems of the database that are the same."""
-    return [one for one, confidence in system.FindMatches() if confidence >= SAME_PLANE]
+    return [one for one, confidence in system.FindMatches() if confidence >= authority.SAME_PLANE]
 
 
 def _code(system: osr.SpatialReference) -> str:
@@ -127,7 +119,7 @@ def _written(whole: osr.SpatialReference) -> str:
     except RuntimeError:
         wkt = whole.ExportToWkt(_WKT2)
     stated = whole.GetAuthorityCode(None)
-    return without_code(wkt) if stated and not _code(whole).endswith(f":{stated}") else wkt
+    return authority.without_code(wkt) if stated and not _code(whole).endswith(f":{stated}") else wkt
 
 
 def _of_keys(keys: tuple[tuple[int, bytes], ...]) -> Optional[osr.SpatialReference]:

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from processing.gui.wrappers import DIALOG_BATCH, WidgetWrapper
-from qgis.core import QgsMapLayer, QgsPointCloudLayer, QgsProject, QgsSettings
+from qgis.core import QgsPointCloudLayer, QgsProject, QgsSettings
 from qgis.PyQt import QtWidgets
 
 from .clouds import FILTER, names_of
@@ -74,14 +74,10 @@ class FileList(QtWidgets.QWidget):
 
     def _fill_menu(self) -> None:
         self.layers.menu().clear()
-        for layer in clouds_of_project():
-            action = self.layers.menu().addAction(layer.name())
-            action.triggered.connect(lambda _, layer=layer: self.add([layer.source()]))
-
-
-def clouds_of_project() -> list[QgsMapLayer]:
-    """Return the layers of the project that are point clouds."""
-    return [one for one in QgsProject.instance().mapLayers().values() if isinstance(one, QgsPointCloudLayer)]
+        for layer in QgsProject.instance().mapLayers().values():
+            if isinstance(layer, QgsPointCloudLayer):
+                action = self.layers.menu().addAction(layer.name())
+                action.triggered.connect(lambda _, layer=layer: self.add([layer.source()]))
 
 
 class FilesWrapper(WidgetWrapper):

@@ -117,7 +117,7 @@ def find_input_layers(given: Given, wanted: Iterable[InputLayer]) -> list[GivenL
     return [GivenLayer(one, layer, given.context) for one, layer in found if layer is not None]
 
 
-def input_layer_files(given: Given, found: Iterable[GivenLayer]) -> list[Path]:
+def layer_files(given: Given, found: Iterable[GivenLayer]) -> list[Path]:
     """Return the files of the layers that were found, if they have one."""
     files = []
     for one in found:

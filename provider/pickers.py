@@ -32,16 +32,12 @@ class Picker(QWidget):
         self.fill(self.menu, self.field)
 
 
-def class_name(one: PointClass) -> str:
-    """Return number and name of a class, "6 Building"."""
-    return f"{int(one)} {one.name.replace('_', ' ').capitalize()}"
-
-
 def fill_with_classes(menu: QMenu, field: QLineEdit) -> None:
     """Fill a menu with all classes; those that the field names are checked, and a click adds one or takes it away."""
     chosen = chosen_classes(field.text())
     for one in PointClass:
-        action = menu.addAction(class_name(one))
+        # Number and name of the class: "6 Building".
+        action = menu.addAction(f"{int(one)} {one.name.replace('_', ' ').capitalize()}")
         action.setCheckable(True)
         action.setChecked(int(one) in chosen)
         action.toggled.connect(lambda is_on, one=int(one): field.setText(with_class(field.text(), one, is_on)))

@@ -71,12 +71,7 @@ def parameter_rows(stage: Stage, given: dict[str, Any], used: dict[str, Any]) ->
             how = "default" if value == tunable.default else f"set; default: {written(tunable, tunable.default)}"
             rows.append(Row(tunable.label, written(tunable, value), how))
     others = {name: value for name, value in used.items() if name not in stage.tunables and np.isscalar(value)}
-    return rows + [Row(title_of(name), _short(value), "found") for name, value in others.items()]
-
-
-def title_of(name: str) -> str:
-    """Return what a value that is no tunable is called."""
-    return name.replace("_", " ").capitalize()
+    return rows + [Row(name.replace("_", " ").capitalize(), _short(value), "found") for name, value in others.items()]
 
 
 def _short(value: Any) -> str:

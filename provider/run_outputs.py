@@ -20,18 +20,11 @@ from qgis.core import (
 )
 
 from ..algorithms import packages
+from ..algorithms.cloud import outputs
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.copc_sidecar import check_copc_beside, copc_path
 from ..algorithms.cloud.files import check_compression, write_cloud
-from ..algorithms.cloud.outputs import (
-    COPC,
-    ResultFiles,
-    all_or_nothing,
-    check_output,
-    check_place,
-    kind_of,
-    os_errors_as_messages,
-)
+from ..algorithms.cloud.outputs import COPC, ResultFiles, kind_of
 from ..algorithms.stage import Monitor
 from .clouds import reads_las
 from .errors import sentence_of
@@ -118,7 +111,7 @@ def check_targets(definitions: list, parameters: dict, inputs: list, clouds: Seq
         if path is None:
             _check_database(value)
             continue
-        with os_errors_as_messages(path):
+        with outputs.os_errors_as_messages(path):
             for file in files_of(definition, value):
                 other = seen.setdefault(file.resolve(), definition.name())
                 if other != definition.name():
@@ -133,14 +126,14 @@ def _check_database(value: Any) -> None:
     plain = _plain(value)
     table = _TABLE_IN_FILE.match(plain) if isinstance(plain, str) else None
     if table is not None:
-        with os_errors_as_messages(Path(table[1])):
+        with outputs.os_errors_as_messages(Path(table[1])):
             _check_file(Path(table[1]))
 
 
 def _check_target(definition, path: Path, inputs: list) -> None:
     """Refuse a file that an output can't be written to, by its extension, its folder and the inputs."""
     if _is_cloud(definition):
-        check_output(path, inputs)
+        outputs.check_output(path, inputs)
         # The last step of a model reads the output of the step before, so it can't know the model's input.
         if kind_of(path) != COPC:
             check_copc_beside(path, inputs)
@@ -151,7 +144,7 @@ def _check_target(definition, path: Path, inputs: list) -> None:
     else:
         _check_ending(definition, path)
     for file in files_of(definition, str(path)):
-        check_place(file, inputs)
+        outputs.check_place(file, inputs)
     _check_file(path)
 
 
@@ -166,7 +159,7 @@ def _check_ending(definition, path: Path) -> None:
 
 def _check_file(path: Path) -> None:
     """Refuse a file that can't be written where it is to be, because of its folder or because the disk is full."""
-    check_place(path)
+    outputs.check_place(path)
     folder = path.absolute().parent
     if path.exists() and not path.is_file():
         raise ValueError(f"{path} is a device, not a file; choose another name.")
@@ -236,7 +229,7 @@ def all_in_place(
     ValueError, QgsProcessingException
         As the block does, or if a target can't be replaced; nothing was written then.
     """
-    with all_or_nothing() as files:
+    with outputs.all_or_nothing() as files:
         run = Run(definitions, parameters, context, files)
         try:
             yield run

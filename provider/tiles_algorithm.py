@@ -39,7 +39,7 @@ from .destinations import Made
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .given import Given
-from .input_layers import GivenLayer, find_input_layers, input_layer_files, input_layer_parameter, read_input_layers
+from .input_layers import GivenLayer, find_input_layers, input_layer_parameter, layer_files, read_input_layers
 from .inputs import INPUT, OUTPUT, REPORT
 from .layer_outputs import write_layer, write_text
 from .models import pipeline_parameters
@@ -115,7 +115,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         check_sizes(self.paths, self.extent, self.spacing)
         self.workers, self.wanted = _workers(given), tuple(made.key for made in self.made if given.has(made.name))
         self.sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
-        check_targets(self.sinks, parameters, [*files, *input_layer_files(given, self._given_layers(given))])
+        check_targets(self.sinks, parameters, [*files, *layer_files(given, self._given_layers(given))])
 
     def _given_layers(self, given: Given) -> list[GivenLayer]:
         """Return the layers that the composite is given."""

@@ -76,7 +76,9 @@ def run_in_tiles(
         a tunable is unknown.
     """
     monitor, options, folder = monitor or Monitor(), options or TilesOptions(), Path(folder)
-    check_can_be_tiled(pipeline)
+    why = why_whole(pipeline)
+    if why:
+        raise ValueError(f"{pipeline.title} can't be run in tiles: {why}; run it on each tile by itself.")
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
     given = [file_at(path) for path in paths]
@@ -85,19 +87,6 @@ def run_in_tiles(
         writing_backend(survey.header.layout.point_format)
     with tiles_folder(folder, [*files_of_survey(given), *given]), work_folder(folder, monitor.warn) as work:
         return _Run(RunSettings(pipeline, folder, work, monitor, options, tunables), survey).all()
-
-
-def check_can_be_tiled(pipeline: Pipeline) -> None:
-    """Refuse a composite whose points or steps can't be put together from parts.
-
-    Raises
-    ------
-    ValueError
-        With the step that can't be run in tiles, and why.
-    """
-    why = why_whole(pipeline)
-    if why:
-        raise ValueError(f"{pipeline.title} can't be run in tiles: {why}; run it on each tile by itself.")
 
 
 class _Plan(NamedTuple):
