@@ -416,8 +416,8 @@ def run_pipeline(
             if step.name in kept and outcome.cloud is not None:
                 copies[step.name] = outcome.cloud.copy()
     _log(of_run.own, monitor)
-    results = _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
-    results.selected = _selected_by_all(outcomes.values())
+    results = Results(current if isinstance(current, Cloud) else None, selected=_selected_by_all(outcomes.values()))
+    _add_results(results, pipeline, outcomes, copies)
     return results
 
 
@@ -440,10 +440,8 @@ def _layer(
     return outcomes[earlier].layers[layer]
 
 
-def _results(
-    pipeline: Pipeline, outcomes: dict[str, Outcome], copies: dict[str, Cloud], cloud: Optional[Cloud]
-) -> Results:
-    results = Results(cloud)
+def _add_results(results: Results, pipeline: Pipeline, outcomes: dict[str, Outcome], copies: dict[str, Cloud]) -> None:
+    """Add what the steps have made, and the clouds that are kept, by the names of the composite."""
     for output in pipeline.outputs:
         outcome = outcomes.get(output.step.name, Outcome(None))
         if output.of in outcome.layers:
@@ -456,4 +454,3 @@ def _results(
             results.report = results.reports[output.name] = outcome.report
         elif output.name != CLOUD and output.step.name in copies:
             results.clouds[output.name] = copies[output.step.name]
-    return results

@@ -27,7 +27,7 @@ from .clouds import cloud_path, files_read
 from .crs_authority import crs_reader, text_of
 from .destinations import Made
 from .errors import as_processing_errors
-from .feedback import FeedbackMonitor, warn_unknown_parameters
+from .feedback import FeedbackMonitor, warn_unknown_names
 from .given import Given
 from .input_layers import find_input_layers, input_layer_parameter, layer_files, read_input_layers, refuse_elsewhere
 from .inputs import CRS, INPUT, REFERENCE
@@ -40,7 +40,7 @@ from .rasters import write_raster
 from .run_log import RunLog, about_run, write_page
 from .run_outputs import all_in_place, check_targets, write_for_qgis
 from .styles import Styler, cloud_style, layer_style, show_on_load
-from .web import check_sizes, tell_sizes
+from .web import check_sizes, log_size
 
 
 @dataclass
@@ -187,7 +187,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     ) -> dict:
         """Read, compute, write; all or nothing. What was cancelled has no results."""
         self.alone = not is_step(feedback)
-        warn_unknown_parameters(self, parameters, feedback)
+        warn_unknown_names(self, parameters, feedback)
         definitions = self.destinationParameterDefinitions()
         subject = inputs.subject_of(self.job.paths, self.job.layer, feedback)
         title = self.displayName() if self.alone else ""
@@ -218,7 +218,7 @@ class CloudAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         job = self.job
         # Before reading: a process that runs out of memory is ended without a message.
         warn_if_memory_is_short(job.points, monitor)
-        tell_sizes(job.paths, job.box, job.spacing, monitor)
+        log_size(job.paths, job.box, job.spacing, monitor)
         clouds = read_clouds(job.paths, monitor.parts(len(job.paths)), job.crs, job.box, job.spacing)
         reference = clouds.pop() if job.reference else None
         found = find_input_layers(given, self.layers)

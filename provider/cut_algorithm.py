@@ -24,7 +24,7 @@ from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .algorithm import CheckedAlgorithm
 from .clouds import CloudsParameter, survey_paths
 from .errors import as_processing_errors
-from .feedback import FeedbackMonitor, warn_unknown_parameters
+from .feedback import FeedbackMonitor, warn_unknown_names
 from .given import Given
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
 from .qgis_crs import WGS84
@@ -79,7 +79,7 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
         """Cut; then write the virtual point cloud."""
-        warn_unknown_parameters(self, parameters, feedback)
+        warn_unknown_names(self, parameters, feedback)
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
         side = self.parameterAsDouble(parameters, SIDE, context)
         compressed = self.parameterAsBool(parameters, COMPRESSED, context)

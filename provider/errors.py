@@ -12,16 +12,14 @@ from ..algorithms.stages import less_memory
 from .caller import is_step, on_command_line
 from .feedback import ProgressBar
 
-_CANCELLED = "Cancelled; nothing was written."
+_STOPPED = "Cancelled; nothing was written."
 
 # Characters of a sentence about a file, whose path may have some thousand.
 _LONGEST = 1000
 
 
 @contextmanager
-def as_processing_errors(
-    feedback: Optional[QgsProcessingFeedback] = None, cancelled: str = _CANCELLED
-) -> Iterator[None]:
+def as_processing_errors(feedback: Optional[QgsProcessingFeedback] = None, cancelled: str = _STOPPED) -> Iterator[None]:
     """Turn the core's errors into Processing's, one sentence each.
 
     A run that was cancelled by its ``feedback`` ends with the message ``cancelled`` and no error. On the command line

@@ -236,9 +236,7 @@ def spoken_time(seconds: float) -> str:
     return f"{max(1, round(seconds))} s" if seconds < 90 else f"{round(seconds / 60)} min"
 
 
-def warn_unknown_parameters(
-    algorithm: QgsProcessingAlgorithm, parameters: dict, feedback: QgsProcessingFeedback
-) -> None:
+def warn_unknown_names(algorithm: QgsProcessingAlgorithm, parameters: dict, feedback: QgsProcessingFeedback) -> None:
     """Warn of names on the command line or in a script that are no parameters: QGIS ignores them silently."""
     known = {definition.name() for definition in algorithm.parameterDefinitions()}
     for name in sorted(set(parameters) - known):

@@ -11,11 +11,11 @@ from qgis.core import (
     QgsMapLayer,
     QgsProcessingFeedback,
     QgsProcessingParameterCrs,
-    QgsProcessingParameterDefinition,
     QgsProcessingParameterExtent,
     QgsProcessingParameterNumber,
     QgsProject,
 )
+from qgis.core import QgsProcessingParameterDefinition as Definition
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.stage import Declared, Stage
@@ -34,24 +34,20 @@ EXTENT, SPACING, CRS = "EXTENT", "SPACING", "CRS"
 SPACINGS = 0.001, 1000.0
 
 
-def with_help(definition: QgsProcessingParameterDefinition, text: str) -> QgsProcessingParameterDefinition:
+def with_help(definition: Definition, text: str) -> Definition:
     """Return the parameter with its tooltip."""
     definition.setHelp(text)
     return definition
 
 
-def with_setting(
-    definition: QgsProcessingParameterDefinition, settings: dict[str, Setting]
-) -> QgsProcessingParameterDefinition:
+def with_setting(definition: Definition, settings: dict[str, Setting]) -> Definition:
     """Return the parameter with title and tooltip of its setting."""
     setting = settings[definition.name()]
     definition.setDescription(setting.title)
     return with_help(definition, setting.help)
 
 
-def input_parameter(
-    several: bool, title: str = "Point cloud", is_needed: bool = True
-) -> QgsProcessingParameterDefinition:
+def input_parameter(several: bool, title: str = "Point cloud", is_needed: bool = True) -> Definition:
     """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
     if several:
         return with_help(CloudsParameter(INPUTS, "Point clouds"), "Files, layers or addresses on the web, one or more.")
@@ -59,7 +55,7 @@ def input_parameter(
     return with_help(CloudParameter(INPUT, title, optional=not is_needed), of_one)
 
 
-def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:
+def reference_parameter(stage: Stage) -> Definition:
     """Return the parameter of the second cloud that a stage reads."""
     definition = CloudParameter(REFERENCE, stage.reference_title, optional=not stage.needs_reference)
     return with_help(definition, f"File or layer. {stage.reference}")
@@ -70,12 +66,12 @@ def input_paths(given: Given, several: bool) -> list[Path]:
     return cloud_paths(given, INPUTS) if several else [cloud_path(given, INPUT)]
 
 
-def extent_parameter() -> QgsProcessingParameterDefinition:
+def extent_parameter() -> Definition:
     """Return the parameter of the part of the cloud that is worked on."""
     return with_setting(QgsProcessingParameterExtent(EXTENT, "", optional=True), READ_SETTINGS)
 
 
-def spacing_parameter() -> QgsProcessingParameterDefinition:
+def spacing_parameter() -> Definition:
     """Return the parameter of the level of detail of the cloud that is worked on."""
     number = Qgis.ProcessingNumberParameterType.Double
     definition = QgsProcessingParameterNumber(SPACING, "", number, None, True, *SPACINGS)
@@ -83,7 +79,7 @@ def spacing_parameter() -> QgsProcessingParameterDefinition:
     return with_setting(definition, READ_SETTINGS)
 
 
-def crs_parameter(default: Optional[str] = None) -> QgsProcessingParameterDefinition:
+def crs_parameter(default: Optional[str] = None) -> Definition:
     """Return the parameter of the coordinate reference system of clouds that name none."""
     definition = QgsProcessingParameterCrs(CRS, "Coordinate reference system", default, optional=True)
     definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)

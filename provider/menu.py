@@ -30,7 +30,7 @@ from .options import WEB_LIMIT
 from .paths import GROUP_ICONS, ICON, PLUGIN
 from .questions import is_answered_yes
 from .styles import WHEN_LOADED
-from .web import Size, agree_to, is_over_limit, size_on_web
+from .web import Size, agree_to, is_over_limit, web_size
 
 MENU = "LiDAR Buildings"
 
@@ -147,7 +147,7 @@ def _size_of_view(parameters: dict[str, Any]) -> Optional[Size]:
     if not is_on_web(path):
         return None
     plane = read_extent(path, crs_reader(QgsCoordinateReferenceSystem()), NOWHERE)[2].plane
-    return size_on_web([path], extent_box(given, plane))
+    return web_size([path], extent_box(given, plane))
 
 
 def view_parameters(iface: Any) -> dict[str, Any]:

@@ -157,11 +157,7 @@ def _first_taken(pipeline: Pipeline, step: Step) -> list[str]:
 
 
 def _add_parameters(
-    model: QgsProcessingModelAlgorithm,
-    pipeline: Pipeline,
-    step: Step,
-    definitions: dict[str, QgsProcessingParameterDefinition],
-    layout: _Layout,
+    model: QgsProcessingModelAlgorithm, pipeline: Pipeline, step: Step, definitions: dict, layout: _Layout
 ) -> None:
     """Add the parameters that a step is the first to take, laid out next to its box."""
     names = _first_taken(pipeline, step)
@@ -224,12 +220,10 @@ def _from_child(step_name: str, output: str) -> QgsProcessingModelChildParameter
     return QgsProcessingModelChildParameterSource.fromChildOutput(step_name, output.upper())
 
 
-def _model_outputs(
-    pipeline: Pipeline, outputs_of_step: list[Output], middle: QPointF
-) -> dict[str, QgsProcessingModelOutput]:
+def _model_outputs(pipeline: Pipeline, of_step: list[Output], middle: QPointF) -> dict[str, QgsProcessingModelOutput]:
     """Return what the model shows of a step, laid out to the right of its box."""
     outputs = {}
-    for i, made in enumerate(outputs_of_step):
+    for i, made in enumerate(of_step):
         shown = output_title(pipeline, made)
         # QGIS gives a layer that it loads the name of the model's output.
         output = QgsProcessingModelOutput(shown)
@@ -237,7 +231,7 @@ def _model_outputs(
         output.setChildOutputName(made.of.upper())
         output.setDescription(shown)
         output.setMandatory(pipeline.needs(made))
-        output.setPosition(QPointF(middle.x() + 360, middle.y() + 70 * (i - (len(outputs_of_step) - 1) / 2)))
+        output.setPosition(QPointF(middle.x() + 360, middle.y() + 70 * (i - (len(of_step) - 1) / 2)))
         output.setSize(QSizeF(240, 40))
         outputs[shown] = output
     return outputs

@@ -1,7 +1,6 @@
 """Where the local meters of a run are on the map."""
 
 from dataclasses import dataclass
-from typing import Callable
 
 import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
@@ -9,7 +8,7 @@ from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 from ..algorithms.cloud.cloud import Cloud, origin_before
 from ..algorithms.cloud.crs import NO_CRS
 from ..algorithms.stage import Monitor
-from .qgis_crs import crs_of, crs_of_layer, meters_per_unit
+from .qgis_crs import Conversion, crs_of, crs_of_layer, meters_per_unit
 
 
 @dataclass(frozen=True)
@@ -17,8 +16,8 @@ class Place:
     """A CRS, and how local meters become coordinates in it."""
 
     crs: QgsCoordinateReferenceSystem  #: The CRS of the map
-    to_map: Callable[[np.ndarray], np.ndarray]  #: Turns local meters (m, 2 or 3) into coordinates
-    from_map: Callable[[np.ndarray], np.ndarray]  #: Turns coordinates (m, 2 or 3) into local meters
+    to_map: Conversion  #: Turns local meters (m, 2 or 3) into coordinates
+    from_map: Conversion  #: Turns coordinates (m, 2 or 3) into local meters
     unit: float = 1.0  #: Meters per unit in plan
     code: str = ""  #: Code of the CRS with its heights, "" without one
 

@@ -21,6 +21,8 @@ from qgis.PyQt.QtCore import QThread
 from .crs_authority import text_of
 
 WGS84 = "EPSG:4326"
+# Turns positions (n, 2 or 3) of one system into those of another.
+Conversion = Callable[[np.ndarray], np.ndarray]
 _NO_LENGTHS = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
 
 
@@ -82,9 +84,7 @@ def renew_in_main_thread(layers: Iterable[QgsMapLayer]) -> None:
         layer.setCrs(crs_of(text))
 
 
-def to_degrees(
-    crs: QgsCoordinateReferenceSystem, context: QgsProcessingContext
-) -> Optional[Callable[[np.ndarray], np.ndarray]]:
+def to_degrees(crs: QgsCoordinateReferenceSystem, context: QgsProcessingContext) -> Optional[Conversion]:
     """Return what turns coordinates (n, 2) in a CRS into longitudes and latitudes; None for an invalid one."""
     change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(WGS84), context.transformContext())
 

@@ -23,7 +23,7 @@ from .parameters import automatic_numbers, number_outputs, parameter, tunable_va
 from .run_log import RunLog
 from .surveys import place_of_survey
 from .vectors import number
-from .web import tell_sizes
+from .web import log_size
 
 
 class StageAlgorithm(CloudAlgorithm):
@@ -68,7 +68,7 @@ class StageAlgorithm(CloudAlgorithm):
         in_parts = stage.each or (stage.windowed and len(found) == len(stage.input_layers))
         if not in_parts or job.points <= LARGEST:
             return super()._read(given, monitor)
-        tell_sizes(job.paths, job.box, job.spacing, monitor)
+        log_size(job.paths, job.box, job.spacing, monitor)
         surveys = self._surveys(monitor)
         place = place_of_survey(surveys[0])
         return Read([], None, read_input_layers(found, place, monitor), place, surveys)

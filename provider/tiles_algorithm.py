@@ -37,7 +37,7 @@ from .clouds import CloudsParameter, survey_paths
 from .crs_authority import crs_reader
 from .destinations import Made
 from .errors import as_processing_errors
-from .feedback import FeedbackMonitor, warn_unknown_parameters
+from .feedback import FeedbackMonitor, warn_unknown_names
 from .given import Given
 from .input_layers import GivenLayer, find_input_layers, input_layer_parameter, layer_files, read_input_layers
 from .inputs import INPUT, OUTPUT, REPORT
@@ -52,7 +52,7 @@ from .run_outputs import all_in_place, check_targets, target_path
 from .schedulers import check_scheduler
 from .styles import Styler, layer_style, show_on_load, style_of
 from .surveys import VPC, check_vpc, place_of_survey, write_survey
-from .web import check_sizes, tell_sizes
+from .web import check_sizes, log_size
 
 BLOCK_SIDE, PROCESSES, COMPRESSED, LOAD = "BLOCK_SIDE", "PROCESSES", "COMPRESSED", "LOAD"
 SCHEDULER, CERTIFICATES = "SCHEDULER", "CERTIFICATES"
@@ -129,7 +129,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
         """Run the survey; then write the layers. What failed is named at the end, and the run fails with it."""
-        warn_unknown_parameters(self, parameters, feedback)
+        warn_unknown_names(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback)
         is_asked = self.parameterAsBool(parameters, LOAD, context)
         self.shows = is_asked and context.project() is not None and not (is_step(feedback) or on_command_line())
@@ -145,25 +145,23 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 results[VPC] = str(write_survey(outcome.survey, outcome.tiles, folder, context, monitor))
                 results = run.final(results)
                 if self.shows and outcome.tiles:
-                    self._show(outcome, folder, context, monitor)
+                    self._show(outcome, folder, given, monitor)
             _refuse_failures(outcome, folder)
             monitor.progress(1.0)
             numbers = (len(outcome.tiles), outcome.blocks, outcome.points, len(outcome.failures))
             return {OUTPUT: str(folder), **results, **dict(zip(_NUMBERS, numbers))}
         return {}
 
-    def _show(
-        self, outcome: TilesOutcome, folder: Path, context: QgsProcessingContext, monitor: FeedbackMonitor
-    ) -> None:
+    def _show(self, outcome: TilesOutcome, folder: Path, given: Given, monitor: FeedbackMonitor) -> None:
         """Have QGIS load a virtual point cloud over the COPC files of the tiles."""
         files = [folder / SHOWN / f"{stem_of(tile)}{COPC}" for tile in outcome.tiles]
-        shown = str(write_survey(outcome.survey, files, folder / SHOWN, context, monitor))
+        shown = str(write_survey(outcome.survey, files, folder / SHOWN, given.context, monitor))
         title = inputs.cloud_title([step.stage for step in self.pipeline.steps if step.stage.makes_cloud])
         # Without the hint QGIS takes it for polygons in JSON.
         hint = QgsProcessingUtils.LayerHint.PointCloud
-        details = QgsProcessingContext.LayerDetails(title, context.project(), VPC, hint)
-        context.addLayerToLoadOnCompletion(shown, details)
-        show_on_load(context, shown, "Cloud", Styler(self._cloud_style(), crs=self.plane))
+        details = QgsProcessingContext.LayerDetails(title, given.context.project(), VPC, hint)
+        given.context.addLayerToLoadOnCompletion(shown, details)
+        show_on_load(given.context, shown, "Cloud", Styler(self._cloud_style(), crs=self.plane))
 
     def _subject(self, folder: Path) -> str:
         """Return what the layers are of: the folder of the tiles, or the input where that is temporary."""
@@ -178,7 +176,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def _run(self, folder: Path, given: Given, monitor: FeedbackMonitor, results: dict) -> TilesOutcome:
         """Run the survey, and write the rasters and text files that are wanted, which are added to the results."""
-        tell_sizes(self.paths, self.extent, self.spacing, monitor)
+        log_size(self.paths, self.extent, self.spacing, monitor)
         side = given.parameters.get(BLOCK_SIDE)
         declared = {made.key: made.declared for made in self.made if made.key in self.wanted}
 

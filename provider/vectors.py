@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 from qgis.core import (
@@ -25,6 +25,7 @@ from qgis.PyQt.QtCore import QMetaType
 
 from ..algorithms.stage import Field, Layer, LayerFeatures, all_fields, column_on_map, plain
 from .memory_files import memory_folder
+from .qgis_crs import Conversion
 
 _TYPES = {bool: QMetaType.Type.Bool, int: QMetaType.Type.Int, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
 WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
@@ -107,9 +108,7 @@ def _width(geometry: Any) -> int:
     return np.shape(geometry[0] if isinstance(geometry, (list, tuple)) else geometry)[-1]
 
 
-def qgis_features(
-    layer: Layer, features: LayerFeatures, to_map: Callable[[np.ndarray], np.ndarray]
-) -> Iterator[QgsFeature]:
+def qgis_features(layer: Layer, features: LayerFeatures, to_map: Conversion) -> Iterator[QgsFeature]:
     """Yield the features of a layer, in the coordinates of the cloud's CRS.
 
     ``to_map`` turns local meters (m, 2 or 3) into map coordinates.
@@ -131,11 +130,11 @@ def number(value: Any) -> Any:
     return float(f"{value:.7g}") if isinstance(value, float) else value
 
 
-def _line(coordinates: np.ndarray, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsLineString:
+def _line(coordinates: np.ndarray, to_map: Conversion) -> QgsLineString:
     return QgsLineString(*(column.tolist() for column in np.asarray(to_map(np.asarray(coordinates))).T))
 
 
-def _polygon(rings: list, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsPolygon:
+def _polygon(rings: list, to_map: Conversion) -> QgsPolygon:
     # One by one: rings given as a list stay Python's too, and are freed twice.
     polygon = QgsPolygon()
     polygon.setExteriorRing(_line(rings[0], to_map))
@@ -144,7 +143,7 @@ def _polygon(rings: list, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsPoly
     return polygon
 
 
-def _point(coordinates: np.ndarray, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsPoint:
+def _point(coordinates: np.ndarray, to_map: Conversion) -> QgsPoint:
     return QgsPoint(*np.asarray(to_map(np.asarray(coordinates)[None]))[0].tolist())
 
 

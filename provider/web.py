@@ -117,9 +117,7 @@ class Size(NamedTuple):
         return f"{self.bytes / 1e6:,.1f} MB with {self.points:,} points"
 
 
-def size_on_web(
-    paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray] = None
-) -> Optional[Size]:
+def web_size(paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray] = None) -> Optional[Size]:
     """Return the size of the parts of clouds that a box and a spacing need from the web, None if none is there.
 
     It costs a few requests, also of a large cloud with an octree. Files in folders are left out.
@@ -163,7 +161,7 @@ def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optio
     ValueError
         If it is more; it says how much, and asks for an extent.
     """
-    size = size_on_web(paths, box, spacing)
+    size = web_size(paths, box, spacing)
     if size is not None and is_over_limit(size):
         which = "the whole cloud" if box is None else "what lies within the extent"
         raise ValueError(
@@ -173,10 +171,8 @@ def check_sizes(paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optio
         )
 
 
-def tell_sizes(
-    paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray], monitor: Monitor
-) -> None:
+def log_size(paths: Iterable[Path], box: Optional[np.ndarray], spacing: Optional[np.ndarray], monitor: Monitor) -> None:
     """Tell how many bytes and points are read from the web, before they are."""
-    size = size_on_web(paths, box, spacing)
+    size = web_size(paths, box, spacing)
     if size is not None:
         monitor.inform(f"{size.name}: {size} are read from {size.host}.")

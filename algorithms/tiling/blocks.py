@@ -175,7 +175,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     result = BlockResult(window.source[core], window.position[core], left)
     result.dimensions = {name: of_all[core] for name, of_all in values.items()}
     _number(result, window, values, stays, positions, task.block)
-    cuts = _keep_layers(result, pipeline, made, task, box)
+    cuts = _add_layers(result, pipeline, made, task, box)
     for name, (file, of) in files_of(pipeline).items():
         if name not in made.files:
             continue
@@ -215,10 +215,8 @@ def _written(pipeline: Pipeline, made: Results, point: np.ndarray, origin: np.nd
     return values
 
 
-def _keep_layers(
-    result: BlockResult, pipeline: Pipeline, made: Results, task: BlockTask, box: np.ndarray
-) -> np.ndarray:
-    """Keep features that have a part in the block, and those that belong to them; return where one was cut off."""
+def _add_layers(result: BlockResult, pipeline: Pipeline, made: Results, task: BlockTask, box: np.ndarray) -> np.ndarray:
+    """Add features that have a part in the block, and those that belong to them; return where one was cut off."""
     block, owner, declared = task.block.box, owners(pipeline), layers_of(pipeline)
     cuts = np.zeros((2, 2), bool)
     for name in sorted(made.layers, key=lambda name: name in owner):
@@ -264,12 +262,7 @@ def _cropped(surface: RasterSurface, box: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _number(
-    result: BlockResult,
-    window: Window,
-    values: dict[str, np.ndarray],
-    stays: np.ndarray,
-    positions: np.ndarray,
-    block: Block,
+    result: BlockResult, window: Window, values: dict, stays: np.ndarray, positions: np.ndarray, block: Block
 ) -> None:
     """Keep in a result which numbers its points have, and the numbers of records on both sides of its edges."""
     near = inside(positions, block.box + np.array([[-_BESIDE], [_BESIDE]]))

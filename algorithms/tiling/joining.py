@@ -254,9 +254,7 @@ def _called(
     return called
 
 
-def join_belonging(
-    layers: list[LayerFeatures], numbers: list[np.ndarray], column: str, kept: np.ndarray
-) -> LayerFeatures:
+def join_owned(layers: list[LayerFeatures], numbers: list[np.ndarray], column: str, kept: np.ndarray) -> LayerFeatures:
     """Return the features of all blocks that belong to features that stay, with the numbers that these have now.
 
     Parameters

@@ -25,7 +25,7 @@ from .block_result import BlockResult, flat
 from .blocks import MOST_HALOS, Block, BlockTask, feature_boxes, take_features, work_on_block
 from .cutting import cut_into_tiles
 from .joined_files import join_files, join_rasters
-from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
+from .joining import References, feature_numbers, join_features, join_numbers, join_owned, refer_to_features
 from .survey import Source, Survey, files_of_survey, open_survey, tiles_folder
 from .survey_sampling import samplings_of
 from .survey_steps import SurveySteps
@@ -293,7 +293,7 @@ class _Run:
             of_blocks = [result.layers.get(name, LayerFeatures([], {})) for result in found]
             if name in owner:
                 column, of = owner[name]
-                layers[name] = join_belonging(of_blocks, clusters, column, kept[of])
+                layers[name] = join_owned(of_blocks, clusters, column, kept[of])
                 continue
             layer, where = declared[name], (blocks.done_blocks, of_blocks, clusters, self.survey.origin)
             pieces = [result.pieces.get(name, np.zeros(0, bool)) for result in found] if layer.whole else None

@@ -15,6 +15,9 @@ from .blocks import feature_boxes
 # radius). Shapes of the same points differ by less, and pipes in insulation or next to each other by more.
 _OFF = 0.2
 
+# The size (n,) of each feature, and what pairs (k,) of them share of it.
+_Sizes = tuple[np.ndarray, np.ndarray]
+
 
 def leaders(
     features: LayerFeatures, layer: Layer, of_block: np.ndarray, is_own: np.ndarray, is_piece: Any, monitor: Monitor
@@ -64,16 +67,14 @@ def leaders(
     return np.where(stays, largest, leader)
 
 
-def _sizes(
-    features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray, monitor: Monitor
-) -> tuple[np.ndarray, np.ndarray]:
+def _sizes(features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray, monitor: Monitor) -> _Sizes:
     """Return the size (n,) of each feature (m², m, or 1), and what pairs (k,) share of it."""
     if layer.geometry == "Point":
         return np.ones(len(features)), _same_spheres(features, layer, one, other).astype(float)
     if layer.geometry == "LineString":
         return _shared_lines(features, layer, one, other)
     if layer.deviation:
-        return _shared_in_space(features, layer, one, other, monitor)
+        return _shared_area(features, layer, one, other, monitor)
     polygons = as_polygons(features.geometries)
     return np.abs(polygons.area), shared_areas(polygons, polygons, one, other, monitor)
 
@@ -115,9 +116,7 @@ def _same_spheres(features: LayerFeatures, layer: Layer, one: np.ndarray, other:
     return (off < near) & (np.abs(radius[one] - radius[other]) < near)
 
 
-def _shared_lines(
-    features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _shared_lines(features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray) -> _Sizes:
     """Return the length (n,) of each axis, and the length that pairs (k,) share of one axis with one radius (m)."""
     start, end = np.moveaxis(np.reshape([line[[0, -1]] for line in features.geometries], (-1, 2, 3)), 1, 0)
     length, radius = np.linalg.norm(end - start, axis=1), _radius(features, layer)
@@ -142,9 +141,7 @@ def _radius(features: LayerFeatures, layer: Layer) -> np.ndarray:
     return np.asarray(features.columns[layer.radius], float)
 
 
-def _shared_in_space(
-    features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray, monitor: Monitor
-) -> tuple[np.ndarray, np.ndarray]:
+def _shared_area(features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray, monitor: Monitor) -> _Sizes:
     """Return the area (n,) of each plane in space, and the area that pairs (k,) share in one plane (m²), 0 in two."""
     area, normal = _areas(features.geometries)
     tolerance = _tolerance(features, layer)

@@ -10,7 +10,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import Layer, LayerFeatures, Monitor
 from lidar_buildings.algorithms.tiling.blocks import Block
-from lidar_buildings.algorithms.tiling.joining import join_belonging, join_features
+from lidar_buildings.algorithms.tiling.joining import join_features, join_owned
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.tiled_run import TilesOptions
 from lidar_buildings.algorithms.tiling.workers import Workers
@@ -106,7 +106,7 @@ def test_what_belongs_to_a_footprint_stays_with_it_and_gets_its_new_number():
     found, kept = join_features(blocks, footprints, none, np.zeros(3), Monitor(), Layer("f", "F", "Polygon", ()))
     assert [ring[0][0].tolist() for ring in found.geometries] == [[14, 6], [2, 2], [7, 2]]
     assert kept.tolist() == [[1, 3, 1], [0, 1, 2], [0, 2, 3]]
-    edges = join_belonging(lines, none, "footprint", kept)
+    edges = join_owned(lines, none, "footprint", kept)
     assert edges.columns == {"id": [1, 2, 3, 4], "footprint": [1, 2, 3, 3], "edge": [1, 8, 7, 9]}
 
 
