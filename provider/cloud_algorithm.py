@@ -16,9 +16,11 @@ from qgis.core import (
 
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.files import NOWHERE, check_readable, count_points, read_extent
+from ..algorithms.memory import installed_memory
 from ..algorithms.report.page import with_coordinates
 from ..algorithms.run import Results
 from ..algorithms.stage import CLOUD, REPORT, InputLayer, Layer, LayerFeatures, Monitor, Raster, Stage, TextFile
+from ..algorithms.stages import less_memory
 from ..algorithms.tiling.survey import Survey
 from . import inputs
 from .algorithm import CheckedAlgorithm
@@ -32,7 +34,6 @@ from .given import Given
 from .input_layers import find_input_layers, input_layer_parameter, layer_files, read_input_layers, refuse_elsewhere
 from .inputs import CRS, INPUT, REFERENCE
 from .layer_outputs import write_layer, write_text
-from .memory_needs import warn_if_memory_is_short
 from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_clouds
 from .places import Place, place_of_cloud, place_of_layer
 from .qgis_crs import WGS84
@@ -41,6 +42,22 @@ from .run_log import RunLog, about_run, write_page
 from .run_outputs import all_in_place, check_targets, write_for_qgis
 from .styles import Styler, cloud_style, layer_style, show_on_load
 from .web import check_sizes, log_size
+
+# Bytes that stages take per point at most, the points themselves included.
+_PER_POINT = 400
+
+# Bytes of the unit of the message.
+_GB = 1e9
+
+
+def warn_if_memory_is_short(n_points: int, monitor: Monitor) -> None:
+    """Warn of clouds that hardly fit into memory: where it ends, most systems end QGIS without a word."""
+    installed, needed = installed_memory(), _PER_POINT * n_points
+    if needed > installed:
+        monitor.warn(
+            f"{n_points:,} points may need {needed / _GB:.1f} GB of memory, this computer has {installed / _GB:.1f}; "
+            f"if that is not enough, {less_memory()}."
+        )
 
 
 @dataclass

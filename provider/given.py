@@ -30,9 +30,8 @@ class Given:
         """Return the algorithm and its parameters but outputs, as JSON."""
         values = self.algorithm.asMap(self.parameters, self.context)["inputs"]
         outputs = {one.name() for one in self.algorithm.destinationParameterDefinitions()}
-        return json.dumps(
-            [self.algorithm.id(), {name: one for name, one in values.items() if name not in outputs}], default=str
-        )
+        inputs = {name: one for name, one in values.items() if name not in outputs}
+        return json.dumps([self.algorithm.id(), inputs], default=str)
 
     def title(self, name: str) -> str:
         """Return the name of a parameter in the dialog."""

@@ -62,12 +62,11 @@ def add_named_styles(layer: QgsMapLayer) -> None:
     manager = layer.styleManager()
     first = manager.currentStyle()
     if isinstance(layer, QgsVectorLayer):
-        names = [name for name in _BY_ATTRIBUTE if layer.fields().indexOf(name) >= 0]
-        for name in names:
-            renderer = _renderer(layer, name)
+        for name, title in _BY_ATTRIBUTE.items():
+            renderer = _renderer(layer, name) if layer.fields().indexOf(name) >= 0 else None
             if renderer is not None:
-                manager.addStyleFromLayer(_BY_ATTRIBUTE[name])
-                manager.setCurrentStyle(_BY_ATTRIBUTE[name])
+                manager.addStyleFromLayer(title)
+                manager.setCurrentStyle(title)
                 layer.setRenderer(renderer)
     elif isinstance(layer, QgsPointCloudLayer):
         on_disk = {one.name() for one in layer.attributes().attributes()}
@@ -87,9 +86,7 @@ def add_named_styles(layer: QgsMapLayer) -> None:
 def _renderer(layer: QgsVectorLayer, name: str):
     """Return the renderer of polygons by an attribute; None if it has no values."""
     if name == "confidence":
-        ranges = [
-            QgsRendererRange(low, high, _symbol(color), f"{low:g} - {high:g}") for low, high, color in _CONFIDENCE
-        ]
+        ranges = [QgsRendererRange(*ends, _symbol(color), "{:g} - {:g}".format(*ends)) for *ends, color in _CONFIDENCE]
         return QgsGraduatedSymbolRenderer(name, ranges)
     index = layer.fields().indexOf(name)
     if layer.fields()[index].isNumeric():

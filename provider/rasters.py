@@ -12,7 +12,7 @@ from qgis.core import QgsCoordinateReferenceSystem
 from ..algorithms.cloud.outputs import os_errors_as_messages, replacing
 from ..algorithms.criteria import NO_DATA
 from ..algorithms.stage import Cancelled, Monitor, Raster, RasterSurface
-from ..algorithms.tiling.joined_files import RasterMosaic
+from ..algorithms.tiling.joining import RasterMosaic
 from .memory_files import copy_file, gdal_errors, memory_folder
 from .places import Place
 

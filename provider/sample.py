@@ -56,10 +56,8 @@ def open_sample(iface: Any) -> None:
         return
     fill_project(QgsProject.instance(), sample_folder())
     iface.mapCanvas().zoomToFullExtent()
-    iface.messageBar().pushInfo(
-        "Sample data",
-        "A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings in this view….",
-    )
+    what_next = "Choose Plugins ▸ LiDAR Buildings ▸ Find buildings in this view…."
+    iface.messageBar().pushInfo("Sample data", f"A simulated town without classes. {what_next}")
 
 
 def make_sample(folder: Path) -> None:

@@ -22,7 +22,7 @@ from ..algorithms.cloud.outputs import COPC, stem_of
 from ..algorithms.pipeline import CLOUD
 from ..algorithms.report.page import Row, StepFacts, with_coordinates
 from ..algorithms.stage import FileContent, Layer, LayerFeatures, Raster, TextFile
-from ..algorithms.tiling.joined_files import RasterMosaic
+from ..algorithms.tiling.joining import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
 from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
@@ -156,23 +156,20 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Have QGIS load a virtual point cloud over the COPC files of the tiles."""
         files = [folder / SHOWN / f"{stem_of(tile)}{COPC}" for tile in outcome.tiles]
         shown = str(write_survey(outcome.survey, files, folder / SHOWN, given.context, monitor))
-        title = inputs.cloud_title([step.stage for step in self.pipeline.steps if step.stage.makes_cloud])
+        makers = [step.stage for step in self.pipeline.steps if step.stage.makes_cloud]
+        # The style is that of the last step that makes a cloud and has one.
+        styles = (style_of(stage.writes) for stage in reversed(makers))
+        title, style = inputs.cloud_title(makers), next(filter(None, styles), None)
         # Without the hint QGIS takes it for polygons in JSON.
         hint = QgsProcessingUtils.LayerHint.PointCloud
         details = QgsProcessingContext.LayerDetails(title, given.context.project(), VPC, hint)
         given.context.addLayerToLoadOnCompletion(shown, details)
-        show_on_load(given.context, shown, "Cloud", Styler(self._cloud_style(), crs=self.plane))
+        show_on_load(given.context, shown, "Cloud", Styler(style, crs=self.plane))
 
     def _subject(self, folder: Path) -> str:
         """Return what the layers are of: the folder of the tiles, or the input where that is temporary."""
         is_temporary = Path(QgsProcessingUtils.tempFolder()) in folder.parents
         return self.paths[0].name.split(".")[0] if is_temporary else folder.name
-
-    def _cloud_style(self) -> Optional[str]:
-        """Return the style of the tiles: of the last step that makes a cloud and has one."""
-        makers = [step.stage for step in self.pipeline.steps if step.stage.makes_cloud]
-        found = (style_of(stage.writes) for stage in reversed(makers))
-        return next((style for style in found if style), None)
 
     def _run(self, folder: Path, given: Given, monitor: FeedbackMonitor, results: dict) -> TilesOutcome:
         """Run the survey, and write the rasters and text files that are wanted, which are added to the results."""
@@ -256,10 +253,9 @@ def _workers(given: Given) -> Workers:
     check_scheduler(scheduler)
     listed = given.read("String", CERTIFICATES).split(";")
     certificates = tuple(one.strip() for one in listed if one.strip())
-    if certificates and len(certificates) != 3:
-        raise ValueError(
-            f"The certificates must be three files (authority; certificate; key), got {len(certificates)}."
-        )
+    if len(certificates) not in (0, 3):
+        count = len(certificates)
+        raise ValueError(f"The certificates must be three files (authority; certificate; key), got {count}.")
     missing = [one for one in certificates if not Path(one).is_file()]
     if missing:
         raise ValueError(f"There is no certificate {missing[0]}; check the name.")

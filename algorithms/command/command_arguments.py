@@ -55,20 +55,15 @@ def parser_of(algorithm: Pipeline) -> argparse.ArgumentParser:
         needed = algorithm.compared.needs_reference
         parser.add_argument("--reference", metavar="CLOUD", required=needed, help=_text(algorithm.compared.reference))
     for layer in algorithm.input_layers.values():
-        parser.add_argument(
-            f"--{dashed(layer.name)}",
-            type=Path,
-            metavar="LAYER" if layer.read is None else "FILE",
-            required=not layer.optional,
-            help=_text(f"{layer.title}. {layer.help}"),
-        )
+        kind, about = "LAYER" if layer.read is None else "FILE", _text(f"{layer.title}. {layer.help}")
+        needed = not layer.optional
+        parser.add_argument(f"--{dashed(layer.name)}", type=Path, metavar=kind, required=needed, help=about)
     _add_outputs(parser.add_argument_group("outputs"), algorithm)
     parameters = parser.add_argument_group("parameters")
     for name, (step, tunable) in algorithm.parameters.items():
         default = step.tunables.get(tunable.name, tunable.default)
-        parameters.add_argument(
-            f"--{dashed(name)}", type=_typed(tunable), metavar=_metavar(tunable), help=_text(_about(tunable, default))
-        )
+        about, kind = _text(_about(tunable, default)), _metavar(tunable)
+        parameters.add_argument(f"--{dashed(name)}", type=_typed(tunable), metavar=kind, help=about)
     return parser
 
 

@@ -112,14 +112,11 @@ def write_features(
     """
     fields = all_fields(layer, features)
     columns = [column_on_map(field, features, to_map) for field in fields]
-    of_map = [
-        {
-            "type": "Feature",
-            "properties": {field.name: plain(column[row]) for field, column in zip(fields, columns)},
-            "geometry": {"type": layer.geometry, "coordinates": _coordinates(geometry, to_map)},
-        }
-        for row, geometry in enumerate(features.geometries)
-    ]
+    of_map = []
+    for row, geometry in enumerate(features.geometries):
+        facts = {field.name: plain(column[row]) for field, column in zip(fields, columns)}
+        shape = {"type": layer.geometry, "coordinates": _coordinates(geometry, to_map)}
+        of_map.append({"type": "Feature", "properties": facts, "geometry": shape})
     # A name of the CRS is older than RFC 7946, which knows degrees only; QGIS and GDAL read and write it.
     name = {"name": f"urn:ogc:def:crs:{code.replace(':', '::')}"}
     crs = {"crs": {"type": "name", "properties": name}} if code else {}

@@ -222,10 +222,8 @@ def _bars(edges: np.ndarray, counts: np.ndarray, colors: list[str], across: _Axi
 def _ticks_across(across: _Axis, title: str) -> str:
     """Return the lower axis with its numbers and its title."""
     foot = _HEIGHT - _BOTTOM
-    ticks = "".join(
-        f'<text x="{across.at(tick):.1f}" y="{foot + 18}" text-anchor="middle">{tick:g}</text>'
-        for tick in across.ticks(8)
-    )
+    places = [(across.at(tick), tick) for tick in across.ticks(8)]
+    ticks = "".join(f'<text x="{x:.1f}" y="{foot + 18}" text-anchor="middle">{tick:g}</text>' for x, tick in places)
     middle = (across.start + across.end) / 2
     return (
         f'<path d="M{_LEFT} {foot}H{_WIDTH - _RIGHT}" stroke="#222"/>{ticks}'
@@ -235,10 +233,8 @@ def _ticks_across(across: _Axis, title: str) -> str:
 
 def _ticks_up(up: _Axis, title: str) -> str:
     """Return the whole numbers and the title on the left, where things are counted."""
-    whole = [tick for tick in up.ticks(5) if tick == int(tick)]
-    ticks = "".join(
-        f'<text x="{_LEFT - 8}" y="{up.at(tick) + 5:.1f}" text-anchor="end">{tick:,.0f}</text>' for tick in whole
-    )
+    whole = [(up.at(tick) + 5, tick) for tick in up.ticks(5) if tick == int(tick)]
+    ticks = "".join(f'<text x="{_LEFT - 8}" y="{y:.1f}" text-anchor="end">{tick:,.0f}</text>' for y, tick in whole)
     middle = (_TOP + _HEIGHT - _BOTTOM) / 2
     turned = f'transform="rotate(-90 18 {middle})"'
     return f'{ticks}<text x="18" y="{middle}" text-anchor="middle" {turned}>{html.escape(title)}</text>'

@@ -20,12 +20,11 @@ from ..cloud.web_file import file_at, is_on_web
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import LayerFeatures, Monitor
+from . import joining
 from .block_plan import blocks_of, larger_blocks, memory_of, points_of_window, side_of_blocks
 from .block_result import BlockResult, flat
 from .blocks import MOST_HALOS, Block, BlockTask, feature_boxes, take_features, work_on_block
 from .cutting import cut_into_tiles
-from .joined_files import join_files, join_rasters
-from .joining import References, feature_numbers, join_features, join_numbers, join_owned, refer_to_features
 from .survey import Source, Survey, files_of_survey, open_survey, tiles_folder
 from .survey_sampling import samplings_of
 from .survey_steps import SurveySteps
@@ -159,11 +158,9 @@ class _Run:
 
     def _join(self, blocks: WorkedOn, outcome: TilesOutcome) -> dict[str, np.ndarray]:
         """Give objects that go on in the next block one number, and join layers; return the features kept of each."""
-        found, paths = blocks.found, [path for _, path in blocks.done]
-        of_features = feature_numbers(self.settings.pipeline, found)
-        blocks.numbers[:] = join_numbers(
-            blocks.done_blocks, found, lambda at: BlockResult.edges(paths[at]), of_features
-        )
+        done, paths, found = blocks.done_blocks, [path for _, path in blocks.done], blocks.found
+        features = joining.feature_numbers(self.settings.pipeline, found)
+        blocks.numbers[:] = joining.join_numbers(done, found, lambda at: BlockResult.edges(paths[at]), features)
         outcome.layers, kept = self._layers(blocks, self.monitor.part(WORKED, JOINED))
         return kept
 
@@ -171,10 +168,10 @@ class _Run:
         """Hand over rasters, text files and warnings."""
         settings, options, paths = self.settings, self.settings.options, [path for _, path in blocks.done]
         if options.take_raster:
-            for mosaic in join_rasters(paths, blocks.found):
+            for mosaic in joining.join_rasters(paths, blocks.found):
                 options.take_raster(self.survey, mosaic)
         if options.take_file:
-            for name, content in join_files(settings.pipeline, settings.steps, paths, kept, layers).items():
+            for name, content in joining.join_files(settings.pipeline, settings.steps, paths, kept, layers).items():
                 options.take_file(self.survey, name, content)
         self._warn_of_blocks(blocks.found)
 
@@ -287,19 +284,20 @@ class _Run:
         kept: dict[str, np.ndarray] = {}
         owner, declared = owners(self.settings.pipeline), layers_of(self.settings.pipeline)
         clusters = [of_block.get("cluster_id", np.zeros(0, np.int32)) for of_block in numbers]
-        references = {one.numbers: References.of(found, one.numbers) for one in declared.values() if one.numbers}
+        numbered = [layer.numbers for layer in declared.values() if layer.numbers]
+        references = {dimension: joining.References.of(found, dimension) for dimension in numbered}
         for name, part in zip(sorted(names, key=lambda name: name in owner), monitor.parts(len(names))):
             # A block without points has no layers, any other one has all of them.
             of_blocks = [result.layers.get(name, LayerFeatures([], {})) for result in found]
             if name in owner:
                 column, of = owner[name]
-                layers[name] = join_owned(of_blocks, clusters, column, kept[of])
+                layers[name] = joining.join_owned(of_blocks, clusters, column, kept[of])
                 continue
             layer, where = declared[name], (blocks.done_blocks, of_blocks, clusters, self.survey.origin)
             pieces = [result.pieces.get(name, np.zeros(0, bool)) for result in found] if layer.whole else None
-            layers[name], kept[name] = join_features(*where, part, layer, references.get(layer.numbers), pieces)
+            layers[name], kept[name] = joining.join_features(*where, part, layer, references.get(layer.numbers), pieces)
         for dimension, of_features in references.items():
-            refer_to_features(numbers, dimension, of_features.known)
+            joining.refer_to_features(numbers, dimension, of_features.known)
         return {name: layers[name] for name in names}, kept
 
     def _warn_of_blocks(self, found: list[BlockResult]) -> None:

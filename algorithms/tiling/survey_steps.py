@@ -32,9 +32,7 @@ class SurveySteps:
         """Return what the tiles keep of their points for pages, None where no page needs any."""
         if not self._paged or not self.outcome.layers:
             return None
-        boxes = [np.zeros((0, 2, 2))]
-        for step in self._paged:
-            boxes.append(step.stage.shows(**self._layers_of(step, {})))  # type: ignore[misc]
+        boxes = [step.stage.shows(**self._layers_of(step, {})) for step in self._paged]  # type: ignore[misc]
         survey = self.outcome.survey
         # Of a survey without extent any cell will do.
         cell = float(np.ptp(survey.box, axis=0).max()) / CELLS or 1.0

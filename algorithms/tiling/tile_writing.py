@@ -224,9 +224,8 @@ def write_tile(task: TileTask) -> Tile:
     cloud = cloud if len(rows) == len(cloud) else cloud.take(rows)
     for name, whole in values.items():
         cloud.set(name, whole[rows] - cloud.origin if name == "xyz" else whole[rows])
-    write_cloud(cloud, task.target, monitor)
-    if task.shown is not None:
-        write_cloud(cloud, task.shown, monitor)
+    for target in filter(None, (task.target, task.shown)):
+        write_cloud(cloud, target, monitor)
     if task.view is not None:
         task.view.add(task.target.name, cloud)
     return Tile(task.target, len(cloud), left_out)

@@ -14,7 +14,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import FileContent, LayerFeatures, Monitor, Report
 from .block_result import BlockResult
 from .blocks import Block
-from .joined_files import RasterMosaic
+from .joining import RasterMosaic
 from .survey import Survey
 from .tiled_steps import part_of
 from .workers import Workers

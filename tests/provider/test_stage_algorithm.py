@@ -26,7 +26,7 @@ from qgis.PyQt.QtCore import Qt
 from lidar_buildings.algorithms import packages
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.provider import clouds, errors, memory_needs, named_clouds
+from lidar_buildings.provider import cloud_algorithm, clouds, errors, named_clouds
 from lidar_buildings.tests.provider.helpers import run, squares
 
 
@@ -319,7 +319,7 @@ def test_too_little_memory_is_reported_in_a_sentence(provider, context, log, tow
 def test_a_cloud_that_hardly_fits_into_memory_is_reported(
     provider, context, log, town_file, out, monkeypatch, there, reported
 ):
-    monkeypatch.setattr(memory_needs, "installed_memory", lambda: there)
+    monkeypatch.setattr(cloud_algorithm, "installed_memory", lambda: there)
     run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
     assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"] * reported
 
@@ -328,7 +328,7 @@ def test_it_is_reported_before_the_cloud_is_read(provider, context, log, town_fi
     def read(*arguments):
         raise MemoryError
 
-    monkeypatch.setattr(memory_needs, "installed_memory", lambda: 1.0)
+    monkeypatch.setattr(cloud_algorithm, "installed_memory", lambda: 1.0)
     monkeypatch.setattr(named_clouds, "read_cloud", read)
     with pytest.raises(QgsProcessingException, match="^This needs more memory than there is"):
         run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
