@@ -219,10 +219,8 @@ class GivenLayer:
                 f"{wanted.objects}; run 'Fix geometries' on the layer, or choose another."
             )
         if left_out:
-            monitor.warn(
-                f"{wanted.title}: {left_out} of {count} features are left out; "
-                f"they have no valid geometry of {wanted.objects}."
-            )
+            what = f"{left_out} of {count} features are left out"
+            monitor.warn(f"{wanted.title}: {what}; they have no valid geometry of {wanted.objects}.")
         names = layer.fields().names()
         columns = {name: as_column([_plain(row[i]) for row in rows]) for i, name in enumerate(names)}
         return LayerFeatures(geometries, columns, sources)
@@ -234,9 +232,8 @@ class GivenLayer:
             return QgsCoordinateTransform(own, crs, self.context.transformContext())
         if own.isValid():
             refuse_degrees(title, own)
-            monitor.warn(
-                f"{title} is in {own.userFriendlyIdentifier()}; everything without a CRS is taken to be in it."
-            )
+            name = own.userFriendlyIdentifier()
+            monitor.warn(f"{title} is in {name}; everything without a CRS is taken to be in it.")
         elif crs.isValid():
             monitor.warn(f"{title} names no CRS; it is taken to be in {crs.userFriendlyIdentifier()}.")
         return QgsCoordinateTransform()

@@ -269,10 +269,8 @@ class _Run:
             if now - last > BETWEEN_MESSAGES or done == blocks:
                 last = now
                 pace = done / max(now - start, 1e-9)
-                self.monitor.inform(
-                    f"{done} of {blocks} blocks, {pace * points / max(1, blocks):,.0f} points per second, "
-                    f"{_minutes((blocks - done) / pace)} left."
-                )
+                speed, left = pace * points / max(1, blocks), _minutes((blocks - done) / pace)
+                self.monitor.inform(f"{done} of {blocks} blocks, {speed:,.0f} points per second, {left} left.")
 
         return log_block
 

@@ -200,7 +200,7 @@ class Survey:
         """Yield positions in a file and records, in the survey's format, of the points in a box."""
         header, near = source.header, box / self.crs.horizontal
         if self.extent is not None:
-            near = np.array([np.maximum(near[0], self.extent[0]), np.minimum(near[1], self.extent[1])])
+            near = _common_box(near, self.extent)
         with readable(source.path):
             for start, chunk in chunks_near(source.path, header, near, monitor):
                 rows = np.flatnonzero(self.holds(chunk, header) & inside(self.in_plan(chunk, header), box))
@@ -247,6 +247,11 @@ class Survey:
 def boxes_meet(boxes: np.ndarray, box: np.ndarray) -> np.ndarray:
     """Return the mask of boxes (m, 2, 2) that meet a box (2, 2)."""
     return ((boxes[:, 0] <= box[1]) & (boxes[:, 1] >= box[0])).all(axis=1)
+
+
+def _common_box(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the box (2, 2) in which two boxes overlap."""
+    return np.array([np.maximum(one[0], other[0]), np.minimum(one[1], other[1])])
 
 
 def inside(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
@@ -300,14 +305,10 @@ def open_survey(
 
 def _within_extent(sources: tuple[Source, ...], extent: np.ndarray) -> tuple[Source, ...]:
     """Return the files that may have points in an extent (2, 2), m, with boxes that end at it."""
-    found = [
-        replace(one, box=np.array([np.maximum(one.box[0], extent[0]), np.minimum(one.box[1], extent[1])]))
-        for one in sources
-        if boxes_meet(one.box[None], extent).all()
-    ]
-    if not found:
+    met = [source for source in sources if boxes_meet(source.box[None], extent).all()]
+    if not met:
         raise ValueError("The survey has no points within the extent; choose another extent.")
-    return tuple(found)
+    return tuple(replace(source, box=_common_box(source.box, extent)) for source in met)
 
 
 def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:

@@ -16,11 +16,8 @@ def of_survey(pipeline: Pipeline) -> Pipeline:
     """Return a composite without steps that merge clouds, as the files of a survey are one, or only measure points."""
     left_out = [step for step in pipeline.steps if step.stage.merges or _only_measures(step)]
     superfluous = {name for name, (step, _) in pipeline.parameters.items() if step in left_out}
-    return replace(
-        pipeline,
-        steps=tuple(step for step in pipeline.steps if step not in left_out),
-        shown=tuple(name for name in pipeline.shown if name not in superfluous),
-    )
+    steps = tuple(step for step in pipeline.steps if step not in left_out)
+    return replace(pipeline, steps=steps, shown=tuple(name for name in pipeline.shown if name not in superfluous))
 
 
 def _only_measures(step: Step) -> bool:

@@ -4,8 +4,7 @@ import re
 
 import numpy as np
 
-from lidar_buildings.algorithms.export.export_models import export_models
-from lidar_buildings.algorithms.export.textured_obj import obj_pieces
+from lidar_buildings.algorithms.export.export_models import export_models, obj_pieces
 from lidar_buildings.algorithms.geometry.polygons import area_vector
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
 from lidar_buildings.tests.colored_models import BLUE, RED, decoded, exported, points
