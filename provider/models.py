@@ -1,5 +1,7 @@
 """Pipelines as Processing models, drawn from ``pipelines.py`` when the designer asks for them."""
 
+from typing import Any
+
 from qgis.core import (
     Qgis,
     QgsProcessingModelAlgorithm,
@@ -91,15 +93,21 @@ class _Layout:
         return QPointF(width / 2, self.top + height / 2), QSizeF(width, height)
 
 
+def _placed(component: Any, center: QPointF, size: QSizeF) -> Any:
+    """Return a component of the drawing with its center and its size."""
+    component.setPosition(center)
+    component.setSize(size)
+    return component
+
+
 def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
     """Return the model of a pipeline: steps in order, each fed as the pipeline says."""
     model = QgsProcessingModelAlgorithm(pipeline.title, pipeline.group, "")
     layout = _Layout()
     clouds = _clouds(pipeline)
     for column, definition in enumerate(clouds):
-        component = QgsProcessingModelParameter(definition.name())
-        component.setPosition(QPointF(layout.algorithm_x - column * layout.cell.width(), 60))
-        component.setSize(layout.box)
+        center = QPointF(layout.algorithm_x - column * layout.cell.width(), 60)
+        component = _placed(QgsProcessingModelParameter(definition.name()), center, layout.box)
         model.addModelParameter(definition, component)
     definitions = {input_layer_name(layer): input_layer_parameter(layer) for layer in pipeline.input_layers.values()}
     definitions.update(pipeline_parameters(pipeline))
@@ -168,9 +176,7 @@ def _add_parameters(
     # Layers and parameters that steps share are at the lower right, where their lines cross the fewest boxes.
     cells.update({name: last - i for i, name in enumerate(name for name in names if name not in own)})
     for name, cell in cells.items():
-        component = QgsProcessingModelParameter(name)
-        component.setPosition(layout.parameter(cell))
-        component.setSize(layout.box)
+        component = _placed(QgsProcessingModelParameter(name), layout.parameter(cell), layout.box)
         model.addModelParameter(definitions[name], component)
 
 
@@ -189,11 +195,11 @@ def _add_step(model: QgsProcessingModelAlgorithm, pipeline: Pipeline, step: Step
         name = pipeline.parameter(step, tunable.name).upper()
         sources = [QgsProcessingModelChildParameterSource.fromModelParameter(name)]
         child.addParameterSources(parameter_name(tunable), sources)
-    child.setPosition(layout.middle(height))
-    child.setSize(layout.child)
     child.setModelOutputs(_model_outputs(pipeline, made, layout.middle(height)))
-    model.addChildAlgorithm(child)
-    model.addGroupBox(_frame(step, layout, height))
+    model.addChildAlgorithm(_placed(child, layout.middle(height), layout.child))
+    box = _placed(QgsProcessingModelGroupBox(step.stage.title), *layout.frame(height))
+    box.setColor(QColor(235, 240, 245))
+    model.addGroupBox(box)
     layout.top += height + layout.gap
 
 
@@ -231,17 +237,6 @@ def _model_outputs(pipeline: Pipeline, of_step: list[Output], middle: QPointF) -
         output.setChildOutputName(made.of.upper())
         output.setDescription(shown)
         output.setMandatory(pipeline.needs(made))
-        output.setPosition(QPointF(middle.x() + 360, middle.y() + 70 * (i - (len(of_step) - 1) / 2)))
-        output.setSize(QSizeF(240, 40))
-        outputs[shown] = output
+        center = QPointF(middle.x() + 360, middle.y() + 70 * (i - (len(of_step) - 1) / 2))
+        outputs[shown] = _placed(output, center, QSizeF(240, 40))
     return outputs
-
-
-def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGroupBox:
-    """Return the box around the band of a step."""
-    box = QgsProcessingModelGroupBox(step.stage.title)
-    position, size = layout.frame(height)
-    box.setPosition(position)
-    box.setSize(size)
-    box.setColor(QColor(235, 240, 245))
-    return box
