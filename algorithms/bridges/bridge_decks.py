@@ -56,7 +56,7 @@ class Decks:
     #: max_width, min_area: Widest section (m) and least area (m²)
     max_width: float
     min_area: float
-    cell: float  #: Side of cells and width of lines, m
+    cell: float  #: Side of cells in which points are next to one another, and width of lines, m
     is_thinned: bool  #: Whether one point per third of a cell is looked at: in denser clouds the others show no more
     near: NearPoints  #: When points of a line belong to one section
 
@@ -68,7 +68,7 @@ class Decks:
     @classmethod
     def of(cls, min_height: float, max_width: float, min_area: float, spacing: float, noise: float) -> Decks:
         """Return the criteria of bridges in a cloud with this point spacing and noise, m."""
-        cell = cell_size(spacing)
+        cell = max(DECK.least_cell, CLOSED.cell * spacing)
         near = NearPoints(CLOSED.cell * cell, float(np.tan(np.radians(DECK.slope))), DECK.noise_step * noise)
         return cls(min_height, max_width, min_area, cell, cell > CLOSED.cell * spacing, near)
 
@@ -111,11 +111,11 @@ class Decks:
         ground = np.bincount(beside, is_terrain[terrain], len(size))
         size = np.where(ground >= DECK.most_below * size, size, 0)[beside]
         eastward = np.argsort(xyz[terrain, 0])
-        around = _Around(xyz[terrain[eastward]], size[eastward], 1.5 * self.reach)
+        terrain_xyz, size = xyz[terrain[eastward]], size[eastward]
         ground_tree = spatial.cKDTree(xyz[terrain[is_terrain[terrain]]] * self._stretch)
         for rows in self._large(xyz, candidates, part):
             # The tip of a pier does not count as terrain that a deck leads to.
-            large = around.of(xyz[rows], FREE.open_edge * len(rows))
+            large = _around(xyz[rows], terrain_xyz, size, 1.5 * self.reach, FREE.open_edge * len(rows))
             angle = np.angle(across[rows].sum()) / 2 + np.pi / 2
             axis = np.array([np.cos(angle), np.sin(angle)])
             if self._is_joined(xyz[rows], large, axis) and self._leads_to(xyz[rows], ground_tree, axis):
@@ -181,17 +181,15 @@ class Decks:
         grid = fixed_grid_over(xyz[candidates], self.reach / 2)
         cells = distinct(part.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz[candidates]))[0]
         area = np.bincount(cells // (grid.rows * grid.columns)) * grid.size**2
-        parts = zip(split_groups(part, len(area)), area)
-        return [candidates[rows] for rows, size in parts if size >= self.min_area]
+        return [candidates[rows] for rows, size in zip(split_groups(part, len(area)), area) if size >= self.min_area]
 
     def _is_joined(self, deck: np.ndarray, others: np.ndarray, axis: np.ndarray) -> bool:
         """Return whether terrain continues a deck at both ends along its ``axis`` (2,)."""
         if not len(others):
             return False
         along = deck[:, :2] @ axis
-        tree = spatial.cKDTree(others)
+        tree, count = spatial.cKDTree(others), int(CLOSED.cell**2 / 2)
         # In thin clouds the nearest point may lie on the slope below the road: half of what a cell holds is looked at.
-        count = int(CLOSED.cell**2 / 2)
         distance, nearest = tree.query(deck, k=count, distance_upper_bound=1.5 * self.reach)
         near, rank = np.nonzero(np.isfinite(distance))
         way = others[nearest[near, rank]] - deck[near]
@@ -246,29 +244,17 @@ class Decks:
         return np.concatenate([rows, others[same]])
 
 
-@dataclass(frozen=True)
-class _Around:
-    """Terrain (n, 3) from west to east, the number of points connected with each (n,), and the search distance (m).
+def _around(deck: np.ndarray, xyz: np.ndarray, size: np.ndarray, distance: float, least: float) -> np.ndarray:
+    """Return the points (k, 3) of terrain within a distance (m) of a deck that hold together with ``least`` others.
 
-    The number is 0 where too few of these points are ground. A tree of the points around a deck is made in a fraction
-    of the time of one of the whole terrain.
+    The terrain is sorted from west to east (n, 3); ``size`` (n,) is the number of points connected with each, 0 where
+    too few of these are ground. A tree of the points around a deck is made in a fraction of the time of one of the
+    whole terrain.
     """
-
-    xyz: np.ndarray
-    size: np.ndarray
-    distance: float
-
-    def of(self, deck: np.ndarray, least: float) -> np.ndarray:
-        """Return the points (k, 3) around a deck that are connected with at least ``least`` others."""
-        low, high = deck.min(axis=0) - self.distance, deck.max(axis=0) + self.distance
-        first, stop = np.searchsorted(self.xyz[:, 0], low[0]), np.searchsorted(self.xyz[:, 0], high[0], side="right")
-        near, size = self.xyz[first:stop], self.size[first:stop]
-        return near[(near[:, 1] >= low[1]) & (near[:, 1] <= high[1]) & (size >= least)]
-
-
-def cell_size(spacing: float) -> float:
-    """Return the side (m) of cells in which points of a cloud with this spacing (m) are next to one another."""
-    return max(DECK.least_cell, CLOSED.cell * spacing)
+    low, high = deck.min(axis=0) - distance, deck.max(axis=0) + distance
+    first, stop = np.searchsorted(xyz[:, 0], low[0]), np.searchsorted(xyz[:, 0], high[0], side="right")
+    near, size = xyz[first:stop], size[first:stop]
+    return near[(near[:, 1] >= low[1]) & (near[:, 1] <= high[1]) & (size >= least)]
 
 
 def _numbered(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:

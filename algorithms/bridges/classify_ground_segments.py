@@ -14,7 +14,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import LASER
 from ..stage import stage, tunable
 from ..terrain.on_decks import on_decks
-from .bridge_decks import DECK, Decks, cell_size
+from .bridge_decks import DECK, Decks
 
 # Steepest terrain (degrees) within a cell: about the angle of repose of soil.
 _STEEPEST = 30.0
@@ -100,20 +100,18 @@ def classify_ground_segments(
     density = sampling.density if density is None else density
     noise = sampling.noise if noise is None else noise
     monitor.resolved(density=density, noise=noise)
-    spacing = 1 / float(np.sqrt(density))
-    cell = cell_size(spacing)
+    decks = Decks.of(min_height, max_width, min_bridge_area, 1 / float(np.sqrt(density)), noise)
     used = not_noise(classification)
     if not len(used):
         return classification.astype(np.uint8)
     points, segment = sampling.from_corner(xyz[used]), segment_id[used]
 
-    is_earth = _bare_earth(points, segment, cell, min_height, min_area, max_object_area)
+    is_earth = _bare_earth(points, segment, decks.cell, min_height, min_area, max_object_area)
     monitor.progress(0.2)
-    decks = Decks.of(min_height, max_width, min_bridge_area, spacing, noise)
     is_terrain = classification[used] == PointClass.GROUND
     if not is_terrain.any():
         is_terrain = is_earth.copy()
-        is_terrain[is_earth] = _is_low(points[is_earth], cell / 2, DECK.noise_step * noise)
+        is_terrain[is_earth] = _is_low(points[is_earth], decks.cell / 2, DECK.noise_step * noise)
         monitor.inform("The cloud has no ground points (class 2); bare earth is found by the segments alone.")
     is_deck = decks.find(points, is_earth, is_terrain, monitor.part(0.2, 0.9))
     is_ground = is_terrain & ~is_deck

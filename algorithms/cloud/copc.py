@@ -32,11 +32,6 @@ class Octree:
     keys: np.ndarray  #: (m, 4), int32: level, x, y, z of each node
     ends: np.ndarray  #: (m,), int64: where each node's points end in ``order``
 
-    @property
-    def spacing(self) -> float:
-        """Distance of the points that the root shows, in units of the file."""
-        return self.side / 2**_GRID_LEVELS
-
 
 def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree:
     """Sort points (n,), records of the header's scale and offset, into the nodes of an octree, coarse samples above.
@@ -123,8 +118,7 @@ def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
 
 def _in_leaves(nodes: np.ndarray, level: int) -> np.ndarray:
     """Return the mask (n,) of points in nodes that hold all points not taken by a level above."""
-    first = run_starts(nodes)
-    counts = np.diff(np.append(first, len(nodes)))
+    counts = np.diff(run_starts(nodes), append=len(nodes))
     return np.repeat((counts <= POINTS_PER_CHUNK) | (level == _DEEPEST), counts)
 
 
@@ -216,5 +210,7 @@ def _describe(stream: BinaryIO, header: Header, octree: Octree, sizes: np.ndarra
     header.evlrs = [hierarchy, *header.evlrs]
     at = stream.seek(0, 2) + EVLR.size
     center = octree.low + octree.side / 2
-    info = INFO.pack(*center, octree.side / 2, octree.spacing, at, len(hierarchy), *times, *(0,) * 11)
+    # The root shows one point of each cell of its grid.
+    spacing = octree.side / 2**_GRID_LEVELS
+    info = INFO.pack(*center, octree.side / 2, spacing, at, len(hierarchy), *times, *(0,) * 11)
     header.vlrs = [replace(header.vlrs[0], data=info), *header.vlrs[1:]]

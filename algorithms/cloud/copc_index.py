@@ -18,13 +18,8 @@ ENTRY = np.dtype([("key", "<i4", 4), ("offset", "<u8"), ("size", "<i4"), ("count
 def has_index(header: Header) -> bool:
     """Whether a header is of a COPC file: its first record is the one with the position of the octree."""
     first = header.vlrs[0] if header.vlrs else None
-    return bool(
-        first
-        and header.is_compressed
-        and first.key == COPC_INFO
-        and first.data is not None
-        and len(first.data) == INFO.size
-    )
+    is_info = first and first.key == COPC_INFO and first.data is not None and len(first.data) == INFO.size
+    return bool(header.is_compressed and is_info)
 
 
 def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray) -> Nodes:

@@ -257,10 +257,8 @@ def common_crs(systems: Sequence[Crs], names: Sequence[str], monitor: Monitor, w
             continue
         differs = crs.identity != leader.identity
         if differs or (whole and not np.isclose(crs.vertical, leader.vertical, rtol=1e-7)):
-            one, other = (
-                system.title + ("" if differs else f" with heights in units of {system.vertical:.6g} m")
-                for system in (leader, crs)
-            )
+            heights = "" if differs else " with heights in units of {:.6g} m"
+            one, other = (system.title + heights.format(system.vertical) for system in (leader, crs))
             raise ValueError(
                 f"{names[first]} and {name} have different coordinate reference systems ({one}, {other}); "
                 "reproject them to one first."
@@ -312,9 +310,7 @@ def crs_records(text: str) -> tuple[list[Vlr], int]:
         if not is_epsg_code(text):
             raise ValueError(f"The CRS {text!r} can't be stored; give WKT or EPSG:code.")
         return [geokeys_of(int(text[5:]))], 0
-    if not text:
-        return [], WKT_BIT
-    return [Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")], WKT_BIT
+    return ([Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")] if text else []), WKT_BIT
 
 
 def storable(named: Any) -> str:

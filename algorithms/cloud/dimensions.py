@@ -48,15 +48,9 @@ _STANDARD = (
     Dimension("blue", ("Blue",), "u2", "blue", standard=True),
 )
 
+_HEIGHTS = ("height above ground", "height_above_ground", "HAG")
 _WRITTEN = (
-    Dimension(
-        "height_above_ground",
-        ("HeightAboveGround",),
-        "f4",
-        "elevation minus ground",
-        "m",
-        aliases=("height above ground", "height_above_ground", "HAG"),
-    ),
+    Dimension("height_above_ground", ("HeightAboveGround",), "f4", "elevation minus ground", "m", aliases=_HEIGHTS),
     Dimension("segment_id", ("SegmentID",), "i4", "segment; 0 if unassigned", aliases=("segment_id",)),
     Dimension("shape", ("Shape",), "u1", "1 plane, 2 cylinder, 3 sphere", of="segment_id"),
     Dimension("cluster_id", ("ClusterID",), "i4", "cluster; 0 if unassigned", aliases=("cluster_id",)),

@@ -94,25 +94,19 @@ class ExtraField:
 
     def as_numbers(self, dtype: str) -> ExtraField:
         """Return a field of the same name and description, byte for byte, that holds plain numbers of another type."""
-        descriptor = _parsed(bytes(DESCRIPTOR_SIZE))
-        descriptor.data_type = _number_of(dtype)
-        raw = bytearray(bytes(descriptor))
+        plain = new_field("", dtype, "")
+        raw = bytearray(bytes(plain.descriptor))
         for part in _TEXTS:
             raw[part] = (self.raw or bytes(DESCRIPTOR_SIZE))[part]
-        return ExtraField(self.name, np.dtype(dtype).newbyteorder("<"), bytes(raw))
-
-
-def _number_of(dtype: str) -> int:
-    """Return the number by which descriptors call a type."""
-    return need_laspy().extradims.get_id_for_extra_dim_type(np.dtype(dtype).newbyteorder("<"))
+        return replace(plain, name=self.name, raw=bytes(raw))
 
 
 def new_field(name: str, dtype: str, description: str) -> ExtraField:
     """Return a field of numbers without scale; ``name`` and ``description`` take at most 31 bytes each."""
-    descriptor = _parsed(bytes(DESCRIPTOR_SIZE))
-    descriptor.data_type = _number_of(dtype)
+    descriptor, kind = _parsed(bytes(DESCRIPTOR_SIZE)), np.dtype(dtype).newbyteorder("<")
+    descriptor.data_type = need_laspy().extradims.get_id_for_extra_dim_type(kind)
     descriptor.name, descriptor.description = name.encode(), description.encode()
-    return ExtraField(name, np.dtype(dtype).newbyteorder("<"), bytes(descriptor))
+    return ExtraField(name, kind, bytes(descriptor))
 
 
 def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:

@@ -178,12 +178,10 @@ def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None, spaci
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _opened(file_at(path), box, spacing)
-    thins = [spacing is not None and has_octree(file, header) for file, header in zip(files, headers)]
-    found = [
-        size_within(file, header, box)[0] if thin else header.count * _share_in(header, box)
-        for file, header, thin in zip(files, headers, thins)
-    ]
+    found = []
+    for file, header in zip(*_opened(file_at(path), box, spacing)):
+        is_thinned = spacing is not None and has_octree(file, header)
+        found.append(size_within(file, header, box)[0] if is_thinned else header.count * _share_in(header, box))
     return round(sum(found))
 
 
@@ -199,10 +197,9 @@ def sizes_within(
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    files, headers = _near(*_opened(file_at(path), box, spacing), box)
-    found = [(file, header) for file, header in zip(files, headers) if is_on_web(file)]
+    found = zip(*_near(*_opened(file_at(path), box, spacing), box))
     with readable(file_at(path)):
-        return [(file, size_within(file, header, box)) for file, header in found]
+        return [(file, size_within(file, header, box)) for file, header in found if is_on_web(file)]
 
 
 def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
@@ -263,9 +260,8 @@ def _near(files: list[Path], headers: list[Header], box: Optional[np.ndarray]) -
     """Return those files that may have points in a box (2, 2), by their headers; one at least."""
     if box is None:
         return files, headers
-    found = [(file, header) for file, header in zip(files, headers) if may_hold(header, box)]
-    found = found or [(files[0], headers[0])]
-    return [file for file, _ in found], [header for _, header in found]
+    rows = [row for row, header in enumerate(headers) if may_hold(header, box)] or [0]
+    return [files[row] for row in rows], [headers[row] for row in rows]
 
 
 @contextmanager

@@ -61,14 +61,13 @@ class _Laz:
             raise truncated(self.path, "its LASzip record is missing")
         if len(found.data) < _HEAD.itemsize + int(_head(found.data)["n_items"]) * _ITEM.size:
             raise truncated(self.path, "its LASzip record is too short")
-        size, expected = sum(item[1] for item in _items(found.data)), self.header.layout.dtype.itemsize
+        items, layout = _items(found.data), self.header.layout
+        size, expected = sum(item[1] for item in items), layout.dtype.itemsize
         if size != expected:
             raise truncated(self.path, f"its LASzip record describes points of {size} bytes, its header of {expected}")
-        if not _fit(_items(found.data), self.header.layout.point_format, expected):
-            raise truncated(
-                self.path, f"its LASzip record does not describe point format {self.header.layout.point_format}"
-            )
-        self._check_versions(_items(found.data))
+        if not _fit(items, layout):
+            raise truncated(self.path, f"its LASzip record does not describe point format {layout.point_format}")
+        self._check_versions(items)
         return _plain_record(found.data)
 
     def _check_versions(self, items: list[tuple]) -> None:
@@ -227,12 +226,11 @@ def _items(record: bytes) -> list[tuple]:
     return [_ITEM.unpack_from(record, _HEAD.itemsize + i * _ITEM.size) for i in range(int(_head(record)["n_items"]))]
 
 
-def _fit(items: list[tuple], point_format: int, size: int) -> bool:
-    """Whether items fit records of ``size`` bytes of a point format; lazrs may allocate GBs for others."""
-    is_old = Layout(point_format).is_old
-    types = list(_TYPES[point_format])
-    extra = size - sum(_SIZES[kind] for kind in types)
-    expected = [(kind, _SIZES[kind]) for kind in types] + ([(_EXTRA_TYPES[not is_old], extra)] if extra else [])
+def _fit(items: list[tuple], layout: Layout) -> bool:
+    """Whether items fit the records of a file; lazrs may allocate GBs for others."""
+    expected = [(kind, _SIZES[kind]) for kind in _TYPES[layout.point_format]]
+    extra = layout.dtype.itemsize - sum(size for _, size in expected)
+    expected += [(_EXTRA_TYPES[not layout.is_old], extra)] if extra else []
     return [item[:2] for item in items] == expected
 
 

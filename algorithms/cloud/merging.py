@@ -42,8 +42,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     crs = next((cloud.crs for cloud in clouds if cloud.crs.identity), clouds[0].crs)
     records = [_records(cloud, crs) for cloud in clouds]
     positions = _positions(clouds, xyz, crs)
-    headers = [_header(*one, crs) for one in zip(clouds, records, positions)]
-    header = merged_header(headers, "clouds", monitor)
+    header = merged_header([_header(*one, crs) for one in zip(clouds, records, positions)], "clouds", monitor)
     points = np.zeros(header.count, header.layout.dtype)
     start = 0
     for one, position in zip(records, positions):
@@ -67,10 +66,8 @@ def in_one_crs(clouds: list[Cloud], monitor: Monitor) -> list[Cloud]:
     systems = [cloud.crs for cloud in clouds]
     leader = common_crs(systems, [_name(*one) for one in enumerate(clouds, start=1)], monitor, whole=False)
     # The scale of a map differs from place to place.
-    return [
-        cloud.in_crs(replace(cloud.crs if cloud.crs.identity else leader, horizontal=leader.horizontal))
-        for cloud in clouds
-    ]
+    own = (replace(crs if crs.identity else leader, horizontal=leader.horizontal) for crs in systems)
+    return [cloud.in_crs(crs) for cloud, crs in zip(clouds, own)]
 
 
 def _name(number: int, cloud: Cloud) -> str:

@@ -81,9 +81,7 @@ def check_place(path: Path, sources: Iterable[Path] = ()) -> None:
 
 def same_file(one: Path, other: Path) -> bool:
     """Whether two paths are the same file, links and case followed where the file system does."""
-    if one.exists() and other.exists():
-        return one.samefile(other)
-    return one.resolve() == other.resolve()
+    return one.samefile(other) if one.exists() and other.exists() else one.resolve() == other.resolve()
 
 
 def check_not_read(targets: Iterable[Path], sources: Iterable[Path]) -> None:
@@ -174,13 +172,13 @@ class ResultFiles:
                 raise ValueError(f"{target} is no ordinary file; give the name of a file.")
             entry = _Entry(target, final, [_in_real_folder(path) for path in companions])
             self._entries.append(entry)
-        return entry.folder / final.name
+        return entry.path / final.name
 
     def final(self, text: str) -> str:
         """Return a text with the paths of working folders replaced by those that the files have in the end."""
         for entry in self._entries:
-            text = text.replace(str(entry.folder / entry.final.name), str(entry.target))
-            text = text.replace(str(entry.folder), str(entry.final.parent))
+            text = text.replace(str(entry.path / entry.final.name), str(entry.target))
+            text = text.replace(str(entry.path), str(entry.final.parent))
         return text
 
     def put_in_place(self) -> None:
@@ -200,7 +198,7 @@ class ResultFiles:
     def discard(self) -> None:
         """Remove the working folders, with everything that was not put in place."""
         for entry in self._entries:
-            entry.working.remove()
+            entry.remove()
 
 
 def _in_real_folder(path: Path) -> Path:
@@ -234,20 +232,19 @@ class _WorkingFolder:
         shutil.rmtree(self.path, ignore_errors=True)
 
 
-class _Entry:
+class _Entry(_WorkingFolder):
     """A target and its working folder."""
 
     def __init__(self, target: Path, final: Path, companions: list[Path]) -> None:
+        super().__init__(final.parent)
         self.target, self.final, self.companions = target, final, companions
-        self.working = _WorkingFolder(final.parent)
-        self.folder = self.working.path
 
     def put_in_place(self, undo: ExitStack) -> None:
         """Move the files to their targets, and note how to undo that."""
-        made = {self.final.with_name(new.name): new for new in self.folder.iterdir() if new.name != LOCK}
+        made = {self.final.with_name(new.name): new for new in self.path.iterdir() if new.name != LOCK}
         if not made:
             return
-        aside = self.folder / _OLD
+        aside = self.path / _OLD
         aside.mkdir()
         for path in self.companions:
             if path not in made and os.path.lexists(path):

@@ -279,7 +279,7 @@ def read_tiles(
     """
     header = merged_header(headers, "tiles", monitor)
     if box is not None:
-        return header, _records_within(paths, headers, header, box, monitor)
+        return header, _within(paths, headers, header, box, monitor)
     points = np.zeros(header.count, header.layout.dtype)
     start = 0
     for path, tile in zip(paths, headers):
@@ -290,9 +290,7 @@ def read_tiles(
     return header, points
 
 
-def _records_within(
-    paths: list[Path], headers: list[Header], merged: Header, box: np.ndarray, monitor: Monitor
-) -> np.ndarray:
+def _within(paths: list[Path], headers: list[Header], merged: Header, box: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the records of all tiles that lie within a box, as records of the merged cloud."""
     found = [np.empty(0, merged.layout.dtype)]
     for path, tile, part in zip(paths, headers, monitor.parts(len(paths))):
@@ -322,19 +320,10 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
     layout = merged_layout([header.layout for header in headers])
     scale, offset = _grid(headers, what)
     reduced = [header.without(*OF_OLD_FILES) for header in headers]
-    merged = replace(
-        reduced[0],
-        minor=max(header.minor for header in headers),
-        encoding=first.encoding if layout.is_old else first.encoding | WKT_BIT,
-        count=sum(header.count for header in headers),
-        scale=scale,
-        offset=offset,
-        waveforms_at=0,
-        user_bytes=b"",
-        gap=b"",
-        vlrs=_union([header.vlrs for header in reduced]),
-        evlrs=_union([header.evlrs for header in reduced]),
-    )
+    merged = replace(reduced[0], scale=scale, offset=offset, waveforms_at=0, user_bytes=b"", gap=b"")
+    merged.minor, merged.count = max(header.minor for header in headers), sum(header.count for header in headers)
+    merged.encoding = first.encoding if layout.is_old else first.encoding | WKT_BIT
+    merged.vlrs, merged.evlrs = (_union([getattr(one, name) for one in reduced]) for name in ("vlrs", "evlrs"))
     return merged.with_layout(layout)
 
 

@@ -73,10 +73,7 @@ class _StandardLibrary:
 
     def _body(self, answer, most: int, is_stopped: Callable[[], bool]) -> bytes:
         found = bytearray()
-        while len(found) < most and not is_stopped():
-            piece = answer.read1(most - len(found))
-            if not piece:
-                break
+        while len(found) < most and not is_stopped() and (piece := answer.read1(most - len(found))):
             found += piece
         return bytes(found)
 

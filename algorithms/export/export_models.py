@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..models3d.set_openings import WINDOW
-from ..models3d.solids import GROUND, ROOF, TERRAIN, WALL
+from ..models3d.solids import GROUND, ROOF, TERRAIN, WALL, WINDOW
 from ..models3d.wavefront import object_line, vertex_lines
 from ..report.page import png
 from ..stage import InputLayer, MapFrame, Piece, TextFile, stage, tunable

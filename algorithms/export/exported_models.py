@@ -11,8 +11,7 @@ from ..criteria import ROUNDING
 from ..footprints.footprint_points import rows_near
 from ..geometry.polygons import area_vector, axes_across
 from ..geometry.raster_filling import nearest_known
-from ..models3d.set_openings import DOOR, WINDOW
-from ..models3d.solids import GROUND, ROOF, SOFFIT, TERRAIN, WALL
+from ..models3d.solids import DOOR, GROUND, ROOF, SOFFIT, TERRAIN, WALL, WINDOW
 from ..stage import LayerFeatures, Monitor, feature_names
 
 # Attributes of a face: the building that it is part of, the level of detail, and roof, wall, ground, window, door,

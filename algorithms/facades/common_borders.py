@@ -51,8 +51,7 @@ def _near_pairs(facades: Sequence[Facade], reach: float, monitor: Monitor) -> It
 
 def _flat(frame: Frame, point: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return point and direction (2,) of a line of the plane in its own frame."""
-    position = frame.local(point[None])[0, :2]
-    return position, np.array([direction @ frame.along, direction @ frame.up])
+    return frame.local(point[None])[0, :2], np.array([direction @ frame.along, direction @ frame.up])
 
 
 def _edges_along(facade: Facade, point: np.ndarray, direction: np.ndarray, reach: float) -> list[tuple[int, float]]:

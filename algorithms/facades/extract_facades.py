@@ -201,8 +201,7 @@ def extract_facades(
     walls = as_strips(xyz, merged_planes(xyz, plane, tolerance, monitor.part(0.6, 0.65)), tolerance)
     pieces = split_at_gaps(xyz, walls, max_gap)
     _leave_low(xyz, pieces, min_height)
-    drawing = Drawing(max_tilt, max_gap, boundary, complete)
-    facades = surfaces_of(xyz, pieces, drawing, monitor.part(0.65, 0.95))
+    facades = surfaces_of(xyz, pieces, Drawing(max_tilt, max_gap, boundary, complete), monitor.part(0.65, 0.95))
     # The area that was seen: the boundary of a post and of objects at its foot has a larger one.
     facades = [each for each in facades if min(each.area, each.seen_area) >= min_area and each.height >= min_height]
     facades.sort(key=lambda facade: tuple(np.round(facade.rings[0].min(axis=0), 2)))
@@ -305,8 +304,7 @@ def as_strips(xyz: np.ndarray, wall: np.ndarray, tolerance: float) -> np.ndarray
     another one by at most ``tolerance`` (root mean square, m).
     """
     result = wall.copy()
-    count = int(wall.max(initial=0))
-    for front in _fronts(xyz, wall, count):
+    for front in _fronts(xyz, wall, int(wall.max(initial=0))):
         rows = np.flatnonzero(np.isin(wall, front))
         strip = _strips(xyz[rows] - xyz.min(axis=0), np.searchsorted(front, wall[rows]), len(front), tolerance)
         result[rows] = front[strip]
@@ -318,8 +316,7 @@ def _fronts(xyz: np.ndarray, wall: np.ndarray, count: int) -> list[np.ndarray]:
     rows = np.flatnonzero(wall > 0)
     if count < 2:
         return []
-    start = xyz.min(axis=0)
-    normal = planes_of(xyz[rows] - start, wall[rows] - 1, count).normal
+    normal = planes_of(xyz[rows] - xyz.min(axis=0), wall[rows] - 1, count).normal
     one, other, shared = shared_cells(xyz[rows], wall[rows] - 1, count, CELL)
     sine = np.linalg.norm(np.cross(normal[one], normal[other]), axis=1)
     # Parallel planes are one wall.

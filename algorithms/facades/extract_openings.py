@@ -127,8 +127,7 @@ def extract_openings(
     >>> len(openings), openings.columns["kind"][0]
     (1, 'window')
     """
-    drawing = Drawing(max_tilt, max_gap, boundary, complete)
-    facades = surfaces_of(xyz, segment_id, drawing, monitor.part(0, 0.5))
+    facades = surfaces_of(xyz, segment_id, Drawing(max_tilt, max_gap, boundary, complete), monitor.part(0, 0.5))
     if corner_distance:
         facades = with_common_borders(facades, corner_distance, monitor.part(0.5, 0.55))
     found = _searched(facades, xyz, max_depth, min_size, monitor.part(0.55, 1))

@@ -1,6 +1,5 @@
 """Facades of segments: least-squares plane, side that was seen, and boundary of each."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -148,7 +147,7 @@ def facade_features(facades: list[Facade]) -> LayerFeatures:
 
 
 def facing_outside(
-    frames: Sequence[Frame], xyz: np.ndarray, rows: Sequence[np.ndarray], thickness: np.ndarray, monitor: Monitor
+    frames: list[Frame], xyz: np.ndarray, rows: list[np.ndarray], thickness: np.ndarray, monitor: Monitor
 ) -> list[Frame]:
     """Return frames turned so that their normals point to the side that the facades were seen from.
 
@@ -216,9 +215,7 @@ def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float)
     return float(votes.sum()) / total if total else 0.0, float(is_wall.sum()) * CELL**2
 
 
-def _corners(
-    frames: Sequence[Frame], xyz: np.ndarray, rows: Sequence[np.ndarray]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _corners(frames: list[Frame], xyz: np.ndarray, rows: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return pairs of facades that meet (k,), (k,), and whether their normals agree: 1 if they do, -1 if not."""
     if len(frames) < 2:
         return np.zeros(0, int), np.zeros(0, int), np.zeros(0)

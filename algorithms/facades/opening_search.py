@@ -152,8 +152,7 @@ def _joined(positions: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
     level = (np.abs(low[:, None, 1] - low[:, 1]) <= _MULLION) & (np.abs(high[:, None, 1] - high[:, 1]) <= _MULLION)
     beside = level & (shared[..., 0] > -_MULLION) & (shared[..., 1] > 0)
     one, other = np.nonzero(overlap | beside)
-    joined = components(one, other, count + 1)[1] + 1
-    return np.where(group > 0, joined[group], 0)
+    return np.where(group > 0, 1 + components(one, other, count + 1)[1][group], 0)
 
 
 def _opening(
@@ -237,11 +236,8 @@ def _enclosure(raster: WallRaster, ring: np.ndarray, sill: Optional[float]) -> f
     if sill is not None:
         counted = np.maximum(ring[:-1, 1], ring[1:, 1]) > sill + raster.size
     pieces = np.maximum(np.ceil(length / raster.size), 1).astype(int)
-    positions = [
-        start + (np.arange(n)[:, None] + 0.5) / n * step
-        for start, step, n, is_counted in zip(ring[:-1], steps, pieces, counted)
-        if is_counted
-    ]
+    sides = zip(ring[:-1][counted], steps[counted], pieces[counted])
+    positions = [start + (np.arange(n)[:, None] + 0.5) / n * step for start, step, n in sides]
     if not positions:
         return 0.0
     distance = ndimage.distance_transform_edt(~raster.wall) * raster.size

@@ -145,8 +145,7 @@ def segment_facade_lines(
     monitor.resolved(line_duration=duration)
     line = _lines(gps_time[order], source[order], duration)
     piece = _pieces(xyz[order], line, tolerance, monitor.part(0, 0.8))
-    limits = (max_ground_height, facade_distance)
-    segment_id, features = _described(xyz[order], line, piece, limits, min_points)
+    segment_id, features = _described(xyz[order], line, piece, (max_ground_height, facade_distance), min_points)
     if not features.geometries:
         monitor.none_found("No scan line has a straight segment; lower the minimum points or raise the tolerance.")
     return placed(segment_id, order, len(xyz)), features
@@ -182,8 +181,7 @@ def _lines(gps_time: np.ndarray, source: np.ndarray, duration: float) -> np.ndar
     is_start = np.ones(len(gps_time), bool)
     is_start[1:] = (np.diff(gps_time) > _SKY * duration) | (np.diff(source) != 0)
     run = np.cumsum(is_start) - 1
-    since = gps_time - gps_time[is_start][run]
-    turn = np.floor(since / duration).astype(np.int64)
+    turn = np.floor((gps_time - gps_time[is_start][run]) / duration).astype(np.int64)
     is_start[1:] |= np.diff(turn) > 0
     return np.cumsum(is_start) - 1
 
@@ -201,7 +199,9 @@ def _pieces(xyz: np.ndarray, line: np.ndarray, tolerance: float, monitor: Monito
 
 def _splits(xyz: np.ndarray, tolerance: float) -> np.ndarray:
     """Return the first points of the straight pieces of one line, in the plane that the scanner turns in."""
-    positions = np.column_stack([_across(xyz), xyz[:, 2]])
+    # Along the direction in plan in which the line extends most, and up.
+    center, _, axes = principal_axes(xyz[:, :2])
+    positions = np.column_stack([(xyz[:, :2] - center) @ axes[:, 1], xyz[:, 2]])
     step = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     gap = max(_GAP_STEPS * float(np.median(step)), _LEAST_GAP) if len(step) else _LEAST_GAP
     ends = np.concatenate([[0], np.flatnonzero(step > gap) + 1, [len(xyz)]])
@@ -213,25 +213,18 @@ def _splits(xyz: np.ndarray, tolerance: float) -> np.ndarray:
     return np.concatenate(found)
 
 
-def _across(xyz: np.ndarray) -> np.ndarray:
-    """Return positions (n,) along the direction in plan in which a line extends most (m)."""
-    center, _, axes = principal_axes(xyz[:, :2])
-    return (xyz[:, :2] - center) @ axes[:, 1]
-
-
 def _described(
     xyz: np.ndarray, line: np.ndarray, piece: np.ndarray, limits: tuple[float, float], min_points: int
 ) -> tuple[np.ndarray, LayerFeatures]:
     """Return the segment (n,) of each point in the order of the lines, and the segments with their attributes."""
-    count = np.bincount(piece)
-    first = run_starts(piece)
+    count, first = np.bincount(piece), run_starts(piece)
     last = first + count - 1
     kept = np.flatnonzero(count >= min_points)
     number = placed(np.arange(1, len(kept) + 1, dtype=np.int32), kept, len(count))
     start, end = xyz[first[kept]], xyz[last[kept]]
     middle, of_line = (start + end) / 2, line[first[kept]]
     slope = _slopes(xyz, piece, kept)
-    side, distance = _from_scanner(xyz, line, middle, of_line)
+    side, distance = _sides(xyz, line, middle, of_line)
     height = middle[:, 2] - least_of(middle[:, 2], of_line, int(line[-1]) + 1)[of_line]
     length = np.linalg.norm(end - start, axis=1)
     columns = {
@@ -256,9 +249,7 @@ def _slopes(xyz: np.ndarray, piece: np.ndarray, kept: np.ndarray) -> np.ndarray:
     return np.degrees(np.arcsin(np.clip(np.abs(vectors[:, 2, 2]), 0, 1)))
 
 
-def _from_scanner(
-    xyz: np.ndarray, line: np.ndarray, middle: np.ndarray, of_line: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _sides(xyz: np.ndarray, line: np.ndarray, middle: np.ndarray, of_line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the side, 0 or 1, of the scanner that segments are on, and their distance from it in plan (m)."""
     starts = run_starts(line)
     ends = np.append(starts[1:], len(line)) - 1

@@ -64,8 +64,8 @@ class Arrangement:
     def _build(self, low: np.ndarray, high: np.ndarray) -> None:
         """Find crossings, edges and cells of the current lines."""
         numbers = _numbers(len(self.points))
-        self.crossing, positions, ways = _crossings(self.points, self.directions, low, high)
-        entry, leave = _clipped(self.points, self.directions, low, high)
+        self.crossing, positions, ways = self._crossings(low, high)
+        entry, leave = self._clipped(low, high)
         own, k = np.flatnonzero(entry < leave), len(self.crossing)
         none, ends = np.full(len(own), -1), k + np.arange(2 * len(own))
         # All positions on each line in order: where it enters the rectangle, crossings, where it leaves.
@@ -86,6 +86,28 @@ class Arrangement:
         self.count = len(self._keys)
         self.is_border = self._touching(low, high, np.concatenate(at_sides))
         self.around = self._cells_around(k)
+
+    def _crossings(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return pairs of lines (k, 2) that meet in a rectangle, where (k, 2), and the ways there along both (m)."""
+        first, second = np.triu_indices(len(self.points), 1)
+        u, v, apart = self.directions[first], self.directions[second], self.points[second] - self.points[first]
+        turn = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            way = (apart[:, 0] * v[:, 1] - apart[:, 1] * v[:, 0]) / turn
+            other = (apart[:, 0] * u[:, 1] - apart[:, 1] * u[:, 0]) / turn
+            positions = self.points[first] + way[:, None] * u
+            meets = (turn != 0) & ((positions > low) & (positions < high)).all(axis=1)
+        return np.column_stack([first, second])[meets], positions[meets], np.column_stack([way, other])[meets]
+
+    def _clipped(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return where lines (m,) enter and leave a rectangle, as ways along them; entry > exit for lines outside."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ways = np.sort([(limit - self.points) / self.directions for limit in (low, high)], axis=0)
+        level = self.directions == 0
+        within = (self.points > low) & (self.points < high)
+        entry = np.where(level, np.where(within, -np.inf, np.inf), ways[0]).max(axis=1, initial=-np.inf)
+        leave = np.where(level, np.where(within, np.inf, -np.inf), ways[1]).min(axis=1, initial=np.inf)
+        return entry, leave
 
     def _right_keys(self, line: np.ndarray, way: np.ndarray, other: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """Return the number of the cell to the right of each line behind each of the positions on it."""
@@ -178,34 +200,6 @@ def sides_of(xy: np.ndarray, points: np.ndarray, directions: np.ndarray) -> np.n
 def _numbers(m: int) -> np.ndarray:
     """Return a random number (m,) for each line: no two cells share the sum of those to whose left they lie."""
     return np.random.default_rng(0).integers(1, 2**62, m)
-
-
-def _crossings(
-    points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return pairs of lines (k, 2) that meet in a rectangle, where (k, 2), and the ways there along both (k, 2) (m)."""
-    first, second = np.triu_indices(len(points), 1)
-    u, v, apart = directions[first], directions[second], points[second] - points[first]
-    turn = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        way = (apart[:, 0] * v[:, 1] - apart[:, 1] * v[:, 0]) / turn
-        other = (apart[:, 0] * u[:, 1] - apart[:, 1] * u[:, 0]) / turn
-        positions = points[first] + way[:, None] * u
-        meets = (turn != 0) & ((positions > low) & (positions < high)).all(axis=1)
-    return np.column_stack([first, second])[meets], positions[meets], np.column_stack([way, other])[meets]
-
-
-def _clipped(
-    points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the parameters (m,) of lines at which they enter and leave a rectangle; entry > exit for lines outside."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ways = np.sort([(limit - points) / directions for limit in (low, high)], axis=0)
-    level = directions == 0
-    within = (points > low) & (points < high)
-    entry = np.where(level, np.where(within, -np.inf, np.inf), ways[0]).max(axis=1, initial=-np.inf)
-    leave = np.where(level, np.where(within, np.inf, -np.inf), ways[1]).min(axis=1, initial=np.inf)
-    return entry, leave
 
 
 def _walk(following: dict, start: int) -> list[tuple[int, int]]:

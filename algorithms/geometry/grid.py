@@ -33,10 +33,7 @@ class Grid:
 
     def number(self, xyz: np.ndarray) -> np.ndarray:
         """Return the cell number (n,), int64, of points inside the grid."""
-        column, row = (
-            np.floor((xyz[:, axis] - self.origin[axis]) / self.size).astype(np.int64) + (1 - self.first[axis])
-            for axis in (0, 1)
-        )
+        column, row = (lattice(xyz[:, k] - self.origin[k], self.size) + (1 - self.first[k]) for k in (0, 1))
         return row * self.columns + column
 
     def center(self, number: np.ndarray) -> np.ndarray:

@@ -123,8 +123,7 @@ def members(group: np.ndarray) -> dict[int, np.ndarray]:
     """Return the positions of each number from 1 on in ``group`` (n,): int64, ascending, by number."""
     positive = np.flatnonzero(group > 0)
     order = positive[np.argsort(group[positive], kind="stable")]
-    parts = np.split(order, run_starts(group[order])[1:])
-    return {int(group[part[0]]): part for part in parts if len(part)}
+    return {int(group[part[0]]): part for part in np.split(order, run_starts(group[order])[1:]) if len(part)}
 
 
 def components(one: np.ndarray, other: np.ndarray, count: int) -> tuple[int, np.ndarray]:

@@ -119,10 +119,8 @@ class Tin:
         """Return the facet (n,), int32, under each point, for points that are near a node (n,) known by number."""
         return self._located(xyz, lambda rows, plan: node[rows], Monitor())
 
-    def _located(
-        self, xyz: np.ndarray, node: Callable[[np.ndarray, np.ndarray], np.ndarray], monitor: Monitor
-    ) -> np.ndarray:
-        """Return the facets under points; ``node`` returns the nodes from which points start."""
+    def _located(self, xyz: np.ndarray, node: Callable[..., np.ndarray], monitor: Monitor) -> np.ndarray:
+        """Return the facets under points; ``node`` returns the nodes from which points start, by rows and positions."""
         found = np.empty(len(xyz), np.int32)
 
         def walk(rows: np.ndarray) -> None:
@@ -201,13 +199,11 @@ class Tin:
     def _gradients(self) -> tuple[np.ndarray, np.ndarray]:
         """Return gradient (f, 2) and level at the shifted origin (f,) of each facet."""
         a, b, c = np.swapaxes(self.nodes[self.facets], 0, 1)
-        u, v = b - a, c - a
-        area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        (ux, uy, uz), (vx, vy, vz) = (b - a).T, (c - a).T
+        area = ux * vy - uy * vx
         # Facets of collinear nodes have no gradient; Qhull keeps them only at rounding's edge.
         safe = np.where(np.abs(area) > 0, area, np.inf)
-        slope = np.column_stack(
-            [(u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / safe, (u[:, 0] * v[:, 2] - v[:, 0] * u[:, 2]) / safe]
-        )
+        slope = np.column_stack([(uz * vy - vz * uy) / safe, (ux * vz - vx * uz) / safe])
         return slope, a[:, 2] - np.einsum("ij,ij->i", slope, a[:, :2])
 
 

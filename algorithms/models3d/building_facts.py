@@ -43,6 +43,9 @@ class CHECKS:
     covered: float = 0.75
 
 
+# Pieces of the descriptions of fields.
+_LARGE_FACE, _IF_WEAK = f"a roof face of {LARGE:g} m² or more", f"if weakest_face is under {MAJORITY:g}"
+
 BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
     Field("building", str, "footprint below it: its attribute id, or its number", of="footprints"),
@@ -57,11 +60,7 @@ BUILDING_FIELDS = (
     Field("rms", float, "root mean square height of its roof points above or below the model", "m"),
     Field("off", float, f"share of its roof points more than {OFF} m above or below the model, 0 to 1"),
     Field("explained", float, "share of its roof points that lie on the model, 0 to 1"),
-    Field(
-        "weakest_face",
-        float,
-        f"least share of the points of a roof face of {LARGE:g} m² or more that lie on it, 0 to 1",
-    ),
+    Field("weakest_face", float, f"least share of the points of {_LARGE_FACE} that lie on it, 0 to 1"),
     Field("covered", float, "share of its area that has points, 0 to 1"),
     Field(
         "gap_area", float, "area of its footprint without points; sort by it to find holes too small for check", "m²"
@@ -74,11 +73,7 @@ BUILDING_FIELDS = (
         f"points on less than {CHECKS.covered:.0%} of the area, or less than {MAJORITY:.0%} of the points of a "
         "large face on it. 0: sound",
     ),
-    Field(
-        "confidence",
-        float,
-        f"confidence in the model: explained times covered, less if weakest_face is under {MAJORITY:g}, 0 to 1",
-    ),
+    Field("confidence", float, f"confidence in the model: explained times covered, less {_IF_WEAK}, 0 to 1"),
     Field("points", int, "points over its footprint"),
 )
 ROOF_FIELDS = (

@@ -213,8 +213,7 @@ def _single_top(top: _Top) -> tuple[Optional[Partition], str]:
     cells, inside = empty_partition(top.rings, top.xyz[:, :2])
     if not inside.any():
         return None, "its footprint has no area"
-    coefficients = np.array([[0.0, 0.0, height]])
-    return Partition(cells, np.where(inside, 0, -1), coefficients, np.zeros((len(cells), 1))), ""
+    return Partition(cells, np.where(inside, 0, -1), np.array([[0.0, 0.0, height]]), np.zeros((len(cells), 1))), ""
 
 
 def _without_dormers(planes: RoofPlanes, spacing: float) -> RoofPlanes:

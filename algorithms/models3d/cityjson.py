@@ -11,8 +11,7 @@ import numpy as np
 
 from ..stage import Field, MapFrame
 from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, NamedModel, building_attributes, face_attributes
-from .set_openings import DOOR, WINDOW
-from .solids import GROUND, RESOLUTION, ROOF, SOFFIT, WALL, Solid, edges_around
+from .solids import DOOR, GROUND, RESOLUTION, ROOF, SOFFIT, WALL, WINDOW, Solid, edges_around
 
 CITYJSON, CITYJSON_SEQ = "CityJSON", "CityJSONSeq"
 FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".jsonl")}
@@ -118,20 +117,18 @@ class Vertices:
 
     def __init__(self, translate: np.ndarray, frame: MapFrame) -> None:
         self.translate, self.frame = translate, frame
-        self.rows: list[list[int]] = []
         self._number: dict[tuple[int, ...], int] = {}
+
+    @property
+    def rows(self) -> list[tuple[int, ...]]:
+        """The positions by number."""
+        return list(self._number)
 
     def numbers(self, local: np.ndarray) -> list[int]:
         """Return the numbers of positions (n, 3), local m; new ones are added."""
-        found = []
         # Whole steps, in map units, as solids have them: faces stay plane.
-        for row in np.rint((self.frame.to_map(local) - self.translate) / RESOLUTION).astype(np.int64).tolist():
-            key = tuple(row)
-            if key not in self._number:
-                self._number[key] = len(self.rows)
-                self.rows.append(row)
-            found.append(self._number[key])
-        return found
+        rows = np.rint((self.frame.to_map(local) - self.translate) / RESOLUTION).astype(np.int64).tolist()
+        return [self._number.setdefault(tuple(row), len(self._number)) for row in rows]
 
 
 def _building(one: NamedModel, vertices: Vertices) -> dict[str, Any]:

@@ -217,15 +217,9 @@ class _Points:
         order = np.argsort(xyz[:, 0], kind="stable")
         is_week = time is None or (time.min() >= 0 and time.max() <= _WEEK)
         ground = xyz[classification == PointClass.GROUND]
-        return cls(
-            xyz[order],
-            classification[order],
-            None if is_week or time is None else time[order],
-            ground,
-            spatial.cKDTree(ground[:, :2]),
-            roofs,
-            sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[np.isin(classification, roofs)])),
-        )
+        dated = None if is_week or time is None else time[order]
+        spacing = sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[np.isin(classification, roofs)]))
+        return cls(xyz[order], classification[order], dated, ground, spatial.cKDTree(ground[:, :2]), roofs, spacing)
 
     def date(self, rows: np.ndarray) -> Optional[str]:
         """Return the median day of some points, None if it is unknown."""

@@ -55,8 +55,7 @@ def _turned(triangles: list[list[int]], rings: list[list[int]], positions: dict)
         for u, v, w in ((a, d, c), (d, b, c)):
             across[u, v], across[v, w], across[w, u] = w, u, v
         waiting.extend((min(u, v), max(u, v)) for u, v in ((a, d), (d, b), (b, c), (c, a)) if (u, v) not in edges)
-    found = {(a, b, c) for (a, b), c in across.items() if a < b and a < c}
-    return [list(corners) for corners in sorted(found)]
+    return [list(corners) for corners in sorted((a, b, c) for (a, b), c in across.items() if a < b and a < c)]
 
 
 def _is_better(a, b, c, d) -> bool:
@@ -72,8 +71,7 @@ def _is_better(a, b, c, d) -> bool:
 def _in_plane(vertices: np.ndarray, rings: list[list[int]], used: list[int]) -> np.ndarray:
     """Return the vertices of a face in two axes of its plane, counterclockwise for the exterior."""
     normal = area_vector(vertices[rings[0]])
-    axes = axes_across(normal / np.linalg.norm(normal))
-    return (vertices[used] - vertices[rings[0][0]]) @ np.column_stack(axes)
+    return (vertices[used] - vertices[rings[0][0]]) @ np.column_stack(axes_across(normal / np.linalg.norm(normal)))
 
 
 def _corner(ring: list[int], i: int) -> tuple[int, int, int]:
@@ -90,10 +88,8 @@ def _is_ear(ring: list[int], i: int, positions: dict) -> bool:
     a, b, c = (positions[v] for v in names)
     if _turn(a, b, c) <= ROUNDING:
         return False
-    return not any(
-        _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0
-        for p in (positions[v] for v in ring if v not in names)
-    )
+    others = (positions[v] for v in ring if v not in names)
+    return not any(_turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0 for p in others)
 
 
 def _bridged(ring: list[int], hole: list[int], positions: dict) -> list[int]:

@@ -80,8 +80,7 @@ def mended(
         if not mending.changed:
             break
     solids, why, best = min(found, key=lambda one: one[2].off() if one[0] else np.inf)
-    for name in ("cells", "label", "coefficients", "cost"):
-        setattr(partition, name, getattr(best.partition, name))
+    vars(partition).update(vars(best.partition))
     return solids, why
 
 
@@ -125,8 +124,7 @@ def _pieces(partition: Partition, base: float, highest: np.ndarray) -> list[_Pie
         if (before & (part.label < 0)).any():
             waiting += connected(part)
         else:
-            label = part.label.copy()
-            pieces.append(_Piece(*build_solid(levels), label))
+            pieces.append(_Piece(*build_solid(levels), part.label.copy()))
         partition.label[before] = part.label[before]
     return pieces
 
@@ -282,8 +280,7 @@ class _Mending:
 
     def _lower(self, part: np.ndarray) -> bool:
         """Give a part a better plane, if there is one; return whether it did. A small level one would join again."""
-        planes = [int(self.partition.label[part[0]]), *self._neighbors(part)]
-        return self._take(part, planes, not self._is_small(part))
+        return self._take(part, [int(self.partition.label[part[0]]), *self._neighbors(part)], not self._is_small(part))
 
     def _high_at(self, corner: int) -> list[int]:
         """Return the cells that are too high at a corner."""

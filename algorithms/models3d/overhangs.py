@@ -130,7 +130,6 @@ def overhanging(partition: Partition, base: float, walls: list[np.ndarray]) -> t
 
     ``partition`` has a valid solid over its whole outline, on a level ground at the height ``base`` (m).
     """
-    why = ""
     for snap in _SNAPS:
         solids, why = _overhanging(partition, base, walls, snap)
         if not why:

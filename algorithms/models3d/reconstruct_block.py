@@ -1,21 +1,25 @@
 """A city block from the street and from the air: roofs, walls where they were seen, windows and doors."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..criteria import MAJORITY, SAME_WAY
+from ..facades.facade_frame import frame_of
 from ..facades.plan_segments import PlanSegments, facade_segments
 from ..facades.street_walls import fitted_to_walls
-from ..geometry.rings import nearest_edge_distances
+from ..geometry.polygons import area_vector
+from ..geometry.rings import are_inside, is_valid, nearest_edge_distances
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, TextFile, stage, tunable
 from . import cityjson
 from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, WALL_FIELDS, NamedModel, face_attributes, face_rings, faces_of
 from .reconstruct_roofs import reconstruct_roofs
-from .set_openings import DOOR, WINDOW, WallOpening, with_openings
 from .solid_faults import fault_of
-from .solids import WALL, Solid
+from .solids import DOOR, WALL, WINDOW, Solid
 
 # The level of detail with windows and doors, as CityJSON writes it.
 LEVEL_OF_OPENINGS = "3"
@@ -35,6 +39,12 @@ OPENING_FIELDS = (
     Field("height", float, "height", "m"),
     Field("sill", float, "height of its lower side over the ground of the building", "m"),
 )
+
+# Distance (m) of the middle of an opening from the plane of its wall, at most.
+_OFF = 0.5
+
+# Least distance (m) between an opening and the edge of its wall: thinner strips make no sound triangles.
+_MARGIN = 0.03
 
 
 @stage(
@@ -169,8 +179,7 @@ def _pierced(models: list[NamedModel], openings: list[WallOpening]) -> tuple[lis
             done += [(one, opening) for opening in found]
             taken = {opening.number for opening in found}
             left = [opening for opening in left if opening.number not in taken]
-        levels = {**one.model.solids, LEVEL_OF_OPENINGS: solids}
-        pierced.append(replace(one, model=replace(one.model, solids=levels)))
+        pierced.append(replace(one, model=replace(one.model, solids={**one.model.solids, LEVEL_OF_OPENINGS: solids})))
     return pierced, done
 
 
@@ -216,3 +225,82 @@ def _opening_layer(done: list[tuple]) -> LayerFeatures:
         }
         features.append(([np.concatenate([ring, ring[:1]])], facts))
     return LayerFeatures.numbered(features, OPENING_FIELDS)
+
+
+@dataclass(frozen=True)
+class WallOpening:
+    """A window or door: number, kind and open ring (m, 3), counterclockwise seen from outside, m."""
+
+    number: int
+    kind: str
+    ring: np.ndarray
+
+
+def with_openings(solid: Solid, openings: list[WallOpening]) -> tuple[Solid, list[WallOpening]]:
+    """Return a solid with the openings that lie in its walls as faces, and those openings as they were set.
+
+    A wall gets a hole for each, which the face of the opening closes: the solid stays closed. ``planes`` of these faces
+    are the numbers of the openings.
+    """
+    vertices = [tuple(row) for row in solid.vertices.tolist()]
+    faces, kinds, planes = [list(rings) for rings in solid.faces], list(solid.kinds), list(solid.planes)
+    walls = [_Wall(solid, face) for face, kind in enumerate(solid.kinds) if kind == WALL]
+    done = []
+    for opening in openings:
+        wall, flat = _best_wall(walls, opening)
+        if wall is None:
+            continue
+        ring = wall.frame.space(flat)
+        numbers = list(range(len(vertices), len(vertices) + len(ring)))
+        vertices += [tuple(row) for row in ring.tolist()]
+        wall.rings.append(np.concatenate([flat[::-1], flat[-1:]]))
+        faces[wall.face].append(numbers[::-1])
+        faces.append([numbers])
+        kinds.append(opening.kind)
+        planes.append(opening.number)
+        done.append(WallOpening(opening.number, opening.kind, ring))
+    return Solid(np.array(vertices), faces, kinds, planes), done
+
+
+class _Wall:
+    """An upright face of a solid, in its own plane: along and up it."""
+
+    def __init__(self, solid: Solid, face: int) -> None:
+        normal = solid.normals[face]
+        self.face = face
+        self.frame = frame_of(solid.vertices[solid.faces[face][0][0]], normal / np.linalg.norm(normal))
+        self.rings = [self.flat(solid.vertices[[*ring, ring[0]]]) for ring in solid.faces[face]]
+
+    def flat(self, positions: np.ndarray) -> np.ndarray:
+        """Return positions (m, 2) along and up the wall of positions (m, 3)."""
+        return self.frame.local(positions)[:, :2]
+
+
+def _best_wall(walls: list[_Wall], opening: WallOpening) -> tuple:
+    """Return the nearest wall that an opening can be set into, and its open ring (m, 2) there; None without any."""
+    normal = area_vector(opening.ring)
+    normal /= np.linalg.norm(normal)
+    middle = opening.ring.mean(axis=0)
+    off = [abs(float((middle - wall.frame.origin) @ wall.frame.normal)) for wall in walls]
+    for number in np.argsort(off):
+        wall = walls[number]
+        if off[number] > _OFF:
+            break
+        if normal @ wall.frame.normal >= np.cos(np.radians(SAME_WAY)):
+            flat = _cut_back(wall.rings, wall.flat(opening.ring))
+            if flat is not None:
+                return wall, flat
+    return None, None
+
+
+def _cut_back(rings: list[np.ndarray], flat: np.ndarray):
+    """Return the open ring (m, 2) of an opening within the rings of a wall; None if it doesn't lie in it."""
+    outer = rings[0]
+    low, high = outer.min(axis=0) + _MARGIN, outer.max(axis=0) - _MARGIN
+    inner = np.clip(flat, low, high)
+    kept = np.ptp(inner, axis=0).prod() / max(np.ptp(flat, axis=0).prod(), 1e-9)
+    # An opening is cut to its wall only if most of it lies there.
+    if kept < MAJORITY or not are_inside(inner, outer).all():
+        return None
+    closed = np.concatenate([inner[::-1], inner[-1:]])
+    return inner if is_valid([outer, *rings[1:], closed]) else None

@@ -234,14 +234,13 @@ def _modelled(
         if not shows_roof(len(over), settings.spacing, outline.rings):
             empty += 1
         else:
-            beside = ground_beside(ground, tree, outline.rings)
-            base, terrain = np.percentile(beside, (GROUND_PERCENTILE, 50)).tolist()
+            heights = GROUND_PERCENTILE, 50
+            base, terrain = np.percentile(ground_beside(ground, tree, outline.rings), heights).tolist()
             around = building[rows_near(building, outline.rings, RADIUS)]
             model = model_building(building[over], is_low[over], around, outline.rings, base, settings)
             model.terrain = terrain
             if model.level:
-                walls = model.walls or outline.rings
-                rings = [np.column_stack([ring, np.full(len(ring), base)]) for ring in walls]
+                rings = [np.column_stack([ring, np.full(len(ring), base)]) for ring in model.walls or outline.rings]
                 models.append(NamedModel(outline.name, rings, model, outline.attributes))
             else:
                 failed.append((outline.name, model.reason))

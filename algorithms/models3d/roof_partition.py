@@ -347,8 +347,7 @@ def divide_footprint(
     cells, _ = empty_partition(rings, xyz[:, :2])
     for piece in find_roof_lines(xyz, planes, rings, spacing):
         cells.cut(piece.start, piece.end, SNAP)
-    inside = are_inside(cells, rings)
-    used = np.flatnonzero(inside)
+    used = np.flatnonzero(are_inside(cells, rings))
     cost = np.zeros((len(cells), len(planes)))
     # Each point stands for an area.
     cost[used] = spacing**2 * _unexplained(xyz, is_top, planes, cells, used, tolerance)

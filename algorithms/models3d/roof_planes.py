@@ -68,8 +68,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     """
     if len(xyz) < max(min_points, 4):
         return RoofPlanes(np.zeros((0, 3)), np.full(len(xyz), -1))
-    rows = np.arange(len(xyz))
-    neighbors, _, covariance = Nearest(PLANE_NEIGHBORS).moments(spatial.cKDTree(xyz), rows)
+    neighbors, _, covariance = Nearest(PLANE_NEIGHBORS).moments(spatial.cKDTree(xyz), np.arange(len(xyz)))
     eigenvalues = symmetric_eigenvalues(covariance)
     normal = np.nan_to_num(smallest_eigenvectors(covariance, eigenvalues))
     growth = _Growth(xyz, neighbors, normal, tolerance, float(np.cos(np.deg2rad(max_slope))))

@@ -48,11 +48,8 @@ class _Builder:
     def __init__(self, levels: Levels) -> None:
         self.levels, self.cells, self.label = levels, levels.cells, levels.label
         # Edges of cells with a plane: vertices, the cell and its plane to the left, the plane to the right.
-        self.edges = [
-            (u, v, cell, self.label[cell], levels.plane_beyond(u, v))
-            for (u, v), cell in self.cells.cell_of.items()
-            if self.label[cell] >= 0
-        ]
+        roofs = ((u, v, cell) for (u, v), cell in self.cells.cell_of.items() if self.label[cell] >= 0)
+        self.edges = [(u, v, cell, self.label[cell], levels.plane_beyond(u, v)) for u, v, cell in roofs]
         # The positions at each vertex, from the lowest up.
         self.at: dict[int, list[int]] = defaultdict(list)
         for number, (vertex, _) in {n: key for key, n in levels.number.items()}.items():
@@ -89,8 +86,7 @@ class _Builder:
     def _parts(self) -> dict[int, int]:
         """Return the number of the connected part of equal planes of each cell."""
         pairs = [(cell, self.cells.cell_of[v, u]) for u, v, cell, plane, beyond in self.edges if beyond == plane]
-        group = groups_of(pairs, len(self.cells))
-        return {cell: number for cell, number in enumerate(group) if self.label[cell] >= 0}
+        return {cell: part for cell, part in enumerate(groups_of(pairs, len(self.cells))) if self.label[cell] >= 0}
 
     def _bottom_edges(self) -> dict[int, list[tuple[int, int]]]:
         """Return the edges around the ground and around soffits, clockwise, by what cells end in below."""
@@ -133,12 +129,10 @@ class _Builder:
         """Return the wall between two planes on an edge, seen from its right; empty where the first is not below."""
         number, positions = self.levels.number, self.levels.positions
         low_u, low_v, high_u, high_v = number[u, low], number[v, low], number[u, high], number[v, high]
-        if positions[low_u][2] > positions[high_u][2] or positions[low_v][2] > positions[high_v][2]:
+        is_below = positions[low_u][2] <= positions[high_u][2] and positions[low_v][2] <= positions[high_v][2]
+        if not is_below or (low_u == high_u and low_v == high_v):
             return []
-        if low_u == high_u and low_v == high_v:
-            return []
-        up, down = self._between(v, low_v, high_v), self._between(u, low_u, high_u)[::-1]
-        return [*up, *down]
+        return [*self._between(v, low_v, high_v), *self._between(u, low_u, high_u)[::-1]]
 
     def _between(self, vertex: int, low: int, high: int) -> list[int]:
         """Return the positions at a vertex from one up to another one."""
@@ -204,8 +198,7 @@ def _compact(positions: list[Position], faces: list[_Built]) -> Solid:
             for a, b in edges_around(ring):
                 beside[a].add(b)
                 beside[b].add(a)
-    straight = _straight(positions, beside)
-    kept = sorted(set(beside) - straight)
+    kept = sorted(set(beside) - _straight(positions, beside))
     number = {old: new for new, old in enumerate(kept)}
     solid = Solid(np.array([positions[old] for old in kept]))
     for kind, plane, rings, _ in faces:

@@ -53,7 +53,7 @@ def faults_of(solid: Solid) -> dict[int, str]:
             return found
     faces = [_Face(solid, face) for face in range(len(solid.faces))]
     found = {one.number: fault for one in faces if (fault := one.fault())}
-    found = found or _fan_faults(solid, faces) or _meeting_faults(solid, faces)
+    found = found or _fan_faults(faces) or _meeting_faults(solid, faces)
     return found or ({0: "the faces look inward"} if solid.volume <= 0 else {})
 
 
@@ -203,7 +203,7 @@ class _Face:
         return inside & (nearest_edge_distances(plan, self.start, self.end) > MILLIMETER)
 
 
-def _fan_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
+def _fan_faults(faces: list[_Face]) -> dict[int, str]:
     """Return the faces at corners in which surfaces only touch."""
     following: dict[int, dict[int, int]] = defaultdict(dict)
     at: dict[int, list[int]] = defaultdict(list)
@@ -235,12 +235,10 @@ def _sectors(face: _Face) -> dict[int, dict[int, int]]:
     position = dict(zip(face.edge[:, 0].tolist(), face.start))
     for corner, ways in ends.items():
         if len(ways) > 1:
-            angle = {
-                other: float(np.arctan2(*(position[other] - position[corner])[::-1]))
-                for pair in ways.items()
-                for other in pair
-            }
             befores = list(ways.values())
+            angle = {
+                other: float(np.arctan2(*(position[other] - position[corner])[::-1])) for other in (*ways, *befores)
+            }
             for after in ways:
                 ways[after] = min(befores, key=lambda before: (angle[before] - angle[after]) % (2 * np.pi))
     return ends

@@ -139,12 +139,8 @@ class Levels:
             step = self._step_to_one_height(sorted(planes), (x, y))
             options += [self.plan[gone], (x + step[0], y + step[1])]
         most = max(len(self._groups(self.plan[one], self.around[one])) for one in (kept, gone))
-        return any(
-            math.dist(plan, self.plan[kept]) <= _MEET
-            and len(self._groups(plan, planes)) <= most
-            and self._join_at(kept, gone, plan)
-            for plan in options
-        )
+        near = (plan for plan in options if math.dist(plan, self.plan[kept]) <= _MEET)
+        return any(len(self._groups(plan, planes)) <= most and self._join_at(kept, gone, plan) for plan in near)
 
     def _is_on_straight_outline(self, vertex: int, neighbor: int) -> bool:
         """Return whether the outline goes on straight at a vertex from one of its neighbors."""
@@ -170,9 +166,8 @@ class Levels:
             loop = [v for v, before in zip(loop, [loop[-1], *loop]) if v != before]
             loops[cell] = loop if len(loop) > 2 else []
             new = edges_around(loops[cell])
-            if len(set(loop)) < len(loop) or any(
-                edge in edges or (edge in cells.cell_of and edge not in replaced) for edge in new
-            ):
+            is_taken = any(edge in edges or (edge in cells.cell_of and edge not in replaced) for edge in new)
+            if is_taken or len(set(loop)) < len(loop):
                 return False
             if new and loop_area([moved.get(v, self.plan[v]) for v in loop]) <= 0:
                 return False

@@ -8,6 +8,7 @@ import numpy as np
 from ..geometry.groups import components
 
 ROOF, WALL, GROUND, SOFFIT, TERRAIN = "roof", "wall", "ground", "soffit", "terrain"
+WINDOW, DOOR = "window", "door"
 
 # Positions have as many decimals (m) as files: a corner that rounding moves by half a tenth of a millimeter turns a
 # triangle 5 mm high by less than a degree.
@@ -27,7 +28,7 @@ class Solid:
     #: The rings of each face, exterior first: counterclockwise seen from outside the solid, holes clockwise; open (the
     #: last vertex is not the first one again)
     faces: list[list[Ring]] = field(default_factory=list)
-    kinds: list[str] = field(default_factory=list)  #: "roof", "wall", "ground", "soffit" or "terrain"
+    kinds: list[str] = field(default_factory=list)  #: Kind of each face, as "roof"
     planes: list[int] = field(default_factory=list)  #: Plane of each roof face, -1 for other faces
 
     @cached_property

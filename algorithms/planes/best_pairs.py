@@ -62,8 +62,7 @@ def merge_best_pairs(
         target = np.arange(len(planes))
         target[high[best]] = low[best]
         stays = target == np.arange(len(planes))
-        number = np.cumsum(stays) - 1
-        became = number[target]
+        became = (np.cumsum(stays) - 1)[target]
         planes = planes.merged(became, int(stays.sum()))
         group, first = became[group], first[stays]
         changed = mask_of(len(planes), became[low[best]])

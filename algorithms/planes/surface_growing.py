@@ -49,7 +49,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     unassigned = np.flatnonzero(surface < 0).astype(np.int32)
     for step in itertools.count():
         part = monitor.part(1 - 0.4 * 0.8**step, 1 - 0.4 * 0.8 ** (step + 1))
-        parent = _nearest_that_holds(planes, unassigned, surface, partial(planes.hold, criteria), part)
+        parent = _holding(planes, unassigned, surface, partial(planes.hold, criteria), part)
         joins = parent >= 0
         rows, parent = unassigned[joins], parent[joins]
         if not len(rows):
@@ -138,9 +138,7 @@ def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria
     return surface
 
 
-def _nearest_that_holds(
-    planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold, monitor: Monitor
-) -> np.ndarray:
+def _holding(planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold, monitor: Monitor) -> np.ndarray:
     """Return the nearest neighbor (m,), int32, of points ``rows`` whose surface holds them, -1 without any."""
     parent = np.full(len(rows), -1, np.int32)
 
@@ -245,7 +243,7 @@ def _first_planes(planes: LocalPlanes, surface: np.ndarray, criteria: Criteria) 
 
 def _join(planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold, monitor: Monitor) -> np.ndarray:
     """Let the points ``rows`` (m,) join the surface of the nearest neighbor that holds them; return those that do."""
-    parent = _nearest_that_holds(planes, rows, surface, hold, monitor)
+    parent = _holding(planes, rows, surface, hold, monitor)
     joins = parent >= 0
     surface[rows[joins]] = surface[parent[joins]]
     return rows[joins]
@@ -275,5 +273,4 @@ def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray, rows: np.nd
     number, which = np.unique(plane, return_inverse=True)
     more = planes_of(xyz, which, len(number), rows)
     both = [(fitted.count, more.count), (fitted.center, more.center), (fitted.covariance, more.covariance)]
-    whole = Planes(*map(np.concatenate, both))
-    return whole.merged(np.concatenate([np.arange(len(fitted)), number]), len(fitted))
+    return Planes(*map(np.concatenate, both)).merged(np.concatenate([np.arange(len(fitted)), number]), len(fitted))

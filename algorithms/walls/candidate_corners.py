@@ -59,8 +59,7 @@ def candidate_corners(
 def _outcomes(outline: WallOutline, rings: list[list[WallEdge]], position: np.ndarray) -> list[str]:
     """Return the outcome of each position where two lines cross."""
     cells, inside = outline.cells, outline.inside
-    corners = spatial.cKDTree([edge.start for ring in rings for edge in ring])
-    is_kept = corners.query(position)[0] < MICROMETER
+    is_kept = spatial.cKDTree([edge.start for ring in rings for edge in ring]).query(position)[0] < MICROMETER
     is_unused = ~cells.is_used(inside)[cells.arrangement.crossing].all(axis=1)
     around = inside[cells.arrangement.around]
     is_on = around.any(axis=1) & ~around.all(axis=1)

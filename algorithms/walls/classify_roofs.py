@@ -157,8 +157,7 @@ def _is_on_roof(segment_id: np.ndarray, height: np.ndarray, min_height: float) -
     # Other programs number segments as they like, and use -1 for points of no segment.
     number, segment = np.unique(segment_id, return_inverse=True)
     high = np.bincount(segment, height >= min_height)
-    on_roof = (2 * high >= np.bincount(segment)) & (number > 0)
-    return on_roof[segment]
+    return ((2 * high >= np.bincount(segment)) & (number > 0))[segment]
 
 
 def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, monitor: Monitor) -> np.ndarray:
@@ -383,9 +382,8 @@ def with_bent_roofs(
     plane = np.flatnonzero(cluster_id > 0)
     distance, nearest = spatial.cKDTree(xyz[plane]).query(xyz[bent], distance_upper_bound=gap, workers=n_threads())
     touches = np.isfinite(distance)
-    pairs, count = np.unique(
-        np.column_stack([part[touches], cluster_id[plane[nearest[touches]]]]), axis=0, return_counts=True
-    )
+    contacts = np.column_stack([part[touches], cluster_id[plane[nearest[touches]]]])
+    pairs, count = np.unique(contacts, axis=0, return_counts=True)
     owner = np.zeros(int(part.max()) + 1, np.int32)
     # Of several buildings that a part touches, the one assigned last counts: that with the most contacts.
     order = np.lexsort((pairs[:, 1], count))

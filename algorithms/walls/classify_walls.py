@@ -6,15 +6,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.groups import members
-from ..neighborhoods.covariance import (
-    Nearest,
-    Neighborhood,
-    Shapes,
-    Within,
-    defined_eigenvalues,
-    reduce_neighborhoods,
-    smallest_eigenvectors,
-)
+from ..neighborhoods import covariance
 from ..packages import spatial
 from ..params import SURFACE_NOISE
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
@@ -147,7 +139,9 @@ def classify_walls(
     n_neighbors = _neighbors(xyz[low], roughness) if n_neighbors is None else n_neighbors
     monitor.resolved(noise=noise, n_neighbors=n_neighbors)
     if len(low):
-        chosen: Neighborhood = Nearest(n_neighbors) if neighborhood == "nearest" else Within(radius)
+        chosen: covariance.Neighborhood = covariance.Within(radius)
+        if neighborhood == "nearest":
+            chosen = covariance.Nearest(n_neighbors)
         upright = _upright(xyz[low], chosen, max_tilt, ON_PLANE * roughness, monitor.part(0.4, 1))
         wall_of[low[upright]] = owner[upright]
     if cluster_id.any() and not wall_of.any():
@@ -193,16 +187,16 @@ def _hull(xy: np.ndarray) -> np.ndarray:
 
 
 def _upright(
-    xyz: np.ndarray, neighborhood: Neighborhood, max_tilt: float, max_deviation: float, monitor: Monitor
+    xyz: np.ndarray, neighborhood: covariance.Neighborhood, max_tilt: float, max_deviation: float, monitor: Monitor
 ) -> np.ndarray:
     """Return the mask of points (n,) that lie on a steep plane with their neighbors (°, m)."""
     upright = np.zeros(len(xyz), bool)
 
-    def keep(rows: np.ndarray, shapes: Shapes) -> None:
-        eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
-        lift = np.abs(smallest_eigenvectors(shapes.covariances, eigenvalues)[:, 2])
+    def keep(rows: np.ndarray, shapes: covariance.Shapes) -> None:
+        eigenvalues = covariance.defined_eigenvalues(shapes.covariances, shapes.counts)
+        lift = np.abs(covariance.smallest_eigenvectors(shapes.covariances, eigenvalues)[:, 2])
         with np.errstate(invalid="ignore"):
             upright[rows] = (lift <= np.sin(np.radians(max_tilt))) & (eigenvalues[:, 2] <= max_deviation**2)
 
-    reduce_neighborhoods(xyz, neighborhood, keep, monitor=monitor)
+    covariance.reduce_neighborhoods(xyz, neighborhood, keep, monitor=monitor)
     return upright

@@ -206,7 +206,7 @@ def extract_wall_footprints(
         part.progress(1.0)
     for one, parts in zip(outlined, _disjoint_parts(outlined, min_area)):
         for rings in parts:
-            footprints.append(_footprint(rings, one.house, one.used, height_above_ground))
+            footprints.append(_footprint(rings, one, height_above_ground))
             edges += _edges(rings, len(footprints), one.house.origin)
         if one.outline is not None:
             found = candidate_corners(one.outline, [ring for rings in parts for ring in rings], one.used is not None)
@@ -390,17 +390,15 @@ def _bare_edge(start: np.ndarray, end: np.ndarray) -> WallEdge:
     return WallEdge(start, end, 0.0, 0, float("nan"), float("nan"))
 
 
-def _footprint(
-    rings: list[list[WallEdge]], building: _Building, outline: Optional[WallOutline], height: Optional[np.ndarray]
-) -> _Feature:
+def _footprint(rings: list[list[WallEdge]], one: _Outlined, height: Optional[np.ndarray]) -> _Feature:
     """Return a footprint of rings of edges, the exterior first."""
     corners = [closed(ring) for ring in rings]
     own_edges = [edge for ring in rings for edge in ring]
     quality = np.array([edge.quality for edge in own_edges])
     points = np.array([edge.points for edge in own_edges])
     facts = {
-        "cluster_id": building.number,
-        "source": ROOF if outline is None else WALL,
+        "cluster_id": one.house.number,
+        "source": ROOF if one.used is None else WALL,
         "area": sum(map(signed_area, corners)),
         "perimeter": sum(map(perimeter, corners)),
         "edges": len(own_edges),
@@ -408,11 +406,11 @@ def _footprint(
         "quality": share_seen(rings),
         "worst_quality": float(quality.min()),
         "deviation": _pooled(np.array([edge.deviation for edge in own_edges]), points),
-        "overhang": float("nan") if outline is None else outline.overhang,
-        "height": float("nan") if height is None else float(np.median(height[building.roof_rows])),
+        "overhang": float("nan") if one.used is None else one.used.overhang,
+        "height": float("nan") if height is None else float(np.median(height[one.house.roof_rows])),
         "points": int(points.sum()),
     }
-    return [ring + building.origin for ring in corners], facts
+    return [ring + one.house.origin for ring in corners], facts
 
 
 def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:

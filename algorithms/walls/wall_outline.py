@@ -217,8 +217,7 @@ def outline_walls(
     overhang = float(np.clip(np.median(to_roof), 0.0, limits.max_overhang))
     overhangs = np.where(is_party(sides), 0.0, overhang)
     seen = [_expectation(line, sides, overhangs) for line in seen]
-    lines = [*seen, *_from_roof(seen, sides, overhangs, walls, scale)]
-    cells = OutlineCells(lines, walls, cover, scale, overhang)
+    cells = OutlineCells([*seen, *_from_roof(seen, sides, overhangs, walls, scale)], walls, cover, scale, overhang)
     inside = simplified(cells, monitor.part(0.4, 1.0))
     rings = cells.rings(inside)
     return WallOutline(rings, overhang, cells, inside) if rings else None

@@ -13,6 +13,9 @@ from .candidate_corners import CORNER
 # Source of a footprint that is an outline of walls.
 WALL = "wall"
 
+# A dimension that a cloud may lack.
+_Evidence = Optional[np.ndarray]
+
 # Name and meaning of each number.
 _ROWS = {
     "original_points": ("Points before thinning", "Of which the points of the cloud were made."),
@@ -32,10 +35,7 @@ MEASURES = tuple(Measure(name, title) for name, (title, _) in _ROWS.items())
 
 
 def point_counts(
-    cluster_id: np.ndarray,
-    wall_of: Optional[np.ndarray],
-    classification: Optional[np.ndarray],
-    voxel_count: Optional[np.ndarray],
+    cluster_id: np.ndarray, wall_of: _Evidence, classification: _Evidence, voxel_count: _Evidence
 ) -> dict[str, float]:
     """Return the number of points of each kind; NaN where evidence is missing, but 0 walls without ``wall_of``.
 

@@ -5,8 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
-from lidar_buildings.algorithms.models3d.set_openings import WallOpening, with_openings
+from lidar_buildings.algorithms.models3d.reconstruct_block import WallOpening, reconstruct_block, with_openings
 from lidar_buildings.algorithms.models3d.solid_faults import fault_of
 from lidar_buildings.algorithms.models3d.solids import Solid
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, Monitor
