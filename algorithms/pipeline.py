@@ -251,7 +251,7 @@ def composite(group: str, *, title: str = "", tags: str, **fields: Any) -> Calla
 
     def declare(function: Callable) -> Pipeline:
         name, doc = function.__name__, inspect.cleandoc(function.__doc__ or "")
-        texts = summary(doc), description(doc), sections(doc)["References"]
+        texts = summary(doc), description(doc), sections(doc).get("References", "")
         return Pipeline(name, title or in_words(name), group, tags, *texts, function(), **fields)
 
     return declare
