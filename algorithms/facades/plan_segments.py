@@ -77,9 +77,15 @@ def facade_segments(facades: LayerFeatures) -> PlanSegments:
     return PlanSegments(np.array(start).reshape(-1, 2), np.array(end).reshape(-1, 2), np.array(owner, int))
 
 
+# Most heights at which the ends of a wall are looked at.
+_HEIGHTS = 500
+
+
 def _ends(position: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Return the first and last position (2,) of a closed ring (m,), in the median over its height ``z`` (m,), m."""
     levels = np.unique(z)
+    # Some hundred heights show the median; a boundary of key points has thousands, each with all edges.
+    levels = levels[np.linspace(0, len(levels) - 1, min(len(levels), _HEIGHTS)).astype(int)]
     middle, height = (levels[1:] + levels[:-1]) / 2, np.diff(levels)
     crosses = (z[:-1] > middle[:, None]) != (z[1:] > middle[:, None])
     rise = np.where(z[1:] == z[:-1], 1.0, z[1:] - z[:-1])

@@ -46,7 +46,7 @@ _MEANINGS = {
     "Facades",
     title="Register street scan",
     tags="registration,alignment,shift,coregistration,mobile mapping,terrestrial,airborne,facade,street,Peng",
-    input_layers=(InputLayer("footprints"),),
+    input_layers=(InputLayer("footprints", buildings=True),),
     layers=PIERCED,
     measures=_MEASURES,
     input_title="Airborne point cloud",

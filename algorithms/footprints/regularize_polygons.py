@@ -44,7 +44,7 @@ _FIELDS = (
     title="Regularize footprints",
     tags="regularize,simplify,orthogonalize,right angles,square,generalize,raster,network,deep learning,segmentation,"
     "Microsoft,Google,Overture,outlines,shared borders,topology,corners",
-    input_layers=(InputLayer("polygons"),),
+    input_layers=(InputLayer("polygons", buildings=True),),
     layers=(Layer("regularized", "Regularized footprints", "Polygon", _FIELDS, style="regularized"),),
 )
 def regularize_polygons(

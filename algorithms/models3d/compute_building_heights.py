@@ -83,7 +83,7 @@ _FIELDS = (
     title="Heights of buildings",
     tags="height,heights,LoD1,LoD1.2,3DBAG,OpenStreetMap,Overture,cadastre,base map,eaves,ridge,volume,roof type,"
     "percentile,zonal statistics,attributes,extrusion",
-    input_layers=(InputLayer("footprints"),),
+    input_layers=(InputLayer("footprints", buildings=True),),
     layers=(Layer("buildings", "Buildings", "Polygon", _FIELDS, style="building_heights"),),
     cost=10.0,
     reach=_REACH,

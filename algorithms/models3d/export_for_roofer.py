@@ -19,7 +19,7 @@ _FIELDS = (
     "3D",
     tags="3D,roofer,3DBAG,LoD2,LoD1.2,LoD1.3,export,CityJSONSeq,roofprint",
     selects=True,
-    input_layers=(InputLayer("footprints"),),
+    input_layers=(InputLayer("footprints", buildings=True),),
     layers=(Layer("roofprints", "Roofprints", "Polygon", _FIELDS),),
 )
 def export_for_roofer(

@@ -51,7 +51,7 @@ _MARGIN = 0.03
     "3D",
     tags="3D,LoD3,city block,street,facade,window,door,roof,solid,city model,CityJSON,mobile mapping,airborne,Peng",
     input_layers=(
-        InputLayer("footprints"),
+        InputLayer("footprints", buildings=True),
         InputLayer("facades", upright=True),
         InputLayer("openings", "Windows and doors", upright=True),
     ),

@@ -44,7 +44,7 @@ _ITEMS = (NamedModel, "footprints", "terrain")
     "3D",
     tags="3D,LoD1.2,LoD1.3,LoD2.0,LoD2.2,LoD2.3,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,CityGML,OBJ,3DBAG,"
     "ridge,gable,hip,dormer,overhang,eave,soffit",
-    input_layers=(InputLayer("footprints"),),
+    input_layers=(InputLayer("footprints", buildings=True),),
     layers=(
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
         Layer("walls", "Walls", "Polygon", SOFFIT_WALL_FIELDS, style="model_walls"),

@@ -95,8 +95,8 @@ _MEASURES = (
     tags="assess,validation,cadastre,base map,change detection,accuracy,evaluation,reference,polygons,outlines,IoU,"
     "PoLiS,Hausdorff,corners,squareness,merged,split,completeness,correctness",
     input_layers=(
-        InputLayer("footprints"),
-        InputLayer("reference_map", "Reference"),
+        InputLayer("footprints", buildings=True),
+        InputLayer("reference_map", "Reference", buildings=True),
         InputLayer("area", "Area compared", optional=True),
     ),
     layers=(_BUILDINGS,),

@@ -76,8 +76,8 @@ _MEASURES = (
     "Quality",
     tags="cadastre,land registry,map,update,change detection,changes,displacement,shift,accuracy,footprints,RMSE",
     input_layers=(
-        InputLayer("footprints"),
-        InputLayer("old_map", optional=True),
+        InputLayer("footprints", buildings=True),
+        InputLayer("old_map", optional=True, buildings=True),
     ),
     layers=(_DISPLACEMENTS, _BUILDINGS),
     measures=_MEASURES,

@@ -86,8 +86,8 @@ _MEASURES = (
     "Quality",
     tags="change detection,changes,update,new,demolished,epochs,earlier survey,monitoring,cadastre,footprints,height",
     input_layers=(
-        InputLayer("footprints"),
-        InputLayer("earlier", "Footprints of the earlier survey"),
+        InputLayer("footprints", buildings=True),
+        InputLayer("earlier", "Footprints of the earlier survey", buildings=True),
     ),
     layers=(_BUILDINGS,),
     measures=_MEASURES,

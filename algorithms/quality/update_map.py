@@ -105,8 +105,8 @@ def _update_in_windows(
     tags="update,change detection,cadastre,base map,new,demolished,gone,extension,annex,shifted,maintenance,"
     "OpenStreetMap,conflation",
     input_layers=(
-        InputLayer("old_map"),
-        InputLayer("footprints", "New footprints", optional=True),
+        InputLayer("old_map", buildings=True),
+        InputLayer("footprints", "New footprints", optional=True, buildings=True),
     ),
     layers=(
         Layer("updated_map", "Updated map", "Polygon", _FIELDS, style="updated_map"),

@@ -78,12 +78,12 @@ class InputLayer:
 
     ``name`` is the positional argument and the input (``OLD_MAP``). Without a ``title`` the dialog calls it by its name
     in words, without ``help`` it says what the docstring of the stage says of the argument. ``geometry`` is one of
-    ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`LayerFeatures` with
-    all attributes of the layer, or None where an ``optional`` one is not given. Parts of a
-    multipart geometry come one by one, each with the attributes of the whole. ``upright`` polygons have no area in
-    plan: their rings come as they are. An ``advanced`` one is folded away. A file with one of ``endings``, of a format
-    that QGIS does not read, takes the place of a layer: ``read`` turns its text into features in map units and the code
-    of their CRS.
+    ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`LayerFeatures` with all attributes of
+    the layer, or None where an ``optional`` one is not given. Parts of a multipart geometry come one by one, each with
+    the attributes of the whole. ``upright`` polygons have no area in plan: their rings come as they are. An
+    ``advanced`` one is folded away. Each polygon of one of ``buildings`` is a building, so wider ones than any are
+    refused. A file with one of ``endings``, of a format that QGIS does not read, takes the place of a layer: ``read``
+    turns its text into features in map units and the code of their CRS.
     """
 
     name: str
@@ -93,6 +93,7 @@ class InputLayer:
     optional: bool = False
     advanced: bool = False
     upright: bool = False
+    buildings: bool = False
     endings: tuple[str, ...] = ()
     read: Optional[Callable[[str], tuple[LayerFeatures, str]]] = None
 
@@ -246,7 +247,7 @@ def given_layers(
     Raises
     ------
     ValueError
-        If a layer is missing, or one is given that nobody reads.
+        If a layer is missing, one is given that nobody reads, or a polygon is too wide for a building.
     """
     wanted = {input_layer.name: input_layer for input_layer in input_layers}
     unknown = [name for name in given if name not in wanted]
@@ -255,7 +256,28 @@ def given_layers(
     for input_layer in wanted.values():
         if given.get(input_layer.name) is None and not input_layer.optional:
             raise ValueError(f"{input_layer.title} ({input_layer.name}) is missing; choose a layer.")
+        if input_layer.buildings:
+            _refuse_wide(input_layer.title, given.get(input_layer.name))
     return {name: given.get(name) for name in wanted}
+
+
+# Widest building (m): the longest that there is, the gallery of a linear accelerator, has 3.1 km. A wider polygon is a
+# district, an outline of the map or damage, and cells and edges of its size would fill the memory.
+_WIDEST = 4000.0
+
+
+def _refuse_wide(title: str, features: Optional[LayerFeatures]) -> None:
+    """Refuse a layer of buildings with a polygon that none can be."""
+    corners = [rings[0][:, :2] for rings in features.geometries if len(rings) and len(rings[0])] if features else []
+    if not corners:
+        return
+    vertices, first = np.concatenate(corners), np.cumsum([0, *map(len, corners[:-1])])
+    width = (np.maximum.reduceat(vertices, first) - np.minimum.reduceat(vertices, first)).max()
+    if width > _WIDEST:
+        raise ValueError(
+            f"{title}: a polygon is {width / 1000:,.0f} km wide, and no building is wider than {_WIDEST / 1000:g} km; "
+            "remove it, or choose another layer."
+        )
 
 
 @dataclass(frozen=True)
