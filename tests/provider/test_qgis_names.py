@@ -29,14 +29,32 @@ PROCESSING = {
 _LATER = {name for name, where in PROCESSING.items() if "up to QGIS 4.0" in where}
 
 
-def imported(*roots: str) -> set[str]:
-    """Return the names that the provider imports from packages, with their modules."""
-    found = set()
-    for path in PROVIDER.glob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in roots:
-                found.update(f"{node.module}.{one.name}" for one in node.names)
+def named(tree: ast.Module, *roots: str) -> list[tuple[str, str]]:
+    """Return what a module calls the names that it imports from packages or takes from their modules, and the names."""
+    nodes = list(ast.walk(tree))
+    found = [
+        (one.asname or one.name, f"{node.module}.{one.name}")
+        for node in nodes
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in roots
+        for one in node.names
+    ]
+    modules = {called: name for called, name in found if name.startswith("qgis.PyQt.") and name.count(".") == 2}
+    for node in nodes:
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules:
+            found.append((f"{node.value.id}.{node.attr}", f"{modules[node.value.id]}.{node.attr}"))
     return found
+
+
+def imported(*roots: str) -> set[str]:
+    """Return the names that the provider imports from packages or takes from their modules, with the modules."""
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in PROVIDER.glob("*.py")]
+    return {name for tree in trees for _, name in named(tree, *roots)}
+
+
+def named_by(name: str) -> object:
+    """Return what an imported name is: a module, or a part of one."""
+    module, _, attribute = name.rpartition(".")
+    return getattr(importlib.import_module(module), attribute)
 
 
 def test_parts_of_processing_are_those_listed():
@@ -45,22 +63,17 @@ def test_parts_of_processing_are_those_listed():
 
 @pytest.mark.parametrize("name", sorted(imported("qgis", "osgeo", "processing") - _LATER))
 def test_this_qgis_has(name, qgis_application):
-    module, _, attribute = name.rpartition(".")
-    assert hasattr(importlib.import_module(module), attribute)
+    named_by(name)
 
 
 def short_enumerators(source: str) -> list[str]:
     """Return enumerators that a source takes from a class of Qt itself (Qt.AlignLeft), where PyQt6 has none."""
-    tree, classes, found = ast.parse(source), {}, []
+    tree, found = ast.parse(source), []
+    classes = {called: named_by(name) for called, name in named(tree, "qgis") if name.startswith("qgis.PyQt.")}
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("qgis.PyQt.Qt"):
-            module = importlib.import_module(node.module)
-            classes.update({one.name: getattr(module, one.name) for one in node.names})
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in classes:
-            value = getattr(classes[node.value.id], node.attr)
-            if isinstance(value, (int, enum.Enum)):
-                found.append(f"{node.value.id}.{node.attr}")
+        owner = ast.unparse(node.value) if isinstance(node, ast.Attribute) else ""
+        if owner in classes and isinstance(getattr(classes[owner], node.attr), (int, enum.Enum)):
+            found.append(f"{owner}.{node.attr}")
     return found
 
 
@@ -72,3 +85,15 @@ def test_enumerators_have_their_full_names(path):
 def test_short_names_are_recognized():
     source = "from qgis.PyQt.QtCore import Qt, QDate\nQt.AlignLeft, Qt.AlignmentFlag.AlignLeft, QDate.currentDate"
     assert short_enumerators(source) == ["Qt.AlignLeft"]
+    source = "from qgis.PyQt import QtWidgets as W\nW.QDialog.Accepted, W.QDialog.DialogCode.Accepted, W.QDialog.exec"
+    assert short_enumerators(source) == ["W.QDialog.Accepted"]
+
+
+def test_names_are_found_wherever_they_are_taken_from():
+    source = "from qgis.PyQt import QtWidgets\nfrom qgis.core import Qgis as Q\nQtWidgets.QMenu, Q.version"
+    assert named(ast.parse(source), "qgis") == [
+        ("QtWidgets", "qgis.PyQt.QtWidgets"),
+        ("Q", "qgis.core.Qgis"),
+        ("QtWidgets.QMenu", "qgis.PyQt.QtWidgets.QMenu"),
+    ]
+    assert "qgis.PyQt.QtWidgets.QDockWidget" in imported("qgis")
