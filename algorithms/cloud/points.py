@@ -447,8 +447,7 @@ def write_points(
     if backend is las.LazBackend.Laszip:
         # laszip put its record before the other VLRs itself.
         stream.flush()
-        laszip_record = read_header(Path(stream.name)).vlrs[0]
-        writer.header.vlrs.append(las.vlrs.known.LasZipVlr(laszip_record.data))
+        writer.header.vlrs.append(las.vlrs.known.LasZipVlr(read_header(Path(stream.name)).vlrs[0].data))
     header.finish(stream, writer.header)
     monitor.progress(1.0)
 

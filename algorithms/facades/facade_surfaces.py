@@ -97,8 +97,7 @@ def surfaces_of(xyz: np.ndarray, segment_id: np.ndarray, drawing: Drawing, monit
     frames = facing_outside([planes[n][0] for n in steep], xyz, rows, thickness, monitor.part(0, 0.3))
     facades = []
     for done, (number, frame) in enumerate(zip(steep, frames), start=1):
-        positions = frame.local(xyz[groups[number]])[:, :2]
-        outline = outline_of(positions, drawing)
+        outline = outline_of(frame.local(xyz[groups[number]])[:, :2], drawing)
         if outline is not None:
             found = outline.ring, groups[number], planes[number][1], outline.spacing
             facades.append(Facade(number, frame, *found, outline.hull_area, outline.seen_area))
@@ -182,8 +181,7 @@ def facing_outside(
     for done, (frame, own, thick) in enumerate(zip(frames, rows, thickness), start=1):
         points = xyz[own]
         middle, reach = points.mean(axis=0), np.linalg.norm(np.ptp(points, axis=0)) / 2 + FARTHEST
-        near = around[np.sort(tree.query_ball_point(middle, reach))]
-        evidence.append(_evidence(frame, points, near, thick))
+        evidence.append(_evidence(frame, points, around[np.sort(tree.query_ball_point(middle, reach))], thick))
         monitor.progress(done / len(frames))
     side = _decided(np.array(evidence).reshape(-1, 2), *_corners(frames, xyz, rows))
     return [frame_of(frame.origin, sign * frame.normal) for frame, sign in zip(frames, side)]

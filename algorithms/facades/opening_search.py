@@ -83,8 +83,7 @@ class WallRaster:
         self.wall = self.mask(wall)
         self.behind &= ~self.wall
         # Fill cells of the wall that are empty by chance, but none with points behind the wall.
-        closed = ndimage.binary_closing(self.wall, np.ones((3, 3), bool))
-        self.wall |= closed & ~self.behind
+        self.wall |= ndimage.binary_closing(self.wall, np.ones((3, 3), bool)) & ~self.behind
 
     def cell(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the cells of positions (n, 2), along and up."""

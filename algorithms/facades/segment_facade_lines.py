@@ -252,8 +252,7 @@ def _slopes(xyz: np.ndarray, piece: np.ndarray, kept: np.ndarray) -> np.ndarray:
 def _sides(xyz: np.ndarray, line: np.ndarray, middle: np.ndarray, of_line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the side, 0 or 1, of the scanner that segments are on, and their distance from it in plan (m)."""
     starts = run_starts(line)
-    ends = np.append(starts[1:], len(line)) - 1
-    below = xyz[(starts + ends) // 2, :2]
+    below = xyz[(starts + np.append(starts[1:], len(line)) - 1) // 2, :2]
     away = middle[:, :2] - below[of_line]
     # Any direction across the way distinguishes the sides of one line: that to its first point.
     first = xyz[starts, :2] - below

@@ -131,8 +131,7 @@ class _Ways:
 
     @classmethod
     def of(cls, directions: np.ndarray, prices: Prices, other: float) -> _Ways:
-        quarter = np.arange(0.0, 360.0, 90.0)
-        main = [angle + quarter for angle in directions]
+        main = [angle + np.arange(0.0, 360.0, 90.0) for angle in directions]
         fan = np.arange(0.0, 360.0, _FAN) + (directions[0] if main else 0.0)
         angle = np.concatenate([*main, fan])
         sizes = [*(len(one) for one in main), len(fan)]

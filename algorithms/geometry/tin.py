@@ -144,8 +144,7 @@ class Tin:
         # Facets of nearly collinear nodes can make a walk go in circles; then take the facet that the point is outside
         # of least.
         for row in walking:
-            weights = self._weights_of(plan[row], np.arange(len(self.facets)))
-            facet[row] = np.nanargmax(weights.min(axis=0))
+            facet[row] = np.nanargmax(self._weights_of(plan[row], np.arange(len(self.facets))).min(axis=0))
         return facet
 
     def _leaving(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:

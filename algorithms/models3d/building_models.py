@@ -234,8 +234,7 @@ def _level_tops(top: _Top, roof: Partition) -> Partition:
         planes = np.unique(roof.label[part == number])
         z = top.xyz[rows, 2] if len(rows) else top.xyz[np.isin(top.planes.label, planes), 2]
         heights[number] = max(float(np.percentile(z, top.settings.percentile)), top.base + 0.5)
-    coefficients = np.column_stack([np.zeros((n, 2)), heights])
-    return Partition(roof.cells, part, coefficients, np.zeros((len(roof.cells), n)))
+    return Partition(roof.cells, part, np.column_stack([np.zeros((n, 2)), heights]), np.zeros((len(roof.cells), n)))
 
 
 def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:

@@ -10,18 +10,9 @@ import numpy as np
 
 from ..cloud.asprs import VEGETATION, PointClass
 from ..criteria import MAJORITY
+from ..footprints import footprint_points
 from ..footprints.footprint_attributes import roof_heights, surface_heights
-from ..footprints.footprint_points import (
-    GROUND_PERCENTILE,
-    ground_beside,
-    plane_tolerance,
-    require_buildings,
-    require_ground,
-    rows_within,
-    shows_roof,
-    sound_rings,
-    tell_without_area,
-)
+from ..footprints.footprint_points import GROUND_PERCENTILE
 from ..geometry.polygon_overlap import are_in_polygons, as_polygons
 from ..geometry.rings import along_sides, polygon_area, sides_of_rings
 from ..packages import spatial
@@ -154,10 +145,10 @@ def compute_building_heights(
     >>> [found.columns[name] for name in ("key", "height", "roof_type")]
     [[7], [5.0], ['flat']]
     """
-    require_ground(classification)
+    footprint_points.require_ground(classification)
     rows, outlines = _outlines(footprints, xyz, monitor)
     points = _Points.of(xyz, classification, gps_time, sampling, monitor)
-    tolerance = plane_tolerance(sampling.roughness)
+    tolerance = footprint_points.plane_tolerance(sampling.roughness)
     borders = _borders(outlines, points.spacing, monitor.part(0.0, 0.2))
     facts = []
     for number, (rings, border) in enumerate(zip(outlines, borders)):
@@ -174,9 +165,9 @@ def _outlines(footprints: LayerFeatures, xyz: np.ndarray, monitor: Monitor) -> t
     """Return the footprints that have an area and touch the extent of the points: their rows and their rings."""
     if not len(footprints):
         raise ValueError("The layer of footprints has no features; choose another.")
-    rings_of = {row: sound_rings(rings) for row, rings in enumerate(footprints.geometries)}
+    rings_of = {row: footprint_points.sound_rings(rings) for row, rings in enumerate(footprints.geometries)}
     sound = {row: rings for row, rings in rings_of.items() if rings}
-    tell_without_area(len(sound), len(footprints), monitor)
+    footprint_points.tell_without_area(len(sound), len(footprints), monitor)
     low, high = xyz[:, :2].min(axis=0), xyz[:, :2].max(axis=0)
     boxes = {row: (rings[0].min(axis=0), rings[0].max(axis=0)) for row, rings in sound.items()}
     near = [row for row, (least, most) in boxes.items() if ((most >= low) & (least <= high)).all()]
@@ -209,7 +200,7 @@ class _Points:
         if not sampling.shared(_ARE_CLASSIFIED, lambda: float((classification == roofs[0]).any())):
             roofs = PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED
             if not np.isin(classification, roofs).any() and not sampling.of_whole:
-                require_buildings(classification)
+                footprint_points.require_buildings(classification)
             monitor.inform(
                 "No point is called building (class 6): roofs are the planes among the unclassified points over "
                 "footprints. Run 'Detect buildings' first to know trees from roofs better."
@@ -240,9 +231,10 @@ def _borders(outlines: list, spacing: float, monitor: Monitor) -> list[tuple[np.
 
 def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], tolerance: float) -> dict[str, Any]:
     """Measure the building on a footprint: its attributes by the names of the fields."""
-    within, are_classified = rows_within(points.xyz, rings), PointClass.BUILDING in points.roofs
+    within, are_classified = footprint_points.rows_within(points.xyz, rings), PointClass.BUILDING in points.roofs
     kind = points.classification[within]
-    base, terrain = np.percentile(ground_beside(points.ground, points.tree, rings), (GROUND_PERCENTILE, 50)).tolist()
+    beside = footprint_points.ground_beside(points.ground, points.tree, rings)
+    base, terrain = np.percentile(beside, (GROUND_PERCENTILE, 50)).tolist()
     building, plants = within[np.isin(kind, points.roofs)], within[np.isin(kind, VEGETATION)]
     if not are_classified:
         building = building[points.xyz[building, 2] >= base + LASER.lowest_roof]
@@ -259,7 +251,7 @@ def _facts(points: _Points, rings: list, border: tuple[np.ndarray, np.ndarray], 
     trees = beneath - covered
     facts: dict[str, Any] = dict.fromkeys((field.name for field in _FIELDS if field.type is float), np.nan)
     facts.update(h_ground=base, roof_type=None, date=None, points=len(building), covered=covered, trees=trees)
-    has_roof = shows_roof(len(building), points.spacing, rings)
+    has_roof = footprint_points.shows_roof(len(building), points.spacing, rings)
     facts["state"] = _state(len(within), has_roof, covered, trees)
     if has_roof:
         facts.update(_roof_facts(points, building, planes, rings, border, terrain))

@@ -7,20 +7,8 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..footprints.footprint_points import (
-    GROUND_PERCENTILE,
-    TOLERANCE_TEXT,
-    by_easting,
-    ground_beside,
-    plane_tolerance,
-    require_buildings,
-    require_ground,
-    rows_near,
-    rows_within,
-    shows_roof,
-    sound_rings,
-    tell_without_area,
-)
+from ..footprints import footprint_points
+from ..footprints.footprint_points import GROUND_PERCENTILE, TOLERANCE_TEXT
 from ..packages import spatial
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
@@ -179,7 +167,7 @@ def reconstruct_roofs(
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)
     if tolerance is None:
-        tolerance = plane_tolerance(sampling.roughness)
+        tolerance = footprint_points.plane_tolerance(sampling.roughness)
         monitor.resolved(tolerance=tolerance)
     settings = Settings(
         point_spacing(building), tolerance, min_plane_area, max_slope, min_step, top_percentile, level_of_detail
@@ -203,20 +191,21 @@ class _Outline:
 
 def _points(xyz: np.ndarray, classification: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the points of buildings in the order of their eastings, and the points of the ground."""
-    require_buildings(classification)
-    require_ground(classification)
-    return by_easting(xyz[classification == PointClass.BUILDING]), xyz[classification == PointClass.GROUND]
+    footprint_points.require_buildings(classification)
+    footprint_points.require_ground(classification)
+    building, ground = (xyz[classification == kind] for kind in (PointClass.BUILDING, PointClass.GROUND))
+    return footprint_points.by_easting(building), ground
 
 
 def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> list[_Outline]:
     """Return the footprints that have an area; say how many don't."""
     outlines = []
     for row, (rings, name) in enumerate(zip(footprints.geometries, feature_names(footprints, id_field))):
-        sound = sound_rings(rings)
+        sound = footprint_points.sound_rings(rings)
         if sound:
             facts = {field: value for field, (value,) in footprints.kept([row], BUILDING_FIELDS).items()}
             outlines.append(_Outline(name, sound, facts if id_field else None))
-    tell_without_area(len(outlines), len(footprints), monitor)
+    footprint_points.tell_without_area(len(outlines), len(footprints), monitor)
     return outlines
 
 
@@ -230,13 +219,13 @@ def _modelled(
     tree, is_low = spatial.cKDTree(ground[:, :2]), are_low(building, settings.spacing)
     models, empty, failed = [], 0, []
     for number, outline in enumerate(outlines):
-        over = rows_within(building, outline.rings)
-        if not shows_roof(len(over), settings.spacing, outline.rings):
+        over = footprint_points.rows_within(building, outline.rings)
+        if not footprint_points.shows_roof(len(over), settings.spacing, outline.rings):
             empty += 1
         else:
-            heights = GROUND_PERCENTILE, 50
-            base, terrain = np.percentile(ground_beside(ground, tree, outline.rings), heights).tolist()
-            around = building[rows_near(building, outline.rings, RADIUS)]
+            beside = footprint_points.ground_beside(ground, tree, outline.rings)
+            base, terrain = np.percentile(beside, (GROUND_PERCENTILE, 50)).tolist()
+            around = building[footprint_points.rows_near(building, outline.rings, RADIUS)]
             model = model_building(building[over], is_low[over], around, outline.rings, base, settings)
             model.terrain = terrain
             if model.level:

@@ -45,8 +45,7 @@ class Planes:
 
     def deviation(self, points: np.ndarray, plane: np.ndarray) -> np.ndarray:
         """Return how far (root mean square, m) the points of the groups ``points`` lie off the planes ``plane``."""
-        offset = self.center[points] - self.center[plane]
-        return off_planes(offset, self.covariance[points], self.normal[plane])
+        return off_planes(self.center[points] - self.center[plane], self.covariance[points], self.normal[plane])
 
     def chosen(self, which: np.ndarray) -> Planes:
         """Return the planes ``which``, a mask or numbers."""

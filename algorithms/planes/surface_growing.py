@@ -259,8 +259,7 @@ def _grown(planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: C
 
     unassigned = np.flatnonzero(surface < 0).astype(np.int32)
     for step in itertools.count():
-        part = monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1))
-        rows = _join(planes, unassigned, surface, hold, part)
+        rows = _join(planes, unassigned, surface, hold, monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1)))
         if not len(rows):
             break
         fitted = _with_points(fitted, planes.xyz, surface[rows], rows)

@@ -154,8 +154,7 @@ def _neighbors(xyz: np.ndarray, roughness: float) -> int:
     if not len(xyz):
         return LEAST_NEIGHBORS
     # Use the density of walls, not of the cloud: from above and under eaves, walls have far fewer points.
-    facade_density = surface_density(xyz)
-    reached = np.pi * (_REACH_DEVIATIONS * roughness) ** 2 * facade_density
+    reached = np.pi * (_REACH_DEVIATIONS * roughness) ** 2 * surface_density(xyz)
     return int(np.clip(reached, LEAST_NEIGHBORS, _MOST_NEIGHBORS))
 
 
