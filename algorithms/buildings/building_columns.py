@@ -72,8 +72,7 @@ class Columns:
         self.top = top
         window = 2 * max(1, round(COLUMNS.wall_reach / cell_size)) + 1
         self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), window)
-        beside = ndimage.grey_dilation(building, footprint=EIGHT)
-        self.beside = np.where(building > 0, 0, beside)
+        self.beside = np.where(building > 0, 0, ndimage.grey_dilation(building, footprint=EIGHT))
 
     def owners(self, points: ColumnPoints, clearance: float, structure_height: float) -> np.ndarray:
         """Return the building (n,), int32, that each point belongs to; 0 if unassigned.

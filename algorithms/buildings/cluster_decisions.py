@@ -39,11 +39,9 @@ class Decisions:
 def decide_by_entropy(means: np.ndarray, split: Split) -> Decisions:
     """Decide on clusters by their mean entropies (m,) alone."""
     confidence = split.confidence(means)
-    reasons = np.where(confidence > 0.5, Reason.PLANE, Reason.ROUGH)
-    if not split.separates:
-        reasons[:] = Reason.ALIKE
     undefined = ~np.isfinite(means)
-    reasons[undefined] = Reason.WITHOUT_ENTROPY
+    by_mean = np.where(confidence > 0.5, Reason.PLANE, Reason.ROUGH) if split.separates else Reason.ALIKE
+    reasons = np.where(undefined, Reason.WITHOUT_ENTROPY, by_mean)
     return Decisions(np.where(undefined, 0.5, confidence), reasons.astype(np.uint8))
 
 
@@ -149,8 +147,7 @@ def weakest_evidence(
     ndarray of shape (m,), uint32
         See :func:`~..cloud.reasons.packed_evidence`.
     """
-    size = entropies.sizes / smallest
-    found = [_Measured(Evidence.POINTS, entropies.sizes, HALF_SUPPORT * smallest, support(size))]
+    found = [_Measured(Evidence.POINTS, entropies.sizes, HALF_SUPPORT * smallest, support(entropies.sizes / smallest))]
     if split is not None:
         middle, margin = (split.building + split.other) / 2, 2 * split.confidence(entropies.means) - 1
         found.append(_Measured(Evidence.ENTROPY, entropies.means, middle, margin))

@@ -9,13 +9,7 @@ import numpy as np
 from ..cloud.reasons import Reason
 from ..geometry.groups import placed
 from ..sampling.kinds import SCENE
-from ..segmentation.cluster_measures import (
-    adjacent_groups,
-    non_last_return_share,
-    penetration,
-    plan_areas,
-    share_around,
-)
+from ..segmentation.cluster_measures import adjacent_groups, non_last_share, penetration, plan_areas, share_around
 from .cluster_decisions import Decisions
 
 # Planar clusters with up to this share of points that are not last returns may be edges of roofs, where some pulses
@@ -46,7 +40,7 @@ class ClusterEvidence:
 
     def non_last_return_share(self) -> np.ndarray:
         """Return the share (m,) of each cluster's points that are not the last return of their pulse."""
-        return non_last_return_share(self.group, self.goes_on)[self.numbers]
+        return non_last_share(self.group, self.goes_on)[self.numbers]
 
     def share_around(self, is_chosen: np.ndarray) -> np.ndarray:
         """Return the share (m,) of the points around each cluster that belong to the chosen clusters (m,)."""
@@ -72,9 +66,7 @@ class ClusterEvidence:
         return placed(mask, self.numbers, int(self.numbers[-1]) + 1)
 
 
-def with_penetration(
-    by_entropy: Decisions, through: np.ndarray, max_penetration: float, evidence: ClusterEvidence
-) -> Decisions:
+def with_penetration(by_entropy: Decisions, through: np.ndarray, most: float, evidence: ClusterEvidence) -> Decisions:
     """Decide by entropy and by the penetration ``through`` (m,) of each cluster.
 
     Parameters
@@ -83,7 +75,7 @@ def with_penetration(
         What entropy decided.
     through : ndarray of shape (m,)
         Share of pulses that pass each cluster.
-    max_penetration : float
+    most : float
         Share above which a cluster is no building.
     evidence : ClusterEvidence
         The clusters.
@@ -97,10 +89,9 @@ def with_penetration(
     undefined = by_entropy.reasons == Reason.WITHOUT_ENTROPY
     is_planar = (confidence > 0.5) & ~undefined
     # A cluster without entropy stays undecided, however solid it is.
-    both = np.where(undefined, 0.5, _with_solidity(confidence, through, max_penetration))
+    both = np.where(undefined, 0.5, _with_solidity(confidence, through, most))
     is_solid = both > 0.5
-    is_edge = is_planar & (evidence.non_last_return_share() < _SPLIT_AT_EDGES)
-    is_building = evidence.with_adjacent(is_solid, is_edge)
+    is_building = evidence.with_adjacent(is_solid, is_planar & (evidence.non_last_return_share() < _SPLIT_AT_EDGES))
     # The first that applies is the reason.
     applies = {
         Reason.WITHOUT_ENTROPY: undefined,

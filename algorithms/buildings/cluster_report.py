@@ -68,22 +68,14 @@ def _page(clusters: Clusters, values: dict, groups: dict) -> str:
         )
     elif values["clusters"]:
         lead += " The two means of their entropies decided."
-    rows = [
-        Row(reason.label, f"{(clusters.reason == reason).sum():,}", reason.text)
-        for reason in Reason
-        if (clusters.reason == reason).any()
-    ]
-    pictures = "<h2>Mean entropy</h2>\n" + _chart(
-        clusters.entropy, groups, "Mean entropy of a cluster", _means(clusters)
-    )
+    counts = {reason: (clusters.reason == reason).sum() for reason in Reason}
+    rows = [Row(reason.label, f"{count:,}", reason.text) for reason, count in counts.items() if count]
+    means = [Mark("buildings", clusters.split.building), Mark("everything else", clusters.split.other)]
+    pictures = "<h2>Mean entropy</h2>\n" + _chart(clusters.entropy, groups, "Mean entropy of a cluster", means)
     if clusters.penetration is not None and clusters.max_penetration is not None:
         most = [Mark("at most", clusters.max_penetration)]
         pictures += "<h2>Penetration</h2>\n" + _chart(clusters.penetration, groups, "Share of the beam passing", most)
     return build_page("Why clusters are buildings", lead, {"Reasons": rows}, pictures)
-
-
-def _means(clusters: Clusters) -> list[Mark]:
-    return [Mark("buildings", clusters.split.building), Mark("everything else", clusters.split.other)]
 
 
 def _chart(values: np.ndarray, groups: dict, axis: str, marks: list[Mark]) -> str:

@@ -24,6 +24,9 @@ from .building_columns import ColumnPoints, Columns, column_size
 from .roof_coverage import Cell, Coverage, cells_with, covered_cells, mostly_roof, numbered, renumbered, roof_top
 from .roof_extent import RoofExtent, amid_rough, without_vehicles
 
+# Values (n,) of a dimension, None where the cloud lacks it.
+_Dimension = Optional[np.ndarray]
+
 # Width of the widest court (m), and the distance within which streets count: beyond a building of 15 m, as far again.
 AROUND = 30.0
 
@@ -202,25 +205,21 @@ class _Roofs:
     is_roof: np.ndarray  #: (n,), bool: points of the roofs to start from
     is_noise: np.ndarray  #: (n,), bool: points of noise
     may_belong: np.ndarray  #: (n,), bool: points that may be of a building: neither noise nor bridge decks
-    segment_id: Optional[np.ndarray]  #: (n,): roof surface of each point; 0 if unassigned
+    segment_id: _Dimension  #: (n,): roof surface of each point; 0 if unassigned
 
     @classmethod
-    def of(
-        cls, xyz: np.ndarray, height: np.ndarray, classification: np.ndarray, segment_id: Optional[np.ndarray]
-    ) -> _Roofs:
+    def of(cls, xyz: np.ndarray, height: np.ndarray, classification: np.ndarray, segment_id: _Dimension) -> _Roofs:
         """Find roofs, noise and bridge decks by the classes of points."""
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
         # Points on a bridge deck have no ground below them and are no walls.
-        may_belong = ~is_noise & (classification != PointClass.BRIDGE_DECK)
-        return cls(xyz, height, is_roof, is_noise, may_belong, segment_id)
+        return cls(xyz, height, is_roof, is_noise, ~is_noise & (classification != PointClass.BRIDGE_DECK), segment_id)
 
 
 def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
     """Return the area of buildings in a laser scan: cells with roof points, and gaps between them without ground."""
     cell_size = column_size(limits.density)
     refuse_sparse(roofs.xyz, cell_size)
-    margin = int(np.ceil(limits.gap / cell_size)) + 2
-    cell = raster_cells(roofs.xyz[:, :2], cell_size, margin)
+    cell = raster_cells(roofs.xyz[:, :2], cell_size, int(np.ceil(limits.gap / cell_size)) + 2)
     raised = (roofs.height >= LASER.foot) & roofs.may_belong
     # Multipath points below a skylight are no visible ground.
     covered = covered_cells(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
@@ -261,12 +260,8 @@ def _in_order(owner: np.ndarray, cell: np.ndarray) -> np.ndarray:
 
 
 def _explained(
-    confidence: Optional[np.ndarray],
-    reason: Optional[np.ndarray],
-    is_roof: np.ndarray,
-    cluster_id: np.ndarray,
-    refusal: np.ndarray,
-) -> tuple[Optional[np.ndarray], Optional[np.ndarray]]:
+    confidence: _Dimension, reason: _Dimension, is_roof: np.ndarray, cluster_id: np.ndarray, refusal: np.ndarray
+) -> tuple[_Dimension, _Dimension]:
     """Return confidence and reason of points added to buildings and of rejected roofs."""
     is_added, is_dropped = (cluster_id > 0) & ~is_roof, (cluster_id == 0) & is_roof
     if reason is not None:

@@ -136,5 +136,4 @@ def _mean_entropy(points: np.ndarray) -> float:
     """Return the mean entropy of neighborhoods of points (trials, n_points, 3)."""
     offsets = points - points.mean(axis=1, keepdims=True)
     products = np.einsum("tni,tnj->tij", offsets, offsets) / points.shape[1]
-    covariances = products[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    return float(shannon_entropy_lps(symmetric_eigenvalues(covariances)).mean())
+    return float(shannon_entropy_lps(symmetric_eigenvalues(products[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]])).mean())

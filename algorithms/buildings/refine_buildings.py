@@ -1,25 +1,33 @@
-"""Refine buildings by self-training: a classifier learns from the result that it then corrects."""
+"""Refine buildings by self-training: a classifier learns from the result that it then corrects.
 
+Points at edges are decided on together, by a minimum cut in the graph of their nearest neighbors. Crowns that look like
+buildings by chance are removed: of thousands in a forest, some are smooth and closed.
+"""
+
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import product
 from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..cloud.reasons import Reason
-from ..geometry.grid import raster_cells, refuse_sparse
-from ..packages import ndimage
+from ..geometry.cheapest_labels import cheapest_cut
+from ..geometry.grid import lattice, raster_cells, refuse_sparse
+from ..geometry.groups import run_starts
+from ..packages import ndimage, spatial
 from ..params import POINT_DENSITY, POINT_SOURCE
 from ..rules import rule, rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.sufficiency import doubted, why_doubtful
+from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor, stage, tunable
 from .building_columns import COLUMNS, column_size
 from .cell_features import CellFeatures, CellPoints
-from .chance_buildings import CHANCE, without_chance
-from .edge_classes import decided_together
+from .cluster_decisions import HALF_SUPPORT, support
 from .reviewed_buildings import NEVER, REVIEWED, ReviewedBuildings, with_changed, without_gaps
 from .scene_learning import RULES as HALVES
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
@@ -33,13 +41,15 @@ _LEARNED = "building_likeness"
 class _RULES:
     """Points examined and limits of changes; fitted on seven real airborne clouds, where F rises by 0.86 %."""
 
-    cell_spacings: float = rule(
-        4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
-    )
+    cell_spacings: float = rule(4.0, "point spacings", "fitted: side of a cell, 16 roof points; 3 and 6 gain 0.1 less")
     becomes: float = rule(0.65, "probability", "fitted: over it a point by itself becomes building; 0.5 gains 0.2 less")
-    ceases: float = rule(
-        0.17, "probability", "fitted: under it a point by itself ceases to be building; 0.2 gains the same"
-    )
+    ceases: float = rule(0.17, "probability", "fitted: under it a point by itself is no building; 0.2 gains the same")
+
+
+# Key of the survey-wide value that says whether doubtful buildings are chance.
+CHANCE = "chance_buildings"
+
+Found = tuple[np.ndarray, np.ndarray, np.ndarray, Optional[np.ndarray], Optional[np.ndarray]]
 
 
 @stage(
@@ -181,8 +191,8 @@ def refine_buildings(
         doubt = why_doubtful(xyz, classification, sampling)
         if confidence is not None and not doubt:
             found = without_chance(found, height_above_ground, min_doubtful_share, sampling, monitor)
-        measured = height_above_ground, segment_id, return_number, number_of_returns, intensity
-        found = _as_learned(xyz, found, measured, density, bool(doubt), sampling, monitor)
+        measured = xyz, height_above_ground, segment_id, return_number, number_of_returns, intensity
+        found = _as_learned(found, measured, density, bool(doubt), sampling, monitor)
     review = ReviewedBuildings.of(reviewed)
     if review is None:
         return found
@@ -190,25 +200,17 @@ def refine_buildings(
 
 
 def _as_learned(
-    xyz: np.ndarray,
-    found: tuple,
-    measured: tuple,
-    density: float,
-    is_doubtful: bool,
-    sampling: CloudSampling,
-    monitor: Monitor,
+    found: tuple, measured: tuple, density: float, is_doubtful: bool, sampling: CloudSampling, monitor: Monitor
 ) -> tuple:
     """Return the results of the stage, corrected by what the scene shows; those before where it shows nothing.
 
     Parameters
     ----------
-    xyz : ndarray of shape (n, 3)
-        Coordinates, m.
     found : tuple
         The results before.
     measured : tuple
-        Heights (m), roof surfaces, return numbers, numbers of returns and intensities, (n,) each; but for the heights
-        None where unknown.
+        Coordinates (n, 3), m, heights (m), roof surfaces, return numbers, numbers of returns and intensities, (n,)
+        each; but for coordinates and heights None where unknown.
     density : float
         Points per square meter.
     is_doubtful : bool
@@ -222,12 +224,11 @@ def _as_learned(
     used = not_noise(classification)
     if not len(used):
         return found
-    height, segment_id, *recorded = (None if values is None else values[used] for values in measured)
-    scene = _Scene(sampling.from_corner(xyz.take(used, axis=0)), classification[used], height, cluster_id[used])
+    xyz, height, segment_id, *recorded = (None if values is None else values.take(used, axis=0) for values in measured)
+    scene = _Scene(sampling.from_corner(xyz), classification[used], height, cluster_id[used])
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
-    size = _RULES.cell_spacings / float(np.sqrt(density))
-    labeled = scene.labeled(size, recorded, monitor.part(0.1, 0.7))
+    labeled = scene.labeled(_RULES.cell_spacings / float(np.sqrt(density)), recorded, monitor.part(0.1, 0.7))
     learned = sampling.learned(_LEARNED, partial(labeled.sample, scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
@@ -236,7 +237,7 @@ def _as_learned(
 
     # 2. The probability of each point, by what was learned on the other half.
     likely = labeled.smooth(predict(learned, labeled.features, labeled.half))
-    probability = np.full(len(xyz), np.nan)
+    probability = np.full(len(classification), np.nan)
     probability[used] = shared_by_surfaces(scene.of_points(labeled, likely), segment_id)
     # Free them first, as the distances to edges need the memory.
     del labeled, likely
@@ -279,8 +280,7 @@ class _Scene:
     @cached_property
     def is_raised(self) -> np.ndarray:
         """Which points are learned, and may be of buildings."""
-        never = np.isin(self.classification, NEVER)
-        return (self.height > IMAGES.foot) & ~never
+        return (self.height > IMAGES.foot) & ~np.isin(self.classification, NEVER)
 
     def labeled(self, size: float, recorded: list[Optional[np.ndarray]], monitor: Monitor) -> LabeledCells:
         """Return the cells of a ``size`` (m) with raised points, and what they are like.
@@ -334,14 +334,138 @@ class _Scene:
         was = self.is_building[rows]
         gain = _log_odds(probability[rows]) - _log_odds(np.where(was, _RULES.ceases, _RULES.becomes))
         gain = np.where(distance[rows] <= COLUMNS.edge, gain, np.where(was, np.inf, -np.inf))
-        together = decided_together(
-            self.xyz[rows], gain, 1 / float(np.sqrt(density)), HALVES.half, COLUMNS.edge, monitor
-        )
-        becomes, ceases = rows[together & ~was], rows[was & ~together]
-        of_nearest = building[tuple(nearest)]
-        return becomes, ceases, of_nearest[tuple(index[becomes] for index in cell)]
+        chosen = decided_together(self.xyz[rows], gain, 1 / float(np.sqrt(density)), HALVES.half, COLUMNS.edge, monitor)
+        becomes, ceases = rows[chosen & ~was], rows[was & ~chosen]
+        return becomes, ceases, building[tuple(nearest)][tuple(index[becomes] for index in cell)]
 
 
 def _log_odds(probability: np.ndarray) -> np.ndarray:
     """Return the logarithms (n,) of the odds of probabilities (n,)."""
     return np.log(probability / (1 - probability))
+
+
+def without_chance(found: Found, height: np.ndarray, least: float, sampling: CloudSampling, monitor: Monitor) -> Found:
+    """Remove the doubtful buildings of a scene that has no sure one, where they are few among all that is raised.
+
+    A building is sure from 0.75 on: the confidence of one of twice the minimum area without any contrary evidence.
+
+    Parameters
+    ----------
+    found : tuple
+        Classes, buildings from 1 (0 if unassigned), confidences, reasons or None, of points (n,), and anything.
+    height : ndarray of shape (n,)
+        Heights above ground, m.
+    least : float
+        Share of the raised points that doubtful buildings must hold to stay.
+    sampling : CloudSampling
+        Of the cloud; of a part of a survey it says whether the doubtful buildings of the whole are chance.
+    monitor : Monitor
+        Receives a message with the number of removed buildings.
+
+    Returns
+    -------
+    tuple
+        The same, where nothing is removed; else copies, with the reason ``BY_CHANCE``.
+    """
+    classification, cluster_id, confidence, reason, other = found
+    points = np.bincount(cluster_id, minlength=1)
+    mean = np.bincount(cluster_id, np.nan_to_num(confidence), 1) / np.maximum(points, 1)
+    raised = np.count_nonzero((height > LASER.raised) & (cluster_id == 0) & ~np.isin(classification, NEVER))
+    points[0], mean[0] = raised, 0.0
+    (is_chance,) = sampling.learned(CHANCE, lambda: np.column_stack([points, mean]), partial(_is_chance, least))
+    # The rest of the scene is no building, with a mean confidence of 0.
+    doubtful = is_chance * (mean > 0) * (mean < _sure())
+    if not doubtful.any():
+        return found
+    monitor.inform(
+        f"No building of the scene is sure (confidence {_sure():g}), so {doubtful.sum():g} doubtful ones are left out."
+    )
+    gone = doubtful[cluster_id] > 0
+    return (
+        np.where(gone, np.uint8(PointClass.UNCLASSIFIED), classification),
+        without_gaps(np.where(gone, 0, cluster_id)),
+        np.where(gone, np.minimum(confidence, np.float32(0.5)), confidence),
+        None if reason is None else np.where(gone, np.uint8(Reason.BY_CHANCE), reason),
+        other,
+    )
+
+
+def _is_chance(least_share: float, scene: np.ndarray) -> tuple[float]:
+    """Return 1.0 where the doubtful buildings of a scene are chance, 0.0 where not.
+
+    ``scene`` (k, 2) has the points and the mean confidence of each building, and of all else that is raised, with 0.
+    """
+    points, mean = scene.T
+    few = points[mean > 0].sum() < least_share * points.sum()
+    return (float(few and (mean < _sure()).all()),)
+
+
+def _sure() -> float:
+    """Return the confidence from which a building is sure."""
+    return float(0.5 + 0.5 * support(np.float64(HALF_SUPPORT)))
+
+
+def decided_together(
+    xyz: np.ndarray, gain: np.ndarray, spacing: float, side: float, margin: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the mask of points (n,) of buildings that together contradict evidence and neighbors least.
+
+    The cut is exact in each square of a fixed lattice with a margin around it; only the square itself is kept. So a
+    part of a survey with these margins gives the same result as the whole. A cut of all points at once differs in few
+    of them.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m, with easting and northing from the corner of the whole.
+    gain : ndarray of shape (n,)
+        Log odds of building of each point by itself; infinite where its class does not change.
+    spacing : float
+        Mean distance between neighboring points in plan, m.
+    side, margin : float
+        Side of the squares and width of their margin, at most half of it, m.
+    monitor : Monitor
+        Receives progress.
+
+    References
+    ----------
+    Greig, D.M., Porteous, B.T., Seheult, A.H., 1989. Exact maximum a posteriori estimation for binary images. Journal
+    of the Royal Statistical Society B 51(2), 271-279. [greig1989]
+    """
+    alone = gain > 0
+    if not len(alone):
+        return alone
+    together, done = alone.copy(), 0
+    for rows, is_own in _squares(xyz[:, :2], side, margin):
+        # If all points lean to one class, there is nothing to decide.
+        if alone[rows].any() and not alone[rows].all():
+            together[rows[is_own]] = _cheapest(xyz[rows], gain[rows], spacing)[is_own]
+        done += int(is_own.sum())
+        monitor.progress(done / len(xyz))
+    return together
+
+
+def _squares(plan: np.ndarray, side: float, margin: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield the rows of the points (n, 2) in each square with its margin, and which of them are in the square."""
+    shifts = product((-margin, margin), repeat=2)
+    squares = np.concatenate([lattice(plan, side), *(lattice(plan + shift, side) for shift in shifts)])
+    east, north = (squares - squares.min(axis=0)).T
+    number = east * (north.max() + 1) + north
+    own, row = number[: len(plan)], np.tile(np.arange(len(plan)), 5)
+    order = np.lexsort((row, number))
+    number, row = number[order], row[order]
+    once = np.append(True, (np.diff(number) != 0) | (np.diff(row) != 0))
+    number, row = number[once], row[once]
+    for rows, numbers in zip(*(np.split(values, run_starts(number)[1:]) for values in (row, number))):
+        yield rows, own[rows] == numbers
+
+
+def _cheapest(xyz: np.ndarray, gain: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the mask of points (n,) that the minimum cut puts on the side of buildings; n >= 2."""
+    distance, near = spatial.cKDTree(xyz).query(xyz, min(SURFACES.neighbors + 1, len(xyz)))
+    row = np.repeat(np.arange(len(xyz)), near.shape[1])
+    # A neighbor at distance 0 weighs as much as odds of e to 1, one at the usual distance half as much.
+    cost = 1 / (1 + (distance.ravel() / spacing) ** 2)
+    is_other = near.ravel() != row
+    ends = row[is_other], near.ravel()[is_other]
+    return cheapest_cut(*ends, cost[is_other], np.maximum(-gain, 0.0), np.maximum(gain, 0.0))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -111,9 +111,7 @@ class ReviewedBuildings:
         return np.where(around < 0, of_building[building], around)
 
 
-def with_changed(
-    values: np.ndarray, first: object, becomes: np.ndarray, second: object, ceases: np.ndarray
-) -> np.ndarray:
+def with_changed(values: np.ndarray, first: Any, becomes: np.ndarray, second: Any, ceases: np.ndarray) -> np.ndarray:
     """Return a copy of values of points, changed where these become building and where they cease to be.
 
     Parameters

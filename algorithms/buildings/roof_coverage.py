@@ -55,10 +55,8 @@ def covered_cells(cell: Cell, is_roof: np.ndarray, is_low: np.ndarray, gap: floa
     margin = int(np.ceil(gap / cell_size)) + 2
     shape = (row.max() + margin, column.max() + margin)
     roof, open_ground = (cells_with(cell, points, shape) for points in (is_roof, is_low))
-    closed = roof
     reach = round(gap / 2 / cell_size)
-    if reach:
-        closed = roof | ndimage.binary_closing(roof, disk(reach))
+    closed = roof | ndimage.binary_closing(roof, disk(reach)) if reach else roof
     holes = ndimage.binary_fill_holes(closed) & ~closed
     # A hole of at most the area of a square as wide as the gap is closed too; a courtyard is larger.
     small = _small(holes, max(1.0, (gap / cell_size) ** 2))

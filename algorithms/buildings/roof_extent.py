@@ -92,8 +92,7 @@ class RoofExtent:
         # Image matching smears a step evenly to both sides.
         is_edge = self.surface.height >= 0.5 * nearest_known(self.surface.height, ~core)
         steps = max(1, round(MATCHING.rounded / self.surface.size))
-        cross = ndimage.generate_binary_structure(2, 1)
-        grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)
+        grown = ndimage.binary_dilation(core, ndimage.generate_binary_structure(2, 1), steps, mask=core | is_edge)
         # Smeared walls, fences and branches that reach out are thinner than the objects that carry them.
         return core | ndimage.binary_opening(grown, EIGHT)
 
@@ -156,6 +155,5 @@ def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float]:
 
 def without_vehicles(extent: RoofExtent, building: np.ndarray, refused: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return numbered regions (rows, columns) without vehicles, and why cells are refused."""
-    is_vehicle = extent.vehicles(building, int(building.max(initial=0)))
-    gone = is_vehicle[building]
+    gone = extent.vehicles(building, int(building.max(initial=0)))[building]
     return np.where(gone, 0, building), np.where(gone, np.uint8(Reason.VEHICLE), refused)

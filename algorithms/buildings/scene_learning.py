@@ -102,10 +102,9 @@ def shared_by_surfaces(likely: np.ndarray, segment_id: Optional[np.ndarray]) -> 
     """Return probabilities (n,) of points, on roof surfaces drawn toward the mean of the surface."""
     if segment_id is None:
         return likely
-    on_surface = segment_id > 0
     mean = np.bincount(segment_id, likely) / np.maximum(np.bincount(segment_id), 1)
     share = RULES.surface_share
-    return np.where(on_surface, (1 - share) * likely + share * mean[segment_id], likely)
+    return np.where(segment_id > 0, (1 - share) * likely + share * mean[segment_id], likely)
 
 
 def _least(numbers: np.ndarray) -> np.ndarray:

@@ -180,8 +180,7 @@ def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:
     # Rings pass between nodes of their part and others.
     at = own.lattice.nodes(np.concatenate(rings)).astype(np.int64)
     beside = [part[at[:, 1] + row, at[:, 0] + column] for row in (0, 1) for column in (0, 1)]
-    mine = np.setdiff1d(np.concatenate(beside), 0)
-    return np.isin(spread_out(part), mine)
+    return np.isin(spread_out(part), np.setdiff1d(np.concatenate(beside), 0))
 
 
 def _moved(values: np.ndarray, own: Lattice, lattice: Lattice) -> np.ndarray:
@@ -197,8 +196,7 @@ def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
     positions = lattice.positions
     # A little beyond the outer nodes, so that these lie in cells and not on the rim.
     cells = Subdivision(positions[0] - 0.3 * lattice.step, positions[-1] + 0.3 * lattice.step, positions)
-    length = [-float(np.hypot(*(edge.end - edge.start))) for edge in edges]
-    for number in np.argsort(length, kind="stable"):
+    for number in np.argsort([-float(np.hypot(*(edge.end - edge.start))) for edge in edges], kind="stable"):
         cells.cut(edges[number].start, edges[number].end)
     return cells
 

@@ -294,8 +294,7 @@ def _apart(building: np.ndarray, non_building: np.ndarray, apart: float) -> list
         rows = np.flatnonzero(there)
         pairs.append(group[position[rows]] * len(non_building) + rows)
     beside, row = np.divmod(np.unique(np.concatenate(pairs)), max(len(non_building), 1))
-    rows_beside = np.split(row, np.searchsorted(beside, np.arange(1, count)))
-    return list(zip(split_groups(own, count), rows_beside))
+    return list(zip(split_groups(own, count), np.split(row, np.searchsorted(beside, np.arange(1, count)))))
 
 
 def _evidence_of(part: _Part, measures: PointMeasures, how: BlockDrawing) -> _Evidence:

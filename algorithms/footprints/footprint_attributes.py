@@ -196,8 +196,7 @@ class _Owners:
         found, there = find_cells(self.occupied, np.where(is_near, self._number(column, row), -1))
         face = np.where(there, self.face[np.minimum(found, len(self.face) - 1)], -1)
         outside, reach = np.flatnonzero(~there), within * self.spacing
-        searching = searchers(len(outside))
-        nearest = self.rim.query(plan[outside], distance_upper_bound=reach, workers=searching)[1]
+        nearest = self.rim.query(plan[outside], distance_upper_bound=reach, workers=searchers(len(outside)))[1]
         face[outside] = self.rim_face[nearest]
         return face
 
@@ -246,8 +245,7 @@ def _eave_heights(
     factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)
     # A small weight on level planes decides the slope only where the points lie on one line.
     matrix = np.einsum("ni,nij,nik->njk", weight, factors, factors) + np.diag([1e-6, *[spacing**2 / 10] * 2])
-    right = np.einsum("ni,nij,ni->nj", weight, factors, height[beside])
-    planes = np.linalg.solve(matrix, right[..., None])
+    planes = np.linalg.solve(matrix, np.einsum("ni,nij,ni->nj", weight, factors, height[beside])[..., None])
     off = ((factors @ planes)[..., 0] - height[beside]) ** 2
     is_roof = (weight.sum(axis=1) >= PLANE_NEIGHBORS / 2) & (np.hypot(*planes[:, 1:, 0].T) <= _STEEPEST)
     is_plane = is_roof & ((weight * off).sum(axis=1) <= _FLAT**2 * weight.sum(axis=1))

@@ -35,14 +35,8 @@ class RowRules:
     )
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
     large_step: float = rule(1.0, "m", "physics: a step between any two roofs, half a storey high")
-    least_share: float = rule(
-        0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
-    )
-    wall: float = rule(
-        0.15,
-        "per spacing",
-        "what a wall costs, where one clearly seen all along pays 1: noise of fewer points pays more",
-    )
+    least_share: float = rule(0.6, "share", "of the higher house's height: 2 of 3 storeys, not a wing with 1 of 2")
+    wall: float = rule(0.15, "per spacing", "cost, where one seen all along pays 1: noise of fewer points pays more")
     row: float = rule(0.9, "walls", "what a row costs, and the most that one wall pays: two roofs may be one house")
     unlike: float = rule(0.1, "walls", "what a house e times as wide or narrow as the others of its row costs")
     narrowest: float = rule(3.5, "m", "physics: least width and depth of a house")
@@ -325,9 +319,8 @@ def _chosen_walls(pays: np.ndarray, length: np.ndarray, step: float) -> tuple[fl
         Distance of nodes, m.
     """
     count, narrowest = len(pays), int(np.ceil(ROWS.narrowest / step))
-    starts = range(0, count, narrowest)
     # Each strip as wide as the narrowest house has one wall at most.
-    if np.maximum.reduceat(pays, starts).clip(0).sum() <= ROWS.row * STEPS_OF_LABELS:
+    if np.maximum.reduceat(pays, range(0, count, narrowest)).clip(0).sum() <= ROWS.row * STEPS_OF_LABELS:
         return 0.0, np.zeros(0, np.int64)
     area = np.concatenate([[0], np.cumsum(length)]) * step**2
     widths = np.arange(1, count + 1) * step

@@ -258,6 +258,5 @@ def _on_surfaces(xyz: np.ndarray, sampling: CloudSampling, monitor: Monitor) -> 
         is_smooth[rows] = (variance <= most**2) & (shapes.counts >= LEAST_NEIGHBORS)
 
     count = round(float(np.pi * SURFACES.least_reach**2 * sampling.density))
-    neighborhood = Nearest(min(max(count, LEAST_NEIGHBORS), SURFACES.most_neighbors))
-    reduce_neighborhoods(xyz, neighborhood, keep, monitor=monitor)
+    reduce_neighborhoods(xyz, Nearest(min(max(count, LEAST_NEIGHBORS), SURFACES.most_neighbors)), keep, monitor=monitor)
     return is_smooth

@@ -102,8 +102,7 @@ class SpanSurroundings:
     def extended(self, span: Span) -> Span:
         """Return the span fitted anew to all points on it, and beyond its ends as far as they go on."""
         for _ in range(RULES.tries):
-            rows = self.on_wire(span, RULES.beyond)
-            longer = fitted(self.xyz[rows])
+            longer = fitted(self.xyz[self.on_wire(span, RULES.beyond)])
             if longer is None or longer.end - longer.start <= span.end - span.start:
                 return span
             span = longer
@@ -179,8 +178,7 @@ class SpanSurroundings:
 
     def _beside_buildings(self, span: Span) -> int:
         """Return along how much of a span (m) buildings are next to it."""
-        solid = self.solid[self._near(1, span, RULES.beside)]
-        along, aside, above = span.local(solid)
+        along, aside, above = span.local(self.solid[self._near(1, span, RULES.beside)])
         inside = (along >= span.start) & (along <= span.end)
         return len(np.unique(np.floor(along[inside & (np.maximum(np.abs(aside), np.abs(above)) <= RULES.beside)])))
 

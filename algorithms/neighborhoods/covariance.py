@@ -99,8 +99,7 @@ class Within:
 
     def check(self, xyz: np.ndarray, tree: Any) -> None:
         """Raise ValueError when the radius holds far more points than are local."""
-        sample = xyz[:: max(1, len(xyz) // 100)]
-        mean = tree.query_ball_point(sample, self.radius, return_length=True).mean()
+        mean = tree.query_ball_point(xyz[:: max(1, len(xyz) // 100)], self.radius, return_length=True).mean()
         if mean > _MAX_MEAN_NEIGHBORS:
             raise ValueError(
                 f"A radius of {self.radius:g} m holds {mean:,.0f} points on average, more than "
@@ -266,8 +265,7 @@ def smallest_eigenvectors(covariances: np.ndarray, eigenvalues: np.ndarray) -> n
     normals, size = crosses[best, :, every], np.sqrt(sizes[best, every])
     doubtful = np.flatnonzero(size < _DOUBTFUL)
     if len(doubtful):
-        matrices = full_matrices(covariances[doubtful] / largest[doubtful, None])
-        normals[doubtful] = np.linalg.eigh(matrices)[1][:, :, 0]
+        normals[doubtful] = np.linalg.eigh(full_matrices(covariances[doubtful] / largest[doubtful, None]))[1][:, :, 0]
         size[doubtful] = 1.0
     normals /= size[:, None]
     normals[normals[:, 2] < 0] *= -1

@@ -15,11 +15,7 @@ from ..stage import InputLayer, LayerFeatures, stage, tunable
     input_layers=(InputLayer("polygons", optional=True),),
 )
 def clip_cloud(
-    xyz,
-    polygons: Optional[LayerFeatures] = None,
-    *,
-    outside: bool = tunable(False, label="Keep outside"),
-    monitor=None,
+    xyz, polygons: Optional[LayerFeatures] = None, *, outside: bool = tunable(False, label="Keep outside"), monitor=None
 ):
     """Keep the points that lie in polygons, within an extent, or both; all their dimensions stay.
 

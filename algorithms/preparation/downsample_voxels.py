@@ -32,8 +32,7 @@ class _Sorted:
 
     def chunks(self, voxels: np.ndarray) -> list[np.ndarray]:
         """Cut a list of voxels into some that have about as many points as are worked on at once."""
-        ends = np.cumsum(self.count[voxels])
-        cuts = np.searchsorted(ends, np.arange(0, len(self.order), ROWS_AT_ONCE))
+        cuts = np.searchsorted(np.cumsum(self.count[voxels]), np.arange(0, len(self.order), ROWS_AT_ONCE))
         return [chunk for chunk in np.split(voxels, np.unique(cuts)) if len(chunk)]
 
 
@@ -236,8 +235,7 @@ def _majority(classes: np.ndarray, which: np.ndarray) -> np.ndarray:
     """Return the most frequent class of each voxel, the lowest of those equally frequent."""
     firsts = run_starts(which)
     made = np.minimum.reduceat(classes, firsts).astype(np.uint8)
-    is_mixed = made != np.maximum.reduceat(classes, firsts)
-    among = is_mixed[which]
+    among = (made != np.maximum.reduceat(classes, firsts))[which]
     pair, count = np.unique(which[among] * CODES + classes[among], return_counts=True)
     voxel, kind = np.divmod(pair, CODES)
     order = np.lexsort((kind, -count, voxel))

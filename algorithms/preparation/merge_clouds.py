@@ -50,13 +50,7 @@ class Transform:
     cost=0.2,
     packages=(),
 )
-def merge_clouds(
-    xyz,
-    point_source_id,
-    *,
-    transforms: str = tunable(""),
-    monitor=None,
-):
+def merge_clouds(xyz, point_source_id, *, transforms: str = tunable(""), monitor=None):
     """Make one cloud of several, each but the first turned and moved if need be; PointSourceId identifies them.
 
     The clouds may differ in scale, offset, point format and extra dimensions. The result has the finest scale, the

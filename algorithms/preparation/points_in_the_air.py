@@ -103,8 +103,7 @@ def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Moni
     """Return the mask of components that let most pulses pass and are neither compact, nor lines, nor planes."""
     n_points = np.bincount(component)
     in_smaller = np.flatnonzero((n_points < n_points.max())[component])
-    cell = fixed_grid_over(xyz, _SHARE_SPACINGS * spacing).number(xyz)
-    cells, which = distinct(cell)
+    cells, which = distinct(fixed_grid_over(xyz, _SHARE_SPACINGS * spacing).number(xyz))
     in_cell = np.bincount(which)
     pairs = np.unique(component[in_smaller].astype(np.int64) * len(cells) + which[in_smaller])
     # Columns that the edge of the cloud cuts count as half full.

@@ -135,8 +135,7 @@ class _Surface:
     def at(self, xyz: np.ndarray, rows: np.ndarray, which: np.ndarray) -> np.ndarray:
         """Return the elevation (m) of the surface at some points, ``which`` is the cell of each point."""
         cell = which[rows]
-        off = xyz[rows, :2] - self.origin[cell, :2]
-        return self.origin[cell, 2] + np.einsum("ij,ij->i", self.slope[cell], off)
+        return self.origin[cell, 2] + np.einsum("ij,ij->i", self.slope[cell], xyz[rows, :2] - self.origin[cell, :2])
 
     def fit(self, grid: Grid, cells: np.ndarray, lowest: np.ndarray, middle: np.ndarray, wanted: np.ndarray) -> None:
         """Fit the surface around the ``wanted`` cells (positions in ``cells``).

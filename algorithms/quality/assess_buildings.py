@@ -269,8 +269,7 @@ def _objects(grid: Grid, true: _Side, predicted: _Side, min_area: float) -> Laye
         (MISSED_PART, true, _parts(grid, true, min_area)),
         (INVENTED_PART, predicted, _parts(grid, predicted, min_area)),
     )
-    features = [feature for kind in kinds for feature in _features(grid, *kind)]
-    return LayerFeatures.numbered(features, _OBJECTS.fields)
+    return LayerFeatures.numbered([feature for kind in kinds for feature in _features(grid, *kind)], _OBJECTS.fields)
 
 
 def _parts(grid: Grid, side: _Side, min_area: float) -> np.ndarray:
@@ -299,11 +298,10 @@ def _features(grid: Grid, kind: str, side: _Side, chosen: np.ndarray) -> Iterato
 
 def _summary(values: dict) -> str:
     """Return the rates of points and of buildings in a sentence each."""
-    titles = (("points", "Points"), ("objects", "Buildings"))
     return " ".join(
         f"{title}: completeness {percent(values[f'{of}_completeness'])}, "
         f"correctness {percent(values[f'{of}_correctness'])}, F-score {percent(values[f'{of}_f'])}."
-        for of, title in titles
+        for of, title in (("points", "Points"), ("objects", "Buildings"))
     )
 
 

@@ -208,6 +208,5 @@ def _page(matrix: np.ndarray, names: list[str], values: dict, table: str, pictur
     }
     lead = f"{values['points']:,} points of {len(names)} classes were compared with the reference."
     heat = "<h2>Confusion matrix</h2>\n" + draw_matrix(matrix, names, "Class of the input", "True class")
-    return build_page(
-        "Quality of the classes", lead, {"All classes": rows_of(values, _MEASURES, meanings)}, heat + table + picture
-    )
+    tables = {"All classes": rows_of(values, _MEASURES, meanings)}
+    return build_page("Quality of the classes", lead, tables, heat + table + picture)

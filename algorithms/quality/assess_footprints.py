@@ -10,17 +10,7 @@ from ..report.charts import BLUE, CYAN, GREEN, RED, YELLOW, Mark, Series, draw_h
 from ..report.page import build_page, decimal, draw_table, rows_of
 from ..report.polygon_map import draw_polygons
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
-from .building_maps import (
-    BuildingMap,
-    Overlap,
-    amid,
-    clean_map,
-    joined_names,
-    measure_overlap,
-    refuse_elsewhere,
-    rounded_down,
-    within,
-)
+from .building_maps import BuildingMap, Overlap, clean_map, joined_names, measure_overlap, refuse_apart, rounded_down
 from .confusion import percentage
 from .corner_matching import MatchedCorners, corners_of, match_corners
 from .polygon_comparison import hausdorff, polis, squareness
@@ -193,7 +183,7 @@ def assess_footprints(
     """
     new = clean_map(footprints, "footprints", monitor)
     true = clean_map(reference_map, "buildings of the reference", monitor)
-    refuse_elsewhere(true, new, "footprints", "reference")
+    refuse_apart(true, new, "footprints", "reference")
     true, new, outside = _compared(true, new, area, compared, monitor)
     if len(true.area) and not len(new.area):
         monitor.warn("There are no footprints, so all buildings of the reference are missed.")
@@ -215,10 +205,9 @@ def _compared(
     """Return the buildings and the footprints that are compared, and how many footprints lie elsewhere."""
     if area is not None:
         polygons = clean_map(area, "polygons of the area", monitor)
-        true = true.only(within(polygons, true, Monitor()))
-        kept = within(polygons, new, Monitor())
+        true, kept = true.only(polygons.holds(true)), polygons.holds(new)
     elif compared == AROUND and true.rings:
-        kept = amid(true, new, measure_overlap(true, new, np.zeros(2), Monitor()))
+        kept = true.shows(new)
     else:
         kept = np.ones(len(new.rings), bool)
     return true, new.only(kept), int((~kept).sum())

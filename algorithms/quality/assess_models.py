@@ -7,14 +7,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..criteria import MAJORITY
-from ..footprints.footprint_points import (
-    TOLERANCE_TEXT,
-    by_easting,
-    plane_tolerance,
-    require_buildings,
-    rows_near,
-    rows_within,
-)
+from ..footprints import footprint_points
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import connected_cells, grid_over
 from ..geometry.rings import signed_area
@@ -101,7 +94,9 @@ def assess_models(
     roofs,
     *,
     min_plane_area: float = tunable(2.0, within="[0.1, 1000] m²"),
-    tolerance: Optional[float] = tunable(None, within="[0.01, 5] m", automatic=TOLERANCE_TEXT, advanced=True),
+    tolerance: Optional[float] = tunable(
+        None, within="[0.01, 5] m", automatic=footprint_points.TOLERANCE_TEXT, advanced=True
+    ),
     sampling: CloudSampling = MEASURED,
     monitor=None,
 ):
@@ -167,9 +162,9 @@ def assess_models(
     >>> report.values["missing"]
     0
     """
-    require_buildings(classification)
+    footprint_points.require_buildings(classification)
     if tolerance is None:
-        tolerance = plane_tolerance(sampling.roughness)
+        tolerance = footprint_points.plane_tolerance(sampling.roughness)
         monitor.resolved(tolerance=tolerance)
     faces = _faces(roofs, monitor)
     points = _RoofPoints(xyz, classification, sampling.spacing)
@@ -262,17 +257,17 @@ class _RoofPoints:
     """The building points ``xyz`` (n, 3) by easting, which are low (n,), and the lowest of buildings and ground."""
 
     def __init__(self, xyz: np.ndarray, classification: np.ndarray, spacing: float) -> None:
-        self.spacing, self.xyz = spacing, by_easting(xyz[classification == PointClass.BUILDING])
+        self.spacing, self.xyz = spacing, footprint_points.by_easting(xyz[classification == PointClass.BUILDING])
         self.is_low = are_low(self.xyz, spacing)
-        self._low = by_easting(xyz[np.isin(classification, (PointClass.BUILDING, PointClass.GROUND))])
+        self._low = footprint_points.by_easting(xyz[np.isin(classification, (PointClass.BUILDING, PointClass.GROUND))])
 
     def over(self, rings: list) -> np.ndarray:
         """Return the building points (k,), rows of ``xyz``, that lie within rings in plan."""
-        return rows_within(self.xyz, [ring[:, :2] for ring in rings])
+        return footprint_points.rows_within(self.xyz, [ring[:, :2] for ring in rings])
 
     def lowest(self, plan: np.ndarray) -> float:
         """Return the lowest height (m) in the box around positions (n, 2), NaN where there are no points."""
-        z = self._low[rows_near(self._low, [plan]), 2]
+        z = self._low[footprint_points.rows_near(self._low, [plan]), 2]
         return float(z.min()) if len(z) else np.nan
 
 
@@ -304,8 +299,7 @@ class _Search:
 
 def _is_wall(xyz: np.ndarray) -> bool:
     """Whether the plane of points is too steep for a roof."""
-    normal = planes_of(xyz, np.zeros(len(xyz), np.int64), 1).normal[0]
-    return bool(abs(normal[2]) < np.cos(np.deg2rad(_MAX_SLOPE)))
+    return bool(abs(planes_of(xyz, np.zeros(len(xyz), np.int64), 1).normal[0][2]) < np.cos(np.deg2rad(_MAX_SLOPE)))
 
 
 def _compared(faces: dict[str, list[_Face]], points: _RoofPoints, search: _Search, monitor: Monitor) -> list[_Building]:
@@ -330,8 +324,7 @@ def _compared(faces: dict[str, list[_Face]], points: _RoofPoints, search: _Searc
 
 def _volume(faces: list[_Face], points: _RoofPoints) -> float:
     """Return the volume (m³) of the prisms under faces, whichever way their rings run."""
-    corners = np.concatenate([ring for face in faces for ring in face.rings])
-    base = points.lowest(corners[:, :2])
+    base = points.lowest(np.concatenate([ring for face in faces for ring in face.rings])[:, :2])
     total = 0.0
     for face in faces:
         for number, ring in enumerate(face.rings):

@@ -162,8 +162,7 @@ def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> M
 def _made_up(whole: np.ndarray, shared: np.ndarray, size: np.ndarray, min_overlap: float) -> np.ndarray:
     """Return the mask of segments that two or more others make up."""
     n = len(size)
-    total = np.bincount(whole, shared, n)
-    return (total >= min_overlap * size) & (np.bincount(whole, minlength=n) > 1)
+    return (np.bincount(whole, shared, n) >= min_overlap * size) & (np.bincount(whole, minlength=n) > 1)
 
 
 def _numbered(ids: np.ndarray, min_points: int) -> np.ndarray:

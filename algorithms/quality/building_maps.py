@@ -50,6 +50,29 @@ class BuildingMap:
         """Return the polygons of both maps, the other map's last."""
         return BuildingMap(self.rings + other.rings, self.names + other.names, np.append(self.rows, other.rows))
 
+    def shows(self, other: BuildingMap) -> np.ndarray:
+        """Return the mask of buildings (n,) of another map in the area that this one shows.
+
+        They overlap a building of it, or lie within the convex hull of its outlines around them: seen from their
+        middle, these leave no gap of half a turn.
+        """
+        inside = measure_overlap(self, other, np.zeros(2), Monitor()).other_covered > 0
+        rest = np.flatnonzero(~inside)
+        if not len(rest) or not self.rings:
+            return inside
+        # Positions every 2 m, which no building is narrower than.
+        outlines = sampled_rings([ring for rings in self.rings for ring in rings[:1]], 2.0)
+        middles = np.array([plan_box(other.rings[row][0]).sum(axis=0) / 2 for row in rest])
+        for row, middle, near in zip(rest, middles, spatial.cKDTree(outlines).query_ball_point(middles, AROUND)):
+            angles = np.sort(np.arctan2(*(outlines[near] - middle).T))
+            gaps = np.diff(angles, append=angles[:1] + 2 * np.pi)
+            inside[row] = len(near) > 0 and gaps.max() < np.pi
+        return inside
+
+    def holds(self, other: BuildingMap) -> np.ndarray:
+        """Return the mask of buildings (n,) of another map with half of their area within these polygons."""
+        return measure_overlap(self, other, np.zeros(2), Monitor()).other_covered >= rounded_down(0.5)
+
 
 def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> BuildingMap:
     """Return the polygons of a layer that have an area; say how many don't, and how many cross themselves."""
@@ -71,7 +94,7 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
     return found
 
 
-def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str) -> None:
+def refuse_apart(old: BuildingMap, new: BuildingMap, called: str, other: str) -> None:
     """Refuse two maps that lie far from each other.
 
     Parameters
@@ -92,9 +115,8 @@ def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str
     """
     if not old.rings or not new.rings:
         return
-    (low, high), (other_low, other_high) = (
-        plan_box(np.concatenate([rings[0] for rings in one.rings])) for one in (old, new)
-    )
+    boxes = [plan_box(np.concatenate([rings[0] for rings in one.rings])) for one in (old, new)]
+    (low, high), (other_low, other_high) = boxes
     apart = float(np.hypot(*np.maximum(0.0, np.maximum(low - other_high, other_low - high))))
     if apart > _ELSEWHERE:
         raise ValueError(
@@ -166,8 +188,7 @@ def measure_overlap(first: BuildingMap, second: BuildingMap, shift: np.ndarray, 
     monitor : Monitor
         Receives the progress.
     """
-    pairs = overlaps(first.polygons.moved(shift), second.polygons, monitor)
-    return Overlap(*pairs, first.area, second.area)
+    return Overlap(*overlaps(first.polygons.moved(shift), second.polygons, monitor), first.area, second.area)
 
 
 def joined_names(rows: np.ndarray, names: Iterable[str], count: int) -> list[str]:
@@ -181,35 +202,3 @@ def joined_names(rows: np.ndarray, names: Iterable[str], count: int) -> list[str
 def rounded_down(share: float) -> float:
     """Return a least share (0 to 1) that an overlap of exactly this share reaches in spite of rounding."""
     return share * (1 - 1e-9)
-
-
-def amid(first: BuildingMap, second: BuildingMap, overlap: Overlap) -> np.ndarray:
-    """Return the mask of buildings (n,) of the second map in the area that the first one shows.
-
-    They overlap a building of it, or lie within the convex hull of its outlines around them: seen from their middle,
-    these leave no gap of half a turn.
-
-    Parameters
-    ----------
-    first, second : BuildingMap
-        The two maps.
-    overlap : Overlap
-        What they share.
-    """
-    inside = overlap.other_covered > 0
-    rest = np.flatnonzero(~inside)
-    if not len(rest) or not first.rings:
-        return inside
-    # Positions every 2 m, which no building is narrower than.
-    outlines = sampled_rings([ring for rings in first.rings for ring in rings[:1]], 2.0)
-    middles = np.array([plan_box(second.rings[row][0]).sum(axis=0) / 2 for row in rest])
-    for row, middle, near in zip(rest, middles, spatial.cKDTree(outlines).query_ball_point(middles, AROUND)):
-        angles = np.sort(np.arctan2(*(outlines[near] - middle).T))
-        gaps = np.diff(angles, append=angles[:1] + 2 * np.pi)
-        inside[row] = len(near) > 0 and gaps.max() < np.pi
-    return inside
-
-
-def within(area: BuildingMap, one: BuildingMap, monitor: Monitor) -> np.ndarray:
-    """Return the mask of buildings (n,) of a map with half of their area within the polygons of ``area``."""
-    return measure_overlap(area, one, np.zeros(2), monitor).other_covered >= rounded_down(0.5)

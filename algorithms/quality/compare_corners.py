@@ -9,15 +9,7 @@ from ..criteria import MILLIMETER
 from ..report.charts import BLUE, Mark, Series, draw_histogram, draw_scatter
 from ..report.page import Row, build_page, meters
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
-from .building_maps import (
-    BuildingMap,
-    Overlap,
-    clean_map,
-    joined_names,
-    measure_overlap,
-    refuse_elsewhere,
-    rounded_down,
-)
+from .building_maps import BuildingMap, Overlap, clean_map, joined_names, measure_overlap, refuse_apart, rounded_down
 from .corner_matching import FARTHEST, Corners, MatchedCorners, corners_of, match_corners, nearest_corners
 
 FOUND, MISSED, NEW = "found", "missed", "new"
@@ -160,7 +152,7 @@ def compare_corners(
         monitor.warn("There is no old map to compare with" + (", so all footprints are new." if footprints else "."))
         old_map = LayerFeatures([], {})
     new, old = clean_map(footprints, "footprints", monitor), clean_map(old_map, "buildings of the old map", monitor)
-    refuse_elsewhere(old, new, "footprints", "old map")
+    refuse_apart(old, new, "footprints", "old map")
     corners = corners_of(old.rings), corners_of(new.rings)
     reach = max(FARTHEST, tolerance or 0.0)
     shift = _shift(*corners, _linked(old, new, min_overlap, np.zeros(2), monitor.part(0.0, 0.4)).same, reach)
@@ -209,7 +201,6 @@ def _values(corners: MatchedCorners, link: _Link) -> dict[str, float]:
     dx, dy = corners.moved.T
     distance = np.hypot(dx, dy)
     measures = {"mean": np.mean, "minimum": np.min, "maximum": np.max, "median": np.median, "deviation": np.std}
-    measured = {name: measure(distance) if len(distance) else np.nan for name, measure in measures.items()}
     return {
         "old_buildings": len(link.is_found),
         "all_footprints": len(link.is_new),
@@ -218,7 +209,7 @@ def _values(corners: MatchedCorners, link: _Link) -> dict[str, float]:
         "new": int(link.is_new.sum()),
         "corners": int(link.is_found[corners.old.building].sum()),
         "matched": len(distance),
-        **{name: float(value) for name, value in measured.items()},
+        **{name: float(measure(distance)) if len(distance) else np.nan for name, measure in measures.items()},
         "mean_dx": float(dx.mean()) if len(dx) else np.nan,
         "mean_dy": float(dy.mean()) if len(dy) else np.nan,
     }

@@ -12,15 +12,7 @@ from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
 from ..rules import rules
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, stage, tunable
-from .building_maps import (
-    BuildingMap,
-    Overlap,
-    clean_map,
-    joined_names,
-    measure_overlap,
-    refuse_elsewhere,
-    rounded_down,
-)
+from .building_maps import BuildingMap, Overlap, clean_map, joined_names, measure_overlap, refuse_apart, rounded_down
 from .corner_matching import LEAST_TOLERANCE, MEDIANS, MOST_TOLERANCE
 from .polygon_comparison import positions_along
 
@@ -171,7 +163,7 @@ def compare_surveys(
     """
     new = clean_map(footprints, "footprints", monitor)
     old = clean_map(earlier, "footprints of the earlier survey", monitor)
-    refuse_elsewhere(old, new, "footprints", "earlier survey")
+    refuse_apart(old, new, "footprints", "earlier survey")
     overlap = measure_overlap(old, new, np.zeros(2), monitor.part(0.0, 0.3))
     groups = _groups(overlap, min_overlap)
     height = _height_changes((footprints, earlier), (new, old), groups, monitor)
@@ -205,9 +197,7 @@ def _groups(overlap: Overlap, min_overlap: float) -> _Groups:
     return _Groups(group[:n], group[n:], count)
 
 
-def _height_changes(
-    layers: tuple, maps: tuple[BuildingMap, BuildingMap], groups: _Groups, monitor: Monitor
-) -> np.ndarray:
+def _height_changes(layers: tuple, maps: tuple, groups: _Groups, monitor: Monitor) -> np.ndarray:
     """Return the rise (m) of each group from the earlier to the new survey, the new one first; NaN where unknown."""
     for name in ("ridge_height", "height"):
         found = (_numbers(layer.columns.get(name)) for layer in layers)
@@ -288,9 +278,7 @@ def _status(groups: _Groups, outline: np.ndarray, height: np.ndarray) -> np.ndar
     return np.select(chosen, [NEW, GONE, BOTH, OUTLINE, HEIGHT], UNCHANGED)
 
 
-def _table(
-    old: BuildingMap, new: BuildingMap, groups: _Groups, found: dict[str, np.ndarray]
-) -> tuple[BuildingMap, dict]:
+def _table(old: BuildingMap, new: BuildingMap, groups: _Groups, found: dict) -> tuple[BuildingMap, dict]:
     """Return the buildings of the new survey, then those that are gone, and the attributes of their groups."""
     is_gone = ~np.isin(groups.old, groups.new)
     every, group = new + old.only(is_gone), np.append(groups.new, groups.old[is_gone])

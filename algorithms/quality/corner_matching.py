@@ -164,8 +164,7 @@ def nearest_corners(
     one, other, distance = near["i"], near["j"], near["v"]
     count = int(max(same[1].max(), new.building.max())) + 1
     linked = find_cells(same[0] * count + same[1], old.building[one] * count + new.building[other])[1]
-    facing = (old.facing[one] * new.facing[other]).sum(axis=1) >= np.cos(np.deg2rad(FACING))
-    alike = linked & facing
+    alike = linked & ((old.facing[one] * new.facing[other]).sum(axis=1) >= np.cos(np.deg2rad(FACING)))
     one, other, distance = one[alike], other[alike], distance[alike]
     order = np.lexsort((other, one, distance))
     taken: tuple[set, set] = set(), set()

@@ -44,9 +44,8 @@ class MapFit:
 
 def fit_map(old: BuildingMap, new: BuildingMap) -> MapFit:
     """Measure how an old map lies on new outlines, by the walls that both have; buildings that touch move together."""
-    nothing = MapFit(np.zeros(2), 0.0, 0.0, np.zeros((len(old.rings), 2)))
     if not old.rings or not new.rings:
-        return nothing
+        return MapFit(np.zeros(2), 0.0, 0.0, np.zeros((len(old.rings), 2)))
     count, group = _touching(old.polygons)
     position, outward, building = _outer(old.polygons)
     there, normal, _ = _outer(new.polygons)

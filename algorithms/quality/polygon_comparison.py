@@ -14,9 +14,8 @@ def hausdorff(first: list[np.ndarray], second: list[np.ndarray]) -> float:
 def polis(first: list[np.ndarray], second: list[np.ndarray]) -> float:
     """Return the mean distance (m) of the vertices of polygons from the other's outline, in the mean of both ways."""
     ways = (first, second), (second, first)
-    return float(
-        np.mean([distances_to_rings(np.concatenate([ring[:-1] for ring in one]), other).mean() for one, other in ways])
-    )
+    corners = (np.concatenate([ring[:-1] for ring in one]) for one, _ in ways)
+    return float(np.mean([distances_to_rings(own, other).mean() for own, (_, other) in zip(corners, ways)]))
 
 
 def _farthest(rings: list[np.ndarray], others: list[np.ndarray]) -> float:

@@ -141,9 +141,8 @@ class _Facts:
         columns = {name.lower(): values for name, values in footprints.columns.items()}
         numbers = {name: _numbers(columns.get(name), count) for name in ("height", "volume", "confidence")}
         # Holes are clockwise: their areas are negative.
-        area = np.array(
-            [sum(signed_area(np.asarray(ring)[:, :2]) for ring in rings) for rings in footprints.geometries]
-        )
+        plans = [[np.asarray(ring)[:, :2] for ring in rings] for rings in footprints.geometries]
+        area = np.array([sum(map(signed_area, plan)) for plan in plans])
         texts = zip(*(columns.get(name, [None] * count) for name in ("reason", "evidence")))
         why = ["; ".join(str(one) for one in of_one if one) for of_one in texts]
         return cls(feature_names(footprints), area.reshape(count), why=why, **numbers)

@@ -14,7 +14,7 @@ from ..report.page import Row, build_page
 from ..report.polygon_map import draw_polygons
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Report, feature_names, stage, tunable
-from .building_maps import AROUND, clean_map, refuse_elsewhere
+from .building_maps import AROUND, clean_map, refuse_apart
 from .changed_block import ChangedBlock
 from .corner_matching import LEAST_TOLERANCE, MEDIANS, MOST_TOLERANCE
 
@@ -69,7 +69,7 @@ def _update_in_windows(
     feature_names(old_map, id_field)
     old = clean_map(old_map, "buildings of the old map", monitor)
     new = clean_map(footprints, "new footprints", monitor)
-    refuse_elsewhere(old, new, "old map", "new footprints")
+    refuse_apart(old, new, "old map", "new footprints")
     fit = fit_map(old, new)
     if least_width is None:
         least_width = float(np.clip(MEDIANS * fit.deviation, LEAST_TOLERANCE, MOST_TOLERANCE))

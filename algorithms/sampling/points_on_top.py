@@ -32,8 +32,7 @@ RULES = Rules()
 def are_low(xyz: np.ndarray, spacing: float) -> np.ndarray:
     """Return the mask of points (n,) with a clearly higher one in their cell, or in a neighboring one."""
     grid = grid_over(xyz, RULES.cell_size(spacing))
-    number = grid.number(xyz)
-    cells, inverse = np.unique(number, return_inverse=True)
+    cells, inverse = np.unique(grid.number(xyz), return_inverse=True)
     top = -least_of(-xyz[:, 2], inverse, len(cells))
     highest = top.copy()
     for step in grid.around:

@@ -44,8 +44,7 @@ class Adjacency:
         first = np.ones(len(beside), bool)
         first[1:] = one[1:] != one[:-1]
         best = beside[first]
-        position = np.cumsum(first) - 1
-        opposite = np.einsum("ij,ij->i", self.offset[beside], self.offset[best][position]) < 0
+        opposite = np.einsum("ij,ij->i", self.offset[beside], self.offset[best][np.cumsum(first) - 1]) < 0
         across = beside[opposite]
         middle, at = np.unique(self.one[across], return_index=True)
         partner = best[np.searchsorted(self.one[best], middle)]
@@ -105,8 +104,7 @@ def _beside(
     position = np.arange(len(rows))
     first = is_beside.argmax(axis=1)
     opposite = is_beside & (np.einsum("ijk,ik->ij", across, across[position, first]) < 0)
-    second = opposite.argmax(axis=1)
-    one, other = found[position, first], found[position, second]
+    one, other = found[position, first], found[position, opposite.argmax(axis=1)]
     return np.column_stack([np.where(is_beside.any(axis=1), one, -1), np.where(opposite.any(axis=1), other, -1)])
 
 

@@ -70,10 +70,10 @@ def penetration(xyz: np.ndarray, group: np.ndarray, density: float, goes_on: Opt
     """
     owner, beneath = _columns(xyz, group, DENSITY.filled_cell / np.sqrt(density))
     share = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
-    return share if goes_on is None else (share + non_last_return_share(group, goes_on)) / 2
+    return share if goes_on is None else (share + non_last_share(group, goes_on)) / 2
 
 
-def non_last_return_share(group: np.ndarray, goes_on: Optional[np.ndarray]) -> np.ndarray:
+def non_last_share(group: np.ndarray, goes_on: Optional[np.ndarray]) -> np.ndarray:
     """Return the share of each group's points that are not the last return of their pulse; 0 where none is numbered.
 
     Arguments as of :func:`penetration`.

@@ -56,8 +56,7 @@ class Regions:
         """Grow a region from each seed whose pieces are still free, the seed of most points first."""
         size = self.pieces.points.count
         triples = self.adjacency.triples(size, min_overlap)
-        is_flat = self._flat(triples)
-        triples = triples[is_flat]
+        triples = triples[self._flat(triples)]
         triples = triples[np.lexsort((triples[:, 1], -size[triples].sum(axis=1)))]
         number = 0
         for i, seed in enumerate(triples.tolist()):

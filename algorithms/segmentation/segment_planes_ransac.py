@@ -144,8 +144,7 @@ def segment_planes_ransac(
     plane, planes = np.full(len(xyz), -1), None
     if len(used):
         boxes = Boxes(xyz[used], voxel_size)
-        in_voxel = VoxelPlanes(boxes, voxel_size, tolerance, max_planes, trials, seed)
-        label = in_voxel.find(monitor.part(0, 0.6))
+        label = VoxelPlanes(boxes, voxel_size, tolerance, max_planes, trials, seed).find(monitor.part(0, 0.6))
         planes, plane[used[boxes.order]] = joined_planes(boxes, label, tolerance, min_area, monitor.part(0.6, 1))
     return _within_slopes(plane, planes, min_slope, max_slope, normals, monitor)
 

@@ -30,9 +30,7 @@ class SURFACE:
 
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
     farther: float = rule(
-        0.12,
-        "point spacings",
-        "fitted on thinned clouds of two towns: added deviation where neighbors are over 0.5 m off",
+        0.12, "point spacings", "fitted on thinned clouds of two towns: added deviation of neighbors over 0.5 m off"
     )
 
 
@@ -215,8 +213,7 @@ def _clusters(
 ) -> np.ndarray:
     """Return the cluster (k,), from 1, of points that are of no roof surface; 0 for low and small ones."""
     reach = DENSITY.link / np.sqrt(density)
-    component = connect(xyz, reach, reach, monitor)
-    return number_large(_high(component, height, min_height), min_area * density)
+    return number_large(_high(connect(xyz, reach, reach, monitor), height, min_height), min_area * density)
 
 
 @dataclass(frozen=True)

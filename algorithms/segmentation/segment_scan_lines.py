@@ -134,5 +134,4 @@ def segment_scan_lines(
     for number in range(directions):
         piece_sets.append(pieces(points, 180 * number / directions, line_width, near, min_piece, max_obstacle))
         monitor.progress(0.9 * (number + 1) / directions)
-    segment = merged_pieces(piece_sets)
-    return placed(number_large(by_first_point(segment), min_points), used, len(xyz))
+    return placed(number_large(by_first_point(merged_pieces(piece_sets)), min_points), used, len(xyz))

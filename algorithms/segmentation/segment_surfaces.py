@@ -193,8 +193,7 @@ def _edge_neighbors(points: np.ndarray, longest: float, monitor: Monitor) -> np.
         return itself
     facets = triangulate(points[:, :2] - points[0, :2], monitor).facets.astype(np.int64)
     ends = np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]])
-    key = np.unique(np.concatenate([ends @ [n, 1], ends @ [1, n]]))
-    one, other = np.divmod(key, n)
+    one, other = np.divmod(np.unique(np.concatenate([ends @ [n, 1], ends @ [1, n]])), n)
     length = np.linalg.norm(points[one] - points[other], axis=1)
     order: Any = np.lexsort((length, one))
     order = order[length[order] <= longest]

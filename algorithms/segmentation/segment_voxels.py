@@ -5,24 +5,20 @@ from typing import Optional
 import numpy as np
 
 from ..criteria import CELL_SPACINGS
+from ..geometry import sparse_voxels
 from ..geometry.boxes import by_first_point
 from ..geometry.groups import number_large, placed
-from ..geometry.sparse_voxels import (
-    close_voxels,
-    dilate,
-    distance_to_background,
-    erode,
-    label_components,
-    locate_voxels,
-    open_voxels,
-    voxelize,
-)
 from ..geometry.voxel_filters import FILTERS, filter_counts
 from ..geometry.voxel_skeleton import skeleton
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
 
-_OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "closing": close_voxels}
+_OPERATIONS = {
+    "erosion": sparse_voxels.erode,
+    "dilation": sparse_voxels.dilate,
+    "opening": sparse_voxels.open_voxels,
+    "closing": sparse_voxels.close_voxels,
+}
 
 
 @stage(
@@ -149,7 +145,7 @@ def segment_voxels(
         voxel_size = CELL_SPACINGS / float(np.sqrt(density))
     monitor.resolved(voxel_size=voxel_size)
     low = xyz[used].min(axis=0)
-    occupied, voxel, count = voxelize(xyz[used] - low, voxel_size)
+    occupied, voxel, count = sparse_voxels.voxelize(xyz[used] - low, voxel_size)
     monitor.progress(0.3)
 
     filled, value = occupied, count.astype(float)
@@ -159,10 +155,10 @@ def segment_voxels(
     if operation != "none":
         cells = _OPERATIONS[operation](cells, int(element), steps)
     monitor.progress(0.5)
-    component = label_components(cells, int(neighbors))
+    component = sparse_voxels.label_components(cells, int(neighbors))
     monitor.progress(0.7)
 
-    where = locate_voxels(cells, occupied)
+    where = sparse_voxels.locate_voxels(cells, occupied)
     of_point = np.where(where >= 0, component[where] if len(component) else -1, -1)[voxel]
     segment_id = placed(number_large(by_first_point(of_point), min_points), used, len(xyz))
     # Points of no component write to the last position, which no component has.
@@ -171,8 +167,8 @@ def segment_voxels(
     columns = {
         "segment_id": of_component[component],
         "count": _in_voxels(count, where, len(cells)),
-        "filtered": _in_voxels(value, locate_voxels(cells, filled), len(cells)),
-        "distance": distance_to_background(cells) * voxel_size,
+        "filtered": _in_voxels(value, sparse_voxels.locate_voxels(cells, filled), len(cells)),
+        "distance": sparse_voxels.distance_to_background(cells) * voxel_size,
     }
     shown = skeleton(cells, monitor.part(0.8, 1)) if thin else np.ones(len(cells), bool)
     centers = (cells[shown] + 0.5) * voxel_size + low

@@ -92,8 +92,7 @@ def _farthest(xyz: np.ndarray, first: np.ndarray, last: np.ndarray) -> tuple[np.
     off = xyz[rows] - xyz[first][which]
     off -= np.einsum("ij,ij->i", off, chord[which])[:, None] * chord[which]
     square = np.einsum("ij,ij->i", off, off)
-    starts = run_starts(which)
-    largest = np.maximum.reduceat(square, starts)
+    largest = np.maximum.reduceat(square, run_starts(which))
     at = np.flatnonzero(square == largest[which])
     return rows[at[run_starts(which[at])]], np.sqrt(largest)
 

@@ -71,17 +71,16 @@ class CylinderEvidence:
         """Return whether points (k) look like a cylinder's among all points (m) near it."""
         along, distance, away = cylinder.local(own.xyz)
         near_along, near_distance, near_away = cylinder.local(near.xyz)
-        angle = np.degrees(np.arccos(min(float(np.median(_facing(away, own.normals))), 1.0)))
+        angle = np.degrees(np.arccos(min(float(np.median(facing(away, own.normals))), 1.0)))
         if angle > EVIDENCE.median_angle + EVIDENCE.uneven_angle * self.spacing / cylinder.radius:
             return False
         rough = float(np.sqrt(((distance - cylinder.radius) ** 2).mean())) / self.noise
         if angle > EVIDENCE.median_angle and rough > 1 + EVIDENCE.confidence / np.sqrt(2 * len(along)):
             return False
         count = _in_slices(along, along)
-        facing = (np.abs(near_distance - cylinder.radius) <= 2 * self.tolerance) & (
-            _facing(near_away, near.normals) >= FACING
-        )
-        if len(along) < EVIDENCE.close * _in_slices(near_along[facing], along).sum():
+        is_close = np.abs(near_distance - cylinder.radius) <= 2 * self.tolerance
+        facing_it = near_along[is_close & (facing(near_away, near.normals) >= FACING)]
+        if len(along) < EVIDENCE.close * _in_slices(facing_it, along).sum():
             return False
         is_inside = near_distance < EVIDENCE.inner * cylinder.radius - 2 * self.tolerance
         inside = _in_slices(near_along[is_inside], along)
@@ -157,7 +156,7 @@ def _arc(turn: np.ndarray) -> tuple[float, float, float]:
     return start + float(first), start + float(last), float(gap[widest])
 
 
-def _facing(away: np.ndarray, normals: np.ndarray) -> np.ndarray:
+def facing(away: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """Return the cosine (k,) of the angle between directions away from the axis and normals (k, 3) of any sign."""
     return np.abs(np.einsum("ij,ij->i", away, normals))
 

@@ -61,8 +61,7 @@ def fit_cylinder(xyz: np.ndarray, start: Cylinder, rounds: int = _ROUNDS) -> Cyl
     design = np.ones((5, len(xyz)))
     for _ in range(rounds):
         first, second = axes_across(cylinder.axis)
-        frame = np.array([first, second, cylinder.axis])
-        a, b, along = frame @ (xyz - cylinder.center).T
+        a, b, along = np.array([first, second, cylinder.axis]) @ (xyz - cylinder.center).T
         middle = along.sum() / len(along)
         along -= middle
         distance = np.sqrt(a * a + b * b)

@@ -13,7 +13,7 @@ from ..geometry.polygons import axes_across
 from ..neighborhoods.covariance import symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
-from .cylinder_evidence import FACING, MOST_LOOKED_AT, CylinderEvidence, Points
+from .cylinder_evidence import FACING, MOST_LOOKED_AT, CylinderEvidence, Points, facing
 from .cylinder_fits import LEAST_POINTS, Cylinder, fit_cylinder, upward
 from .hough_planes import PlaneDirections
 from .search_settings import ARC_DEVIATIONS
@@ -75,8 +75,7 @@ class Found:
 
     def moved(self, x: float) -> Found:
         """Return the cylinder moved along x (m)."""
-        cylinder = replace(self.cylinder, center=self.cylinder.center + [x, 0.0, 0.0])
-        return replace(self, cylinder=cylinder)
+        return replace(self, cylinder=replace(self.cylinder, center=self.cylinder.center + [x, 0.0, 0.0]))
 
 
 class CylinderSearch:
@@ -227,8 +226,7 @@ class CylinderSearch:
     def _is_on(self, rows: np.ndarray, cylinder: Cylinder, tolerance: float) -> np.ndarray:
         """Return the mask of points ``rows`` on an endless cylinder that face away from its axis or to it."""
         _, distance, away = cylinder.local(self.xyz[rows])
-        facing = np.abs(np.einsum("ij,ij->i", away, self.normals[rows]))
-        return (np.abs(distance - cylinder.radius) <= tolerance) & (facing >= FACING)
+        return (np.abs(distance - cylinder.radius) <= tolerance) & (facing(away, self.normals[rows]) >= FACING)
 
     def _grown(self, rows: np.ndarray, cylinder: Cylinder, seed: np.ndarray) -> Optional[Found]:
         """Return the cylinder that a seed grows to along its axis, None if its points do not fit a cylinder."""
@@ -240,8 +238,7 @@ class CylinderSearch:
         step = float(np.linalg.norm(ends[1] - ends[0]))
         while True:
             near = self._near(rows, ends, cylinder, step)
-            points = near[self._is_on(near, cylinder, self.tolerance)]
-            points = self._run(points, cylinder, ends.mean(axis=0), gap)
+            points = self._run(near, cylinder, ends.mean(axis=0), gap)
             if len(points) < LEAST_POINTS:
                 return None
             fitted = self._fitted(points, cylinder)
@@ -267,8 +264,9 @@ class CylinderSearch:
             rows = rows[(self.xyz[rows, axis] >= low[axis]) & (self.xyz[rows, axis] <= high[axis])]
         return rows[self.is_free[rows]]
 
-    def _run(self, points: np.ndarray, cylinder: Cylinder, middle: np.ndarray, gap: float) -> np.ndarray:
-        """Return the points that follow each other along the axis without a gap, those around the middle."""
+    def _run(self, near: np.ndarray, cylinder: Cylinder, middle: np.ndarray, gap: float) -> np.ndarray:
+        """Return the points on a cylinder that follow each other along its axis without a gap, around the middle."""
+        points = near[self._is_on(near, cylinder, self.tolerance)]
         along = cylinder.local(self.xyz[points])[0]
         order = np.argsort(along, kind="stable")
         run = np.concatenate([[0], np.cumsum(np.diff(along[order]) > gap)]).astype(np.int64)
@@ -279,15 +277,12 @@ class CylinderSearch:
 
     def _checked(self, cylinder: Cylinder, ends: np.ndarray, gap: float) -> Optional[Found]:
         """Return the cylinder with all its points if these look like one."""
-        every = np.arange(len(self.xyz))
-        near = self._near(every, ends, cylinder, 0.5 * cylinder.radius)
-        points = near[self._is_on(near, cylinder, self.tolerance)]
-        points = self._run(points, cylinder, ends.mean(axis=0), gap)
+        near = self._near(np.arange(len(self.xyz)), ends, cylinder, 0.5 * cylinder.radius)
+        points = self._run(near, cylinder, ends.mean(axis=0), gap)
         if len(points) < self.min_points:
             return None
         cylinder = fit_cylinder(self.xyz[points], cylinder)
-        points = near[self._is_on(near, cylinder, self.tolerance)]
-        points = self._run(points, cylinder, ends.mean(axis=0), gap)
+        points = self._run(near, cylinder, ends.mean(axis=0), gap)
         along, distance, away = cylinder.local(self.xyz[points])
         if len(points) < self.min_points or not self.evidence.is_long(along, cylinder):
             return None
@@ -300,5 +295,4 @@ class CylinderSearch:
         one = Found(cylinder, float(along.min()), float(along.max()), points, rms, seen)
         if not self._is_round(near, points, cylinder):
             return None
-        in_place = one.moved(-self.shift[points[0]]).cylinder
-        return None if self.evidence.goes_on(in_place, along) else one
+        return None if self.evidence.goes_on(one.moved(-self.shift[points[0]]).cylinder, along) else one

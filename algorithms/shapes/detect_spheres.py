@@ -7,7 +7,7 @@ import numpy as np
 
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
-from .cylinder_evidence import EVIDENCE, FACING, MOST_LOOKED_AT
+from .cylinder_evidence import EVIDENCE, FACING, MOST_LOOKED_AT, facing
 from .cylinder_fits import LEAST_POINTS, explained, fit_sphere
 from .hough_planes import PlaneDirections, unit
 from .search_settings import MAX_RADIUS, MIN_RADIUS, SHAPE_TOLERANCE, reach_of_radius
@@ -136,18 +136,16 @@ class SphereSearch:
         """Return the mask of the points ``rows`` that lie on a sphere and face its center."""
         offset = self.xyz[rows] - center
         distance = np.linalg.norm(offset, axis=1)
-        facing = np.abs(np.einsum("ij,ij->i", offset, self.normals[rows]))
-        return (np.abs(distance - radius) <= tolerance) & (facing >= FACING * distance)
+        return (np.abs(distance - radius) <= tolerance) & (facing(offset, self.normals[rows]) >= FACING * distance)
 
     def _is_round(self, points: np.ndarray, center: np.ndarray, radius: float) -> bool:
         """Return whether points lie close to a sphere and their distances show no other shape."""
         points = points[:: len(points) // MOST_LOOKED_AT + 1]
         offset = self.xyz[points] - center
         away, residual = unit(offset), np.linalg.norm(offset, axis=1) - radius
-        facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))
         if np.sqrt((residual**2).mean()) > _MOST_ROUGH * self.noise:
             return False
-        if np.median(facing) < np.cos(np.radians(EVIDENCE.median_angle)):
+        if np.median(facing(away, self.normals[points])) < np.cos(np.radians(EVIDENCE.median_angle)):
             return False
         x, y, z = away.T
         # An ellipsoid, a cylinder or a torus has waves of second order, faces have higher ones.

@@ -96,8 +96,7 @@ class HoughPlanes:
         self.boxes, self.tolerance, self.distance_bin = boxes, tolerance, distance_bin
         self.reach = side * np.sqrt(3) / 2
         self.levels = int(np.ceil(2 * self.reach / distance_bin)) + 1
-        per_side = np.ceil(2 / slope_bin)
-        n_bins = 3 * per_side**2 * self.levels
+        n_bins = 3 * np.ceil(2 / slope_bin) ** 2 * self.levels
         if n_bins > _MOST_BINS:
             raise ValueError(
                 f"The parameter space of a window would have {n_bins / 1e6:,.0f} million bins, more than "
@@ -119,13 +118,10 @@ class HoughPlanes:
         def work(windows: np.ndarray) -> None:
             for window in windows:
                 start = self.boxes.start[window]
-                inside = slice(start, start + self.boxes.size[window])
-                xyz = self.boxes.xyz[inside]
+                own = slice(start, start + self.boxes.size[window])
+                xyz = self.boxes.xyz[own]
                 centered = xyz - (xyz.min(axis=0) + xyz.max(axis=0)) / 2
-                if normals is None:
-                    plane[inside] = self._by_points(centered)
-                else:
-                    plane[inside] = self._by_normals(centered, normals[inside])
+                plane[own] = self._by_points(centered) if normals is None else self._by_normals(centered, normals[own])
 
         in_chunks(work, np.flatnonzero(self.boxes.size >= LEAST_POINTS), 1, monitor)
         return plane
@@ -136,8 +132,7 @@ class HoughPlanes:
         votes = self._votes(xyz)
         for number in itertools.count(1):
             # Planes at the border between two bins share their points among these.
-            best = int(np.argmax(votes[:, :-1] + votes[:, 1:]))
-            direction, level = np.divmod(best, self.levels - 1)
+            direction, level = np.divmod(int(np.argmax(votes[:, :-1] + votes[:, 1:])), self.levels - 1)
             normal = self.directions.normal[direction]
             on_plane = self._refined(xyz[free], normal, (level + 1) * self.distance_bin - self.reach)
             if not self._is_plane(on_plane.sum(), len(free)):

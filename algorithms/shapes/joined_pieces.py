@@ -34,11 +34,9 @@ def whole_axis(pieces: LayerFeatures, points: int) -> LayerFeatures:
     ends = np.concatenate(pieces.geometries)
     along = (ends - line[0]) @ way
     axis = np.stack([ends[np.argmin(along)], ends[np.argmax(along)]])
-    columns = _of_first(pieces, points)
-    columns["length"] = [float(np.linalg.norm(axis[1] - axis[0]))]
-    columns["radius"] = [_mean(pieces, "radius")]
-    columns["seen"] = [float(max(pieces.columns["seen"]))]
-    return LayerFeatures([axis], columns)
+    sizes = {"length": [float(np.linalg.norm(axis[1] - axis[0]))], "radius": [_mean(pieces, "radius")]}
+    seen = {"seen": [float(max(pieces.columns["seen"]))]}
+    return LayerFeatures([axis], {**_of_first(pieces, points), **sizes, **seen})
 
 
 def whole_plane(pieces: LayerFeatures, points: int) -> LayerFeatures:
@@ -68,10 +66,8 @@ def whole_plane(pieces: LayerFeatures, points: int) -> LayerFeatures:
 
 def _of_first(pieces: LayerFeatures, points: int) -> dict[str, list]:
     """Return the fields of the largest piece, with the number of points and the deviation of all."""
-    columns = {name: [values[0]] for name, values in pieces.columns.items()}
-    columns["rms"] = [float(np.sqrt(_mean(pieces, "rms", 2)))]
-    columns["points"] = [points]
-    return columns
+    first = {name: [values[0]] for name, values in pieces.columns.items()}
+    return {**first, "rms": [float(np.sqrt(_mean(pieces, "rms", 2)))], "points": [points]}
 
 
 def _mean(pieces: LayerFeatures, name: str, power: int = 1) -> float:
@@ -82,8 +78,7 @@ def _mean(pieces: LayerFeatures, name: str, power: int = 1) -> float:
 def _frame(rings: list) -> tuple[np.ndarray, np.ndarray]:
     """Return two unit vectors (2, 3) along the plane of a polygon, counterclockwise as its ring, and a point of it."""
     normal = area_vector(rings[0])
-    axes = axes_across(normal / max(float(np.linalg.norm(normal)), 1e-12))
-    return np.stack(axes), rings[0][:-1].mean(axis=0)
+    return np.stack(axes_across(normal / max(float(np.linalg.norm(normal)), 1e-12))), rings[0][:-1].mean(axis=0)
 
 
 def _outline(flat: list) -> list[np.ndarray]:

@@ -47,8 +47,7 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, offset: int, density: flo
     if len(on_plane):
         planes = planes_of(xyz[on_plane], label[on_plane] - 1, int(label.max()))
         order = np.argsort(label[on_plane], kind="stable")
-        parts = np.split(on_plane[order], np.cumsum(planes.count)[:-1].astype(np.int64))
-        for number, part in enumerate(parts):
+        for number, part in enumerate(np.split(on_plane[order], np.cumsum(planes.count)[:-1].astype(np.int64))):
             normal, center = planes.normal[number], planes.center[number]
             rings = _outline(xyz[part], center, normal, CELL_SPACINGS / np.sqrt(density))
             area = sum(signed_area(ring) for ring in rings)
@@ -57,8 +56,7 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, offset: int, density: flo
             slope = float(np.degrees(np.arccos(np.clip(normal[2], 0, 1))))
             aspect = float(np.degrees(np.arctan2(normal[0], normal[1])) % 360) if slope > _LEVEL else float("nan")
             rms = float(np.sqrt(max(planes.eigenvalues[number, 2], 0)))
-            row = (number + 1 + offset, len(part), slope, aspect, area, rms)
-            for field, value in zip(PLANE_FIELDS, row):
+            for field, value in zip(PLANE_FIELDS, (number + 1 + offset, len(part), slope, aspect, area, rms)):
                 columns[field.name].append(value)
     return LayerFeatures(geometries, columns)
 

@@ -175,14 +175,8 @@ def segment_planes_hough(
     slope_bin = _slope_bin(distance_bin, window_size) if slope_bin is None else slope_bin
     max_gap = GAP_SPACINGS * spacing if max_gap is None else max_gap
     min_area = (window_size / 2) ** 2 if min_area is None else min_area
-    monitor.resolved(
-        tolerance=tolerance,
-        window_size=window_size,
-        distance_bin=distance_bin,
-        slope_bin=slope_bin,
-        max_gap=max_gap,
-        min_area=min_area,
-    )
+    monitor.resolved(tolerance=tolerance, window_size=window_size, distance_bin=distance_bin)
+    monitor.resolved(slope_bin=slope_bin, max_gap=max_gap, min_area=min_area)
     if method == "normals":
         n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
         monitor.resolved(n_neighbors=n_neighbors)
@@ -216,18 +210,16 @@ class _Search:
         if not len(plane):
             return plane
         boxes = Boxes(points.xyz, self.window_size, from_zero=True)
-        normals = self._normals(xyz, points, boxes, monitor.part(0, 0.375))
+        normals = None
+        if self.n_neighbors is not None:
+            # Measured in the whole cloud.
+            measured = normals_of(xyz, self.n_neighbors, self.sampling, monitor.part(0, 0.375))
+            normals = measured[points.rows[boxes.order]]
         slope = float(np.tan(np.radians(self.slope_bin)))
         hough = HoughPlanes(boxes, self.window_size, self.tolerance, self.distance_bin, slope)
         planes = hough.find(monitor.part(0.375, 0.875), normals)
         plane[boxes.order] = joined_planes(boxes, planes, self.tolerance, 0.0, monitor.part(0.875, 1))[1]
         return plane
-
-    def _normals(self, xyz: np.ndarray, points: SearchedPoints, boxes: Boxes, monitor: Monitor) -> Optional[np.ndarray]:
-        """Return the normals (k, 3) of the points in the order of the boxes, measured in the whole cloud."""
-        if self.n_neighbors is None:
-            return None
-        return normals_of(xyz, self.n_neighbors, self.sampling, monitor)[points.rows[boxes.order]]
 
 
 def _slope_bin(distance_bin: float, window_size: float) -> float:
@@ -244,7 +236,6 @@ def _surfaces(xyz: np.ndarray, plane: np.ndarray, max_gap: float, min_points: fl
         monitor.progress(number / n_planes)
         if len(part) >= min_points:
             group = dbscan(xyz[part], max_gap, 1, monitor.part(number / n_planes, (number + 1) / n_planes))
-            size = np.bincount(group)
-            large = size[group] >= min_points
+            large = np.bincount(group)[group] >= min_points
             label[part[large]] = label.max(initial=0) + 1 + group[large]
     return by_first_point(label - 1) + 1

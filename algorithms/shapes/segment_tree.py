@@ -13,16 +13,7 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
 from .cylinder_fits import LEAST_POINTS, Cylinder, fit_cylinder
 from .stem_search import BREAST, FAR, ROUND, find_stems, ground_level
 from .surface_normals import refuse_line
-from .tree_structure import (
-    Branch,
-    Slices,
-    branches_of,
-    lengths_beyond,
-    roots_of,
-    self_supporting_slices,
-    smooth,
-    voxels_of,
-)
+from .tree_structure import Branch, Slices, branches_of, lengths_beyond, roots_of, self_supporting, smooth, voxels_of
 
 # Least side of a voxel (m): bark is not resolved any finer.
 _LEAST_VOXEL = 0.02
@@ -176,7 +167,7 @@ def segment_tree(
             "Lower it, or take larger voxels."
         )
         return nothing
-    slices = self_supporting_slices(voxels, feet, radii, voxel_size)
+    slices = self_supporting(voxels, feet, radii, voxel_size)
     monitor.progress(0.7)
     branches, of_slice = branches_of(slices, min_length, monitor.part(0.7, 0.9))
     of_point = np.where(voxels.of_point >= 0, slices.of_voxel[voxels.of_point], -1)
@@ -190,8 +181,7 @@ def segment_tree(
 
 def _at_breast(stem: Cylinder, level: float) -> np.ndarray:
     """Return the position (3,) on the axis of a stem at breast height above the ground."""
-    up = level + BREAST - stem.center[2]
-    return stem.center + up / stem.axis[2] * stem.axis
+    return stem.center + (level + BREAST - stem.center[2]) / stem.axis[2] * stem.axis
 
 
 def _measured(
@@ -210,8 +200,7 @@ def _measured(
     feet, radii, voxel_size = stems
     # For each slice the square of a radius per length of branches beyond, m, and the smallest radius measured, m.
     beyond, wood = lengths_beyond(slices, of_slice), np.full((len(slices.positions), 2), np.inf)
-    branch = np.where(of_point >= 0, of_slice[of_point], -1)
-    parts = split_groups(branch, len(branches))
+    parts = split_groups(np.where(of_point >= 0, of_slice[of_point], -1), len(branches))
     label = np.zeros(len(xyz), np.int32)
     columns: dict[str, list] = {field.name: [] for field in _FIELDS}
     lines = []

@@ -36,8 +36,7 @@ class Level:
 
 def levels(low: float, high: float) -> list[tuple[float, float]]:
     """Return the ranges of radii from ``low`` to ``high`` (m), each at most an octave wide."""
-    count = max(1, int(np.ceil(np.log2(high / low) - 1e-9)))
-    edges = np.geomspace(low, high, count + 1)
+    edges = np.geomspace(low, high, max(1, int(np.ceil(np.log2(high / low) - 1e-9))) + 1)
     return list(zip(edges[:-1].tolist(), edges[1:].tolist()))
 
 

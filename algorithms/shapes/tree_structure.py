@@ -91,8 +91,7 @@ def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float
     cells = close_voxels(occupied[count >= min_count], 26, 1)
     positions = (cells + 0.5) * voxel_size
     one, other, axes = neighbor_pairs(cells, 26)
-    piece = components(one, other, len(positions))[1]
-    gaps = _gaps(positions, piece, max_gap, monitor)
+    gaps = _gaps(positions, components(one, other, len(positions))[1], max_gap, monitor)
     gap = np.linalg.norm(positions[gaps[:, 0]] - positions[gaps[:, 1]], axis=1)
     return Voxels(
         positions,
@@ -144,7 +143,7 @@ def roots_of(voxels: Voxels, stems: np.ndarray, radii: np.ndarray) -> np.ndarray
     return np.unique(np.array(roots, np.int64))
 
 
-def self_supporting_slices(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: float) -> Slices:
+def self_supporting(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: float) -> Slices:
     """Return the slices of the trees over those stems that can carry themselves; the thickest stem always stays.
 
     Parameters
@@ -183,9 +182,8 @@ def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:
     """
     n = len(voxels.positions)
     graph = sparse.coo_matrix((voxels.length, (voxels.one, voxels.other)), (n, n)).tocsr()
-    distance, before, source = csgraph.dijkstra(
-        graph, directed=False, indices=roots, return_predecessors=True, min_only=True
-    )
+    paths = csgraph.dijkstra(graph, directed=False, indices=roots, return_predecessors=True, min_only=True)
+    distance, before, source = paths
     reached = np.isfinite(distance)
     level = np.where(reached, distance / (_SLICE * voxel_size), -1).astype(np.int64)
     same = reached[voxels.one] & (level[voxels.one] == level[voxels.other])
@@ -199,10 +197,9 @@ def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:
     nearest = order[first[rank]]
     of_group = placed(np.arange(len(rank)), numbers[rank], int(group.max()) + 1, -1)
     of_voxel = np.where(reached, of_group[group], -1)
-    count = np.bincount(of_voxel[reached], minlength=len(rank))
-    positions = np.column_stack(
-        [np.bincount(of_voxel[reached], column[reached], len(rank)) / count for column in voxels.positions.T]
-    )
+    own, every = of_voxel[reached], voxels.positions[reached].T
+    count = np.bincount(own, minlength=len(rank))
+    positions = np.column_stack([np.bincount(own, column, len(rank)) / count for column in every])
     parent = np.where(before[nearest] >= 0, of_voxel[np.maximum(before[nearest], 0)], -1)
     return Slices(positions, parent, np.searchsorted(roots, source[nearest]), of_voxel)
 

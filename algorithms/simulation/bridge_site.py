@@ -234,8 +234,7 @@ def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
     decks, at = [], -obstacle.width / 2
     for width in obstacle.decks:
         # A deck rests on the land with half a meter at each end.
-        frame = lot.frame.part(0.0, 0.0, 1.0, 1.0, lot.skew)
-        rect = frame.part(0.0, at + width / 2, lot.span + 1.0, width)
+        rect = lot.frame.part(0.0, 0.0, 1.0, 1.0, lot.skew).part(0.0, at + width / 2, lot.span + 1.0, width)
         at += width + 1.5
         number = scene.new_id()
         deck_top = _deck_top(rect, top, obstacle.arch)

@@ -64,8 +64,7 @@ class LineScan:
         """
         step = max(1, min(BLOCK // len(pulses), int(most * self.line_rate)))
         for line in range(0, n_lines, step):
-            lines = np.arange(line, min(line + step, n_lines))
-            yield (lines[:, None] + pulses).ravel() / self.line_rate
+            yield (np.arange(line, min(line + step, n_lines))[:, None] + pulses).ravel() / self.line_rate
 
     def scanned(self, scene: Scene, platform: Platform, blocks: Sequence[Block], monitor: Monitor) -> Dimensions:
         """Return the dimensions of the points by name, sorted by time, of a scene scanned from a platform."""

@@ -42,8 +42,7 @@ class HeightField:
 
 def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) -> HeightField:
     """Return the visible surface of a scene, with closed lumpy crowns, on ground of the given unevenness (m)."""
-    n = round(scene.size / CELL)
-    middle = (np.arange(n) + 0.5) * CELL
+    middle = (np.arange(round(scene.size / CELL)) + 0.5) * CELL
     x, y = np.meshgrid(middle, middle)
     ground = scene.relief.ground(x, y)
     # Gardens, curbs and ruts: two wavelengths (m) with shares whose squares add up to about one.

@@ -30,8 +30,7 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     monitor : Monitor
         Receives the progress.
     """
-    size = scene.size
-    n_trees = round(per_hectare * size**2 / 1e4 * (1 - forest))
+    n_trees = round(per_hectare * scene.size**2 / 1e4 * (1 - forest))
     # Of the trees 40 % grow in clumps, with a standard deviation of 2.5 m around the centers.
     n_clumps = round(0.4 * n_trees) // _CLUMP_SIZE
     alone = _open_positions(scene, n_trees - n_clumps * _CLUMP_SIZE, forest, rng)

@@ -85,8 +85,7 @@ def simulate_bridges(
     >>> len(decks), bool((classification == 17).any())
     (1, True)
     """
-    kinds = tuple(KINDS) if kind == _ALL else (kind,)
-    scene, decks = build_site(kinds, angle, cars, trees, seed)
+    scene, decks = build_site(tuple(KINDS) if kind == _ALL else (kind,), angle, cars, trees, seed)
     refuse_large("The site", scene.size, density, "lower the density")
     made = scan(scene, AirSurvey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
     x, y, z = made["xyz"].T

@@ -1,20 +1,21 @@
 """Scans of a street with known facades, openings and corners, from a vehicle or an airplane."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..params import SEED
-from ..stage import Field, Layer, LayerFeatures, stage, tunable
+from ..stage import Field, Layer, LayerFeatures, Monitor, stage, tunable
+from .beams import Beams
 from .bodies import Rect
-from .drone import ANGULAR_STEP, LINE_RATE, LineScan
+from .drone import ANGULAR_STEP, LINE_RATE, Dimensions, LineScan, bearing
 from .plants import plant_tree
 from .relief import Relief
 from .scanner import RANGE_NOISE, RECORDED, AirSurvey, refuse_large, refuse_many, scan
 from .scene import Scene
 from .street_fronts import KINDS, Front, Line, Truth, between
 from .town_layout import CAR, park_car
-from .vehicle import Drive, pulses_of
 
 _CREATED = (*RECORDED, "cluster_id")
 
@@ -35,6 +36,10 @@ _HOUSE_FIELDS = (
     Field("ridge", float, "Elevation of the ridge", "m"),
 )
 _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
+
+# Angle (°) between the vertical scan plane of each scanner and the perpendicular of the drive, positive forward, by
+# point source id. As on most mapping vehicles, each scanner sees one side of a recess.
+PLANES = {1: 45.0, 2: -45.0}
 
 
 @stage(
@@ -149,8 +154,7 @@ def simulate_street(
     if view == "vehicle":
         remedy = "shorten it, lower the line rate, or take a larger speed or angular step"
         refuse_many(pulses_of(length, speed, settings), f"A street of {length:g} m", remedy)
-    plan = StreetPlan(length, width, slope, clutter, stoops, unevenness, houses, seed)
-    scene, truth, street = build_street(plan)
+    scene, truth, street = build_street(StreetPlan(length, width, slope, clutter, stoops, unevenness, houses, seed))
     if view == "airplane":
         refuse_large("The site", scene.size, density, "shorten the street or lower the pulse density")
         made = scan(scene, AirSurvey(density, range_noise=range_noise, seed=seed), monitor)
@@ -160,6 +164,42 @@ def simulate_street(
     if not len(made["xyz"]):
         raise ValueError(f"Nothing is within {max_range:g} m of the scanners; raise the maximum range.")
     return (*(made[name] for name in _CREATED), *_layers(truth))
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A straight drive of a vehicle with two line scanners on its roof."""
+
+    start: np.ndarray  #: (3,): first position of the scanners (m)
+    way: np.ndarray  #: (3,): unit vector of the drive
+    #: length, speed: length (m) and speed (m/s) of the drive
+    length: float
+    speed: float
+
+    def positions(self, time: np.ndarray) -> np.ndarray:
+        """Return the positions (n, 3) (m) of the scanners at times (n,) (s)."""
+        return self.start + self.speed * time[:, None] * self.way
+
+    def scanned(self, scene: Scene, scan: LineScan, monitor: Monitor) -> Dimensions:
+        """Return the dimensions of the points of a scanned scene by name, sorted by time."""
+        per_turn, n_lines = pulses_per_turn(scan.angular_step), max(1, int(self.length / self.speed * scan.line_rate))
+        # The vehicle drives at most a meter during a block.
+        drawn = itertools.product(PLANES, list(scan.times(n_lines, np.arange(per_turn) / per_turn, 1.0 / self.speed)))
+        blocks = [(number, time, np.random.default_rng([scan.seed, 5, i])) for i, (number, time) in enumerate(drawn)]
+        return scan.scanned(scene, self, blocks, monitor)
+
+    def pulses(self, scanner: int, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+        """Return the beams of a scanner at times (n,) (s), and the left axes (n, 3) of the vehicle."""
+        turn = np.deg2rad(PLANES[scanner])
+        cos, sin = np.cos(turn), np.sin(turn)
+        left = np.array([-self.way[1], self.way[0], 0.0]) / np.hypot(*self.way[:2])
+        ahead = np.array([left[1], -left[0], 0.0])
+        across = cos * left + sin * ahead
+        # A scan line starts at the zenith and descends on the left.
+        angle = 2 * np.pi * np.mod(time * line_rate, 1.0)[:, None]
+        direction = np.cos(angle) * [0.0, 0.0, 1.0] + np.sin(angle) * across
+        aim = np.column_stack(bearing(direction))
+        return Beams(np.arange(len(time)), self.positions(time), direction, aim), np.tile(left, (len(time), 1))
 
 
 def _drive(scene: Scene, street: Rect, speed: float) -> Drive:
@@ -263,8 +303,7 @@ def _build_side(
     for k, width in enumerate(widths):
         kind = kinds[(first + k) % len(kinds)]
         # Eaves differ by less than a storey.
-        height = eave + rng.uniform(0, 0.8)
-        front = Front(plan.off_line(Line(start, way, width), of_fronts), height, kind, plan.stoops)
+        front = Front(plan.off_line(Line(start, way, width), of_fronts), eave + rng.uniform(0, 0.8), kind, plan.stoops)
         front.build(scene, truth)
         if plan.houses:
             front.build_house(scene, truth, float(of_fronts.uniform(30.0, 45.0)))
@@ -287,9 +326,18 @@ def _put_clutter(scene: Scene, street: Rect, side: int, rng: np.random.Generator
     # A tree of 5 to 7 m about every 15 m, up to 2 m off its position, and a pole of 6 m 7 m beyond that position.
     for along in np.arange(-street.length / 2 + 6.0, street.length / 2 - 2.0, 15.0):
         x, y = street.at(along + rng.uniform(-2, 2), side * (half - 2.2))
-        foot = (float(x), float(y), float(scene.relief.plane(x, y)))
-        plant_tree(scene, foot, rng.uniform(5.0, 7.0), rng)
+        plant_tree(scene, (float(x), float(y), float(scene.relief.plane(x, y))), rng.uniform(5.0, 7.0), rng)
         scene.add_post(street.part(along + 7.0, side * (half - 2.4), 0.16, 0.16), 6.0, 0.5)
     # A person per 8 m on average, 1.75 m tall, on the sidewalk.
     for along in rng.uniform(-street.length / 2, street.length / 2, max(1, round(street.length / 8))):
         scene.add_post(street.part(float(along), side * (half - 1.2), 0.45, 0.45), 1.75, 0.5)
+
+
+def pulses_of(length: float, speed: float, scan: LineScan) -> float:
+    """Return the number of pulses of a drive with a length (m) and speed (m/s)."""
+    return len(PLANES) * length / speed * scan.line_rate * pulses_per_turn(scan.angular_step)
+
+
+def pulses_per_turn(angular_step: float) -> int:
+    """Return the number of pulses of a scan line, a full turn."""
+    return max(1, int(360.0 / angular_step + 1e-9))

@@ -199,5 +199,4 @@ def _foliage(limbs: list[_Limb], count: int, rng: np.random.Generator) -> np.nda
         return np.zeros((0, 3))
     which = rng.integers(0, len(bearing), count)
     at = rng.integers(_PIECES // 2, _PIECES + 1, count)
-    lines = np.array([limb.line for limb in bearing])
-    return lines[which, at] + rng.normal(0, 0.15, (count, 3))
+    return np.array([limb.line for limb in bearing])[which, at] + rng.normal(0, 0.15, (count, 3))

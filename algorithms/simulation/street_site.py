@@ -61,8 +61,7 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
         for along in np.arange(-rect.length / 2 + 3.0, rect.length / 2 - 2.0, 5.0):
             if rng.random() < 0.7:
                 slab = rect.part(float(along), -(rect.width + 1.2) / 2, 2.6, 1.2)
-                parapet = flat(slab, ground + floor + 1.0)
-                solids.append(Body(slab, parapet, ground + floor, PointClass.BUILDING, number))
+                solids.append(Body(slab, flat(slab, ground + floor + 1.0), ground + floor, PointClass.BUILDING, number))
     scene.add_building("block", rect.corners(), solids)
 
 

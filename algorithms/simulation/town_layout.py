@@ -107,8 +107,7 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
     plots = plots_along_streets(relief, _STREET_SPACING, 14.0, 16.0, per_block=6)
     if relief.river is not None:
         # Half a plot from the valley floor to the center of a plot.
-        beyond = VALLEY + 7.0
-        plots = [plot for plot in plots if abs(relief.frame.local(plot.x, plot.y)[0] - relief.river) >= beyond]
+        plots = [plot for plot in plots if abs(relief.frame.local(plot.x, plot.y)[0] - relief.river) >= VALLEY + 7.0]
     return [plot for plot in plots if not in_forest(scene, plot.corners(3.0), forest).any()]
 
 
@@ -180,8 +179,7 @@ def _string_wires(scene: Scene) -> None:
     # Height of the poles, distance between them, and sag of the wires (m).
     height, span, sag = 8.5, 34.0, 0.8
     along = float(_street_lines(scene.size)[int(np.ceil(scene.size / _STREET_SPACING))]) + _STREET_WIDTH / 2 - 0.4
-    across = np.arange(-scene.size, scene.size, span)
-    x, y = relief.frame.at(across, along)
+    x, y = relief.frame.at(np.arange(-scene.size, scene.size, span), along)
     # No pole is in the channel of the river.
     inside = (np.minimum(x, y) > _EDGE) & (np.maximum(x, y) < scene.size - _EDGE) & ~scene.near_water(x, y)
     feet = np.column_stack([x, y, relief.ground(x, y)])[inside]

@@ -104,8 +104,7 @@ class Home(Site):
     def slab(self, rect: Rect, tops: np.ndarray, under: np.ndarray) -> Body:
         """Return a part of the roof between planes (a, b, c): ``tops`` (k, 3) and ``under`` (3,)."""
         a, b, c = under
-        lowest = float((rect.corners() @ [a, b]).min() + c)
-        return Body(rect, tops, lowest, PointClass.BUILDING, self.roof_id, under)
+        return Body(rect, tops, float((rect.corners() @ [a, b]).min() + c), PointClass.BUILDING, self.roof_id, under)
 
     def wing(self, rect: Rect, pitch: float, overhang: float, *cut: np.ndarray) -> list[Body]:
         """Return walls on ``rect`` and the two slabs of a gable roof, all limited by the planes ``cut`` above."""
@@ -162,9 +161,8 @@ def _hip(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) ->
     home = Home(scene, rect, eave)
     level = home.eave - pitch * overhang
     roof = rect.part(0.0, 0.0, rect.length + 2 * overhang, rect.width + 2 * overhang)
-    tops = hip(roof, level, pitch)
     # A vertical fascia with the thickness of the roof.
-    slab = home.slab(roof, tops + [0.0, 0.0, _THICKNESS], np.array([0.0, 0.0, level]))
+    slab = home.slab(roof, hip(roof, level, pitch) + [0.0, 0.0, _THICKNESS], np.array([0.0, 0.0, level]))
     scene.add_building("hip", rect.corners(), [home.solid(rect, flat(rect, level)), slab])
     return home.roof_id
 

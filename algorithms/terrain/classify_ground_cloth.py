@@ -123,8 +123,7 @@ def classify_ground_cloth(
     cloth = Cloth(grid.floor(points), rigidness, time_step, top=-points[:, 2].min())
     cloth.settle(iterations, monitor.part(0, 0.95))
     height = _let_down(cloth) if slope_processing else cloth.height
-    is_ground = np.abs(grid.at(points, height) + points[:, 2]) <= threshold
-    return with_ground(classification, usable[is_ground])
+    return with_ground(classification, usable[np.abs(grid.at(points, height) + points[:, 2]) <= threshold])
 
 
 @dataclass(frozen=True)
@@ -176,8 +175,7 @@ def _filled(floor: np.ndarray) -> np.ndarray:
     filled = floor
     for axis, backward in ((1, True), (1, False), (0, False), (0, True)):
         filled = np.where(np.isnan(filled), _carried(floor, axis, backward), filled)
-    empty = np.isnan(floor)
-    distance, nearest = ndimage.distance_transform_edt(empty, return_indices=True)
+    distance, nearest = ndimage.distance_transform_edt(np.isnan(floor), return_indices=True)
     filled = np.where(np.isnan(filled) & (distance > _RULES.by_links), floor[tuple(nearest)], filled)
     missing = np.argwhere(np.isnan(filled))
     for hops in _hops():

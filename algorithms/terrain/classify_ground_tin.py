@@ -5,13 +5,18 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
+from ..geometry.raster_opening import open_surface
+from ..packages import ndimage
 from ..params import POINT_SOURCE
 from ..rules import rule, rules
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
+from ..sampling.density import DENSITY
+from ..sampling.kinds import LASER, SCENE
 from ..stage import stage, tunable
+from .free_standing import FREE
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
-from .smeared_objects import on_smeared_objects
 from .tin_densification import DENSIFICATION, JoinRules, Surface, grow, surface_roughness
 
 
@@ -20,15 +25,11 @@ class GROUND:
     """How points of the ground join its surface, and lie near it."""
 
     bend: float = rule(0.5, "point spacings", "by which the surface may bend between points")
-    sweep: float = rule(
-        6.0, "deviations", "statistics: roughness of the finished surface within which points are ground"
-    )
+    sweep: float = rule(6.0, "deviations", "statistics: roughness of the final surface within which points are ground")
     sweep_noise: float = rule(4.0, "deviations", "beyond which low plants make the roughness larger than noise")
     sweep_bend: float = rule(0.1, "cells", "greatest increase of the distance beyond that, for bends of the surface")
     angle: float = rule(20.0, "°", "fitted on eight ISPRS samples: iteration angle where terrain is not nature")
-    angle_in_nature: float = rule(
-        30.0, "°", "physics: iteration angle in nature, where breaks are steeper and objects fewer"
-    )
+    angle_in_nature: float = rule(30.0, "°", "physics: in nature, where breaks are steeper and objects fewer")
 
 
 # Key of the roughness (m) of the finished surface, which blocks take from the whole survey.
@@ -36,6 +37,13 @@ _ROUGHNESS = "surface_roughness"
 
 # The kinds of terrain, each with a largest building twice as wide as the one before.
 _TERRAINS = ("nature", "village", "town", "city", "industry")
+
+
+@rules
+class SMEARED:
+    """Small objects with smeared walls in matched images."""
+
+    width: float = rule(4.5, "m", "physics: narrower raised areas are objects: a shed of 3 m, walls smeared over 0.7 m")
 
 
 def _largest_building(terrain: str) -> float:
@@ -240,9 +248,8 @@ def classify_ground_tin(
 
     # 3. Points near the finished surface are ground.
     is_ground, sweep_distance = sweep(surface, sweep_distance, scale, sampling)
-    monitor.resolved(
-        iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
-    )
+    monitor.resolved(iteration_angle=angle, iteration_distance=distance)
+    monitor.resolved(edge_length=edge_length, sweep_distance=sweep_distance)
     if kind.is_surface:
         is_ground &= ~on_smeared_objects(points, is_ground, spacing)
     return with_ground(classification, usable[is_ground])
@@ -279,3 +286,59 @@ def sweep(
     roughness = max(of_nodes, sampling.noise)
     distance = min(GROUND.sweep * roughness, GROUND.sweep_noise * roughness + GROUND.sweep_bend * scale)
     return surface.within(distance), distance
+
+
+def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the mask of ground points (n,) on small objects: a ground surface climbs them over smeared walls.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    is_ground : ndarray of shape (n,), bool
+        Points that the filter has found to be ground.
+    spacing : float
+        Point spacing (m).
+
+    Notes
+    -----
+    The lowest ground points of cells are opened with a window of ``SMEARED.width`` m. Planes of any slope and plateaus
+    wider than the window stay as they are. Sheds are removed, and so is the ring of ground points on the smeared walls
+    of a house, since no window is centered on its roof. Ridges and dikes narrower than the window rise above the
+    opened surface as well: objects longer than two windows stay, except for such rings.
+    """
+    if not is_ground.any():
+        return np.zeros(len(xyz), bool)
+    size = max(SCENE.least_cell, DENSITY.filled_cell * spacing)
+    refuse_sparse(xyz, size)
+    radius = max(1, round(SMEARED.width / 2 / size))
+    row, column = raster_cells(xyz, size, radius + 1)
+    lowest = np.full((row.max() + radius + 2, column.max() + radius + 2), np.inf)
+    np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
+    has_ground, is_occupied = np.isfinite(lowest), np.zeros(lowest.shape, bool)
+    is_occupied[row, column] = True
+    is_far = ndimage.distance_transform_edt(~has_ground) > radius
+    opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
+    # On a slope a point may lie higher than the lowest one of its cell, but not higher than the lowest one of the next
+    # cell uphill.
+    highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
+    is_above = is_ground & (xyz[:, 2] > highest[row, column] + LASER.foot)
+    above = np.zeros(lowest.shape, bool)
+    above[row[is_above], column[is_above]] = True
+    return is_above & _of_objects(above, is_occupied & ~has_ground, size)[row, column]
+
+
+def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndarray:
+    """Return the mask of cells (rows, columns) ``above`` the surface, of small objects or next to large ones.
+
+    Cells of large ones are ``is_other`` (rows, columns): they have points, and no ground.
+    """
+    # Parts are joined over a cell: noise interrupts crests of terrain. Parts longer than two windows are such crests.
+    part, count = ndimage.label(ndimage.binary_dilation(above, EIGHT), EIGHT)
+    is_short = np.zeros(count + 1, bool)
+    for number, box in enumerate(ndimage.find_objects(part), 1):
+        is_short[number] = max(side.stop - side.start - 2 for side in box) * size <= 2 * SMEARED.width
+    to_other = ndimage.distance_transform_edt(~is_other) * size if is_other.any() else np.full(above.shape, np.inf)
+    cells = np.bincount(part[above], minlength=count + 1)
+    beside = np.bincount(part[above & (to_other <= SMEARED.width / 2)], minlength=count + 1)
+    return above & (is_short | (beside >= FREE.most * np.maximum(cells, 1)))[part]

@@ -189,8 +189,7 @@ class Cloth:
             getattr(self._state, name)[self._positions] = value
         room = _STEPS_AT_ONCE * self._order.breadth
         self._own, self._off, self._part = np.zeros(room), np.zeros(room), np.zeros(room)
-        lags = range(_STEP_LAG)
-        self._shifts = [[self._order.neighbors(phase, lag) for lag in lags] for phase in range(_APART)]
+        self._shifts = [[self._order.neighbors(phase, lag) for lag in range(_STEP_LAG)] for phase in range(_APART)]
 
     @property
     def height(self) -> np.ndarray:

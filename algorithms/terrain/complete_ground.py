@@ -14,12 +14,7 @@ from ..stage import stage, tunable
     packages=(),
 )
 def complete_ground(
-    xyz,
-    classification,
-    height_above_ground,
-    *,
-    max_distance: float = tunable(0.1, within="[0, 1] m"),
-    monitor=None,
+    xyz, classification, height_above_ground, *, max_distance: float = tunable(0.1, within="[0, 1] m"), monitor=None
 ):
     """Add to the ground the points on its surface that have no other class.
 

@@ -21,9 +21,7 @@ class FREE:
     steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, and of smeared walls; soil is less steep")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
     open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")
-    most: float = rule(
-        0.5, "share", "majority of steps, of the edge of a part, region or machine, or of the cells of a crest"
-    )
+    most: float = rule(0.5, "share", "majority of steps, of the edge of a part, region or machine, of a crest's cells")
     least_cells: int = rule(4, "cells", "of a segment; smaller ones are undecided, as rough cells are")
 
 
@@ -208,8 +206,7 @@ def smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
     for here, other in adjacent_cells(surface.ndim):
         beside[here] |= np.abs(surface[here] - surface[other]) >= least
     segment, _ = ndimage.label(~beside)
-    small = np.bincount(segment.ravel()) < FREE.least_cells
-    segment[small[segment]] = 0
+    segment[(np.bincount(segment.ravel()) < FREE.least_cells)[segment]] = 0
     # The cells at a step go to the segment next to them from which they differ least; in a second
     # round, cells that were only next to such cells.
     for _ in range(2):
@@ -258,8 +255,9 @@ def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
     parts = []
     for here, other in adjacent_cells(surface.ndim):
         is_edge = (segment[here] > 0) & (segment[here] != segment[other]) & ~np.isnan(surface[other])
-        step = surface[here][is_edge] - surface[other][is_edge]
-        parts.append((segment[here][is_edge], segment[other][is_edge], step))
+        parts.append(
+            (segment[here][is_edge], segment[other][is_edge], surface[here][is_edge] - surface[other][is_edge])
+        )
     return _Edges(*(np.concatenate(part) for part in zip(*parts)))
 
 

@@ -139,10 +139,11 @@ def seeds_by_opening(
     # Threads find the other surfaces while the slope of the first is measured, which serves for all, as it changes
     # little.
     surfaces, (first, *_) = zip(*made_ahead(look, count, monitor.part(0, 0.7)))
-    others = made_ahead(
-        lambda number, part: _view(surfaces[number + 1], xyz[:, 2], first.slope, part), count - 1, monitor.part(0.7, 1)
-    )
-    views = [first, *others]
+
+    def look_again(number: int, part: Monitor) -> _View:
+        return _view(surfaces[number + 1], xyz[:, 2], first.slope, part)
+
+    views = [first, *made_ahead(look_again, count - 1, monitor.part(0.7, 1))]
     candidates = views[0].candidates
     # The first direction is the box's: it shows best which objects the end of the cloud cuts off.
     stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
@@ -196,13 +197,11 @@ class _Surface:
     size: float  #: Shorter side (m) of the largest free-standing segment
 
 
-def _lowest_surface(
-    turned: np.ndarray, cells: _Cells, max_building_size: Optional[float], monitor: Monitor
-) -> _Surface:
+def _lowest_surface(turned: np.ndarray, cells: _Cells, max_building: Optional[float], monitor: Monitor) -> _Surface:
     """Return the lowest surface of points (n, 3) that are ``turned`` as the cells are (m)."""
     lowest = lowest_points(turned, cells.size)
     surface, unknown = _surface(turned, lowest, monitor.part(0, 0.3))
-    size, largest = max_building_size or USUAL_BUILDING, max_building_size or np.inf
+    size, largest = max_building or USUAL_BUILDING, max_building or np.inf
     seen = np.where(cells.outside(lowest), np.nan, surface) if cells.angle else surface
     is_free, found = find_free_standing(
         seen, cells.size, size, largest, cells.spacing, monitor.part(0.3, 1), cells.low_uphill
@@ -232,8 +231,7 @@ def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:
 
     Matching rounds edges, so that a rim as wide as a cell lies between a roof and the terrain and joins both.
     """
-    level = ndimage.maximum_filter(np.where(is_free, surface, -np.inf), 3)
-    return np.where(is_free, -np.inf, level)
+    return np.where(is_free, -np.inf, ndimage.maximum_filter(np.where(is_free, surface, -np.inf), 3))
 
 
 def _turns() -> np.ndarray:

@@ -24,19 +24,13 @@ class REMOVAL:
 
     step: float = rule(0.1, "m", "physics: terrain has kerbs, ruts and tussocks as high within any window")
     flat_slope: float = rule(0.1, "tangent", "physics: slope that terrain may have besides the one measured around it")
-    slope_share: float = rule(
-        0.4, "share", "fitted on eight ISPRS samples: of the measured slope, which adds to the flat slope"
-    )
+    slope_share: float = rule(0.4, "share", "fitted on eight ISPRS samples: of measured slope, added to the flat one")
     join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
-    level_share: float = rule(
-        0.25, "share", "of the area of a smooth part, level with the terrain around, from which it is a bank"
-    )
+    level_share: float = rule(0.25, "share", "of a smooth part, level with the terrain around, from which it is a bank")
     steepest_bank: float = rule(2.0, "tangent", "physics: a step near a slope as steep as itself is a bank up to 63°")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
     smoothing: float = rule(
-        2.0,
-        "m",
-        "physics: standard deviation of the smoothing of surfaces, half as much as of slopes; bushes are as wide",
+        2.0, "m", "physics: deviation of the smoothing of surfaces, half as much as of slopes; bushes are as wide"
     )
 
 
@@ -65,8 +59,7 @@ class ObjectRemoval:
         # Leave out free-standing objects; otherwise a low roof and a higher one next to it would count as one wide
         # object.
         removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
-        slope = self._slope_without(removed)
-        return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
+        return self._slope_without(self.objects(self._slope_without(removed), monitor.part(0.5, 1)))
 
     def objects(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return the mask of cells that are objects on terrain of this slope."""
@@ -122,8 +115,7 @@ class ObjectRemoval:
         sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
         for group in (objects & ~is_large, is_large):
             region, count = ndimage.label(group)
-            is_terrain = _joining_terrain(region, count, objects, sides)
-            objects &= ~is_terrain[region] | self.is_free_standing
+            objects &= ~_joining_terrain(region, count, objects, sides)[region] | self.is_free_standing
         return objects
 
     def _without_level(self, objects: np.ndarray) -> np.ndarray:
@@ -163,10 +155,8 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
     allowed = (REMOVAL.join_slope + REMOVAL.slope_share * slope) * cell_size
     for (here, beside), (fall, fall_beyond) in zip(adjacent_cells(surface.ndim), _flanks(surface, bank_cells)):
         step = surface[here] - surface[beside]
-        highest_bank = np.minimum(
-            np.maximum(fall, fall_beyond) + REMOVAL.join_slope * bank, REMOVAL.steepest_bank * bank
-        )
-        yield here, beside, (step < allowed[here]) | (step < highest_bank)
+        highest = np.minimum(np.maximum(fall, fall_beyond) + REMOVAL.join_slope * bank, REMOVAL.steepest_bank * bank)
+        yield here, beside, (step < allowed[here]) | (step < highest)
 
 
 def _joining_terrain(region: np.ndarray, count: int, objects: np.ndarray, sides: Iterable[_Side]) -> np.ndarray:

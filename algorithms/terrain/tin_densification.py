@@ -19,9 +19,7 @@ from ..stage import Monitor
 class DENSIFICATION:
     """Constants of all ground filters that grow a TIN."""
 
-    deviations: float = rule(
-        8.0, "robust deviations", "of the nodes, of distances and of angles, within which points join"
-    )
+    deviations: float = rule(8.0, "robust deviations", "of nodes, of distances and angles, within which points join")
     node_distance: float = rule(0.25, "share", "of the edge length: nearer points make slivers and add no information")
     least_growth: float = rule(0.005, "share", "of the nodes that a round must add to have another one after it")
 
@@ -47,9 +45,7 @@ class JoinRules:
 
     def is_last(self, n_joining: int, n_nodes: int) -> bool:
         """Return whether densification ends after a round in which points joined ``n_nodes`` nodes."""
-        if self.is_exhaustive:
-            return n_joining == 0
-        return n_joining <= DENSIFICATION.least_growth * n_nodes
+        return n_joining <= (0 if self.is_exhaustive else DENSIFICATION.least_growth * n_nodes)
 
     def limits(self, nodes: np.ndarray) -> tuple[float, float]:
         """Return the largest distance (m) and angle (°) at which a point joins the TIN of ``nodes``."""
@@ -190,13 +186,10 @@ def _joining(
     # Ties go to the south-west, so that the points' order doesn't matter.
     order = np.lexsort((xyz[fits, 1], xyz[fits, 0], angle[fits], facet[fits]))
     first = np.unique(facet[fits][order], return_index=True)[1]
-    joining = candidates[fits][order][first]
-    return candidates, joining
+    return candidates, candidates[fits][order][first]
 
 
-def offset_and_angle(
-    tin: Tin, facet: np.ndarray, xyz: np.ndarray, nearest: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def offset_and_angle(tin: Tin, facet: np.ndarray, xyz: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the distance (n,), m, of points to their facets, and the largest angle (n,), °, to the nodes of these.
 
     Parameters
@@ -207,11 +200,11 @@ def offset_and_angle(
         Facet below or above each point.
     xyz : ndarray of shape (n, 3)
         The points (m).
-    nearest : ndarray of shape (n,)
+    near : ndarray of shape (n,)
         Distance (m) to the nearest node of each point's facet.
     """
     offset = np.abs(xyz[:, 2] - tin.elevation(xyz, facet)) * tin.slope_cosine()[facet]
-    return offset, np.degrees(np.arcsin(np.clip(offset / np.maximum(nearest, 1e-9), 0, 1)))
+    return offset, np.degrees(np.arcsin(np.clip(offset / np.maximum(near, 1e-9), 0, 1)))
 
 
 def _is_terrain(tin: Tin, facet: np.ndarray, xyz: np.ndarray, terrain_angle: float) -> np.ndarray:

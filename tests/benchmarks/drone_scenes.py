@@ -13,10 +13,10 @@ from scipy import ndimage
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.simulation.bodies import Rect, flat
-from lidar_buildings.algorithms.simulation.camera import photograph
 from lidar_buildings.algorithms.simulation.plants import plant_trees
 from lidar_buildings.algorithms.simulation.relief import Relief
 from lidar_buildings.algorithms.simulation.scene import Scene
+from lidar_buildings.algorithms.simulation.simulate_village import photograph
 from lidar_buildings.algorithms.simulation.town_houses import Site
 from lidar_buildings.algorithms.simulation.town_layout import CAR, park_car
 from lidar_buildings.algorithms.simulation.village_layout import Home

@@ -673,8 +673,8 @@ TASKS = {
             "shapes.cylinder_evidence",
             "shapes.cylinder_fits",
             "shapes.cylinder_search",
+            "shapes.detect_cylinders",
             "shapes.detect_spheres",
-            "shapes.joined_cylinders",
             "shapes.joined_pieces",
             "shapes.search_settings",
             "shapes.searched_points",
@@ -695,7 +695,6 @@ TASKS = {
             "landcover.classify_water",
             "landcover.classify_wires",
             "landcover.masts",
-            "landcover.wire_candidates",
             "landcover.wire_spans",
         ),
         (
@@ -740,8 +739,8 @@ TASKS = {
     ),
     "update": Task(
         (
+            "quality.changed_block",
             "quality.map_changes",
-            "quality.map_drawing",
             "quality.map_fit",
             "quality.update_map",
             "quality.corner_matching",

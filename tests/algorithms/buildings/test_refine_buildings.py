@@ -6,13 +6,26 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.buildings import scene_learning
-from lidar_buildings.algorithms.buildings.refine_buildings import refine_buildings
+from lidar_buildings.algorithms.buildings.refine_buildings import (
+    CHANCE,
+    _squares,
+    decided_together,
+    refine_buildings,
+    without_chance,
+)
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
-from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.algorithms.stage import Cancelled, LayerFeatures, Monitor
 from lidar_buildings.tests.builders import FAR, crown, roof
+from lidar_buildings.tests.monitors import Listening
 
 SIDE, DENSITY, EAVE = 96.0, 6.0, 6.0
+
+#: Points of each of two smooth spots of crowns.
+SPOT = 20
+
+#: Side and margin of the squares in which points are decided together, m.
+SQUARE, MARGIN = 10.0, 2.0
 
 
 class Village:
@@ -264,3 +277,165 @@ def test_without_confidence_and_reason_none_are_made(village):
     made = refine_buildings(village.xyz, village.classification, village.xyz[:, 2], village.cluster_id)
     assert made[2] is None
     assert made[3] is None
+
+
+def forest(confidence, crowns=2000):
+    """Return what is found in a forest on 100 ground points: two buildings of these confidences amid crowns."""
+    cluster_id = np.repeat([0, 1, 2, 0], [100, SPOT, SPOT, crowns]).astype(np.int32)
+    classification = np.select([np.arange(len(cluster_id)) < 100, cluster_id > 0], [2, 6], 1).astype(np.uint8)
+    known = np.select([cluster_id == 1, cluster_id == 2], confidence, np.nan).astype(np.float32)
+    reason = np.where(cluster_id > 0, Reason.SOLID_PLANE, Reason.ROUGH).astype(np.uint8)
+    return (classification, cluster_id, known, reason, None), np.where(classification == 2, 0.0, 9.0)
+
+
+def sampling(**of_whole):
+    made = CloudSampling.of(np.zeros((1, 3)))
+    made.of_whole.update(of_whole)
+    return made
+
+
+def test_no_doubtful_building_of_a_forest_is_left():
+    (found, height), monitor = forest((0.6, 0.74)), Monitor()
+    classes, number, confidence, reason, _ = without_chance(found, height, 0.05, sampling(), monitor)
+    assert not (classes == 6).any()
+    assert not number.any()
+    assert (reason[100 : 100 + 2 * SPOT] == Reason.BY_CHANCE).all()
+    assert (confidence[100 : 100 + 2 * SPOT] == 0.5).all()
+    assert "2 doubtful ones" in monitor.infos[-1]
+    # Nothing else changes.
+    assert (classes[found[0] != 6] == found[0][found[0] != 6]).all()
+    assert (reason[found[1] == 0] == Reason.ROUGH).all()
+
+
+@pytest.mark.parametrize(
+    ("confidence", "crowns"),
+    [((0.6, 0.76), 2000), ((0.6, 0.6), 700)],
+    ids=["a sure one keeps all", "a shed amid a few trees"],
+)
+def test_where_one_is_sure_or_crowns_are_few_all_stay(confidence, crowns):
+    found, height = forest(confidence, crowns)
+    assert without_chance(found, height, 0.05, sampling(), Monitor()) is found
+
+
+def test_ground_and_low_points_do_not_count_as_crowns():
+    found, height = forest((0.6, 0.6))
+    assert without_chance(found, np.where(found[1] > 0, height, 1.4), 0.05, sampling(), Monitor()) is found
+
+
+def test_a_share_of_nothing_keeps_all():
+    found, height = forest((0.6, 0.6))
+    assert without_chance(found, height, 0.0, sampling(), Monitor()) is found
+
+
+def test_a_part_of_a_survey_does_as_the_whole_does():
+    found, height = forest((0.6, 0.9))
+    assert without_chance(found, height, 0.05, sampling(**{CHANCE: (0.0,)}), Monitor()) is found
+    _, number, *_ = without_chance(found, height, 0.05, sampling(**{CHANCE: (1.0,)}), Monitor())
+    assert set(number[found[1] == 1]) == {0}
+    assert set(number[found[1] == 2]) == {1}
+
+
+def test_a_survey_decides_on_all_of_its_parts_together():
+    """A sure building in one part keeps the doubtful ones of the other."""
+    tables, learn = [], None
+    for confidence in ((0.6, 0.6), (0.9, 0.6)):
+        part = sampling()
+        without_chance(*forest(confidence), 0.05, part, Monitor())
+        table, learn = part.samples[CHANCE]
+        tables.append(table)
+    assert learn(np.concatenate(tables)) == (0.0,)
+    assert learn(tables[0]) == (1.0,)
+
+
+@pytest.fixture
+def edge(rng):
+    """A strip of 6 by 60 m with four points per m², whose southern half is a roof; a tenth of all points look wrong."""
+    xyz = np.column_stack([rng.uniform(0, 60, 1440), rng.uniform(0, 6, 1440), np.full(1440, 5.0)])
+    truth = xyz[:, 1] < 3
+    gain = np.where(truth ^ (rng.random(1440) < 0.1), 1.5, -1.5)
+    return xyz, truth, gain
+
+
+def decided(xyz, gain):
+    """Return the classes of points with a spacing of half a meter."""
+    return decided_together(xyz, gain, 0.5, SQUARE, MARGIN, Monitor())
+
+
+def test_single_points_follow_their_neighbors(edge):
+    xyz, truth, gain = edge
+    away = np.abs(xyz[:, 1] - 3) > 0.5
+    assert ((gain > 0) == truth)[away].mean() < 0.92
+    assert (decided(xyz, gain) == truth)[away].mean() > 0.98
+
+
+def test_points_far_apart_and_those_that_are_sure_keep_what_they_are(edge):
+    xyz, _, gain = edge
+    np.testing.assert_array_equal(decided(xyz * 100, gain), gain > 0)
+    sure = np.where(gain > 0, np.inf, -np.inf)
+    np.testing.assert_array_equal(decided(xyz, sure), gain > 0)
+
+
+def test_nothing_costs_less_than_what_is_decided(rng):
+    """All classes of ten points, one by one: two clusters in a square, with weak evidence."""
+    xyz = np.column_stack([rng.uniform(3, 5, 10), rng.uniform(3, 5, 10), np.zeros(10)])
+    gain = rng.normal(0, 2, 10)
+    squares = np.sum((xyz[:, None] - xyz) ** 2, axis=2)
+    # Every point is a neighbor of every other one, in both directions.
+    pair = 2 / (1 + squares / 0.5**2)
+
+    def cost(classes):
+        return np.abs(gain[classes != (gain > 0)]).sum() + pair[classes][:, ~classes].sum()
+
+    every = [np.array([number >> bit & 1 for bit in range(10)], bool) for number in range(1024)]
+    found = decided(xyz, gain)
+    assert cost(found) == pytest.approx(min(map(cost, every)), abs=0.02)
+    assert not np.array_equal(found, gain > 0)
+
+
+def test_a_part_with_the_margins_of_its_squares_decides_as_the_whole(edge):
+    xyz, _, gain = edge
+    whole = decided(xyz, gain)
+    part = np.flatnonzero((xyz[:, 0] >= 17.9) & (xyz[:, 0] < 42.1))
+    kept = (xyz[part, 0] >= 20) & (xyz[part, 0] < 40)
+    np.testing.assert_array_equal(decided(xyz[part], gain[part])[kept], whole[part][kept])
+
+
+def test_squares_decide_nearly_as_all_points_at_once(edge):
+    xyz, _, gain = edge
+    at_once = decided_together(xyz, gain, 0.5, 1000.0, MARGIN, Monitor())
+    assert (decided(xyz, gain) == at_once).mean() > 0.995
+
+
+def test_every_point_is_kept_in_one_square_and_seen_from_those_around(edge):
+    plan = edge[0][:, :2]
+    squares = list(_squares(plan, SQUARE, MARGIN))
+    kept = np.concatenate([rows[is_own] for rows, is_own in squares])
+    np.testing.assert_array_equal(np.sort(kept), np.arange(len(plan)))
+    for rows, is_own in squares:
+        if is_own.any():
+            low = np.floor(plan[rows[is_own][0]] / SQUARE) * SQUARE
+            inside = ((plan >= low - MARGIN) & (plan < low + SQUARE + MARGIN)).all(axis=1)
+            np.testing.assert_array_equal(np.flatnonzero(inside), rows)
+
+
+def test_the_order_of_points_decides_nothing(edge, rng):
+    xyz, _, gain = edge
+    order = rng.permutation(len(xyz))
+    np.testing.assert_array_equal(decided(xyz[order], gain[order]), decided(xyz, gain)[order])
+
+
+def test_there_may_be_no_points_or_one():
+    assert not len(decided(np.empty((0, 3)), np.empty(0)))
+    np.testing.assert_array_equal(decided(np.zeros((1, 3)), np.array([2.0])), [True])
+
+
+def test_progress_is_heard_from_square_to_square_where_the_work_can_be_stopped(edge):
+    xyz, _, gain = edge
+    listening = Listening()
+    decided_together(xyz, gain, 0.5, SQUARE, MARGIN, listening)
+    # The strip has six squares.
+    assert listening.heard == sorted(listening.heard)
+    assert len(listening.heard) >= 6
+    assert listening.heard[-1] == 1.0
+    with pytest.raises(Cancelled):
+        decided_together(xyz, gain, 0.5, SQUARE, MARGIN, Listening(stop_at=0.5))

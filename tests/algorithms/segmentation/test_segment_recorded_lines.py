@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.segmentation.recorded_lines import Recording, recorded_lines
+from lidar_buildings.algorithms.segmentation.segment_recorded_lines import Recording, recorded_lines
 from lidar_buildings.algorithms.segmentation.segment_recorded_lines import segment_recorded_lines as stage
 from lidar_buildings.algorithms.segmentation.straight_pieces import split_lines
 from lidar_buildings.algorithms.stage import Cancelled, Monitor

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.buildings.surface_evidence import greenness, greenness_between
 from lidar_buildings.algorithms.cloud.asprs import VEGETATION, PointClass
-from lidar_buildings.algorithms.features.greenness import greenness, greenness_between
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.simulation.simulate_drone_site import build_site, simulate_drone_site
 from lidar_buildings.algorithms.simulation.town_layout import TownPlan

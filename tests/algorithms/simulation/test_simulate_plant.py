@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.simulation import plant_parts
+from lidar_buildings.algorithms.simulation import plant_layout
 from lidar_buildings.algorithms.simulation import simulate_plant as module
 from lidar_buildings.algorithms.simulation.simulate_plant import simulate_plant
 
@@ -61,7 +61,7 @@ def test_density_and_seed_have_the_described_effect(monkeypatch):
 
 def test_an_elbow_joins_its_pipes(rng):
     """Every point of a quarter of a torus lies at the radius of the pipe from its bent axis."""
-    elbow = plant_parts.elbow(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, 1.0]), 0.6, 0.2)
+    elbow = plant_layout.elbow(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, 1.0]), 0.6, 0.2)
     places, normals = elbow.sample(rng, 2000)
     ring = np.hypot(places[:, 0], places[:, 2] - 0.6)
     np.testing.assert_allclose(np.hypot(ring - 0.6, places[:, 1]), 0.2, atol=1e-9)

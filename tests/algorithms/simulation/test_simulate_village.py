@@ -10,8 +10,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.simulation.bodies import Body, Rect, inclined, stack
-from lidar_buildings.algorithms.simulation.camera import photograph
-from lidar_buildings.algorithms.simulation.simulate_village import simulate_village
+from lidar_buildings.algorithms.simulation.simulate_village import photograph, simulate_village
 from lidar_buildings.algorithms.simulation.village_layout import build_village
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import is_inside

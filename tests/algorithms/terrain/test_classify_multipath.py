@@ -7,8 +7,7 @@ from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.terrain.classify_ground_tin import classify_ground_tin
-from lidar_buildings.algorithms.terrain.classify_multipath import classify_multipath
-from lidar_buildings.algorithms.terrain.false_pits import false_pits
+from lidar_buildings.algorithms.terrain.classify_multipath import classify_multipath, false_pits
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.pits import scene
 

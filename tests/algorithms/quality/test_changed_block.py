@@ -6,7 +6,7 @@ import pytest
 from lidar_buildings.algorithms.footprints.soft_shares import Lattice
 from lidar_buildings.algorithms.geometry.polygon_overlap import are_within
 from lidar_buildings.algorithms.geometry.rings import polygon_area, sides_of_rings
-from lidar_buildings.algorithms.quality.map_drawing import _is_sound, draw_labels
+from lidar_buildings.algorithms.quality.changed_block import _is_sound, draw_labels
 
 
 def box(west, east):
