@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.cell_polygons import cell_polygons, joined_cells
 from ..geometry.cheapest_labels import cheapest_labels
-from ..geometry.groups import mask_of
+from ..geometry.groups import mask_of, placed
 from ..geometry.ring_directions import along_two_directions
 from ..geometry.ring_drawing import Edge, Prices, aligned, draw_ring
 from ..geometry.rings import sides_of_rings
@@ -99,9 +99,8 @@ def draw_block(
     lattice, share = _shares_of(pieces, numbers, shares, edges, how)
     cells = _cut([*edges, *walls], lattice)
     # Cost (cells, labels) of each label in each cell: the area (m²) of the cell with another label.
-    mean = np.array(
-        [share.reshape(len(share), -1)[:, nodes].mean(axis=1) for nodes in _nodes_of(cells, lattice)], float
-    )
+    flat = share.reshape(len(share), -1)
+    mean = np.array([flat[:, nodes].mean(axis=1) for nodes in _nodes_of(cells, lattice)], float)
     cost = cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)
     label = _without_scraps(cells, _labels(cells, cost, edges, how), how)
     building = np.array([0, *numbers])
@@ -159,10 +158,8 @@ def _shares_of(
 
     Other parts of these buildings, which are not of this block, have no share.
     """
-    corners = np.array([edge.start for edge in edges])
-    lattice = Lattice.around(
-        np.concatenate([corners, *(ring for piece in pieces for ring in piece.rings)]), how.spacing
-    )
+    samples = (ring for piece in pieces for ring in piece.rings)
+    lattice = Lattice.around(np.concatenate([[edge.start for edge in edges], *samples]), how.spacing)
     share = np.zeros((len(numbers) + 1, *lattice.shape), np.float32)
     for at, number in enumerate(numbers, start=1):
         own = shares[number]
@@ -204,14 +201,12 @@ def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
 def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: BlockDrawing) -> np.ndarray:
     """Return the label of each cell, 0 for ground, with the least total cost of cells and borders."""
     pairs, sides = cells.edges()
-    vertices = np.array(cells.vertices)
-    start, end = vertices[pairs[:, 0]], vertices[pairs[:, 1]]
+    start, end = np.swapaxes(np.array(cells.vertices)[pairs], 0, 1)
     # A meter of border without a drawn edge costs as much as an area of 1 m by one spacing.
     weight = np.where(_are_drawn(start, end, edges), 0.0, how.spacing * np.hypot(*(end - start).T))
     most = np.bincount(sides.ravel(), np.repeat(weight, 2), len(cells))
-    return cheapest_labels(
-        cost, sides, lambda one, other, rows: weight[rows] * (one != other), most, cost.argmin(axis=1)
-    )
+    first = cost.argmin(axis=1)
+    return cheapest_labels(cost, sides, lambda one, other, rows: weight[rows] * (one != other), most, first)
 
 
 def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndarray:
@@ -240,10 +235,8 @@ def _without_scraps(cells: Subdivision, label: np.ndarray, how: BlockDrawing) ->
         size = np.bincount(piece, cells.areas())
         is_open = mask_of(len(size), piece[cells.is_on_rim()])
         pairs, sides = cells.edges()
-        vertices = np.array(cells.vertices)
-        length = np.hypot(*(vertices[pairs[:, 1]] - vertices[pairs[:, 0]]).T)
-        kind = np.zeros(len(size), label.dtype)
-        kind[piece] = label
+        length = np.hypot(*np.diff(np.array(cells.vertices)[pairs], axis=1)[:, 0].T)
+        kind = placed(label, piece, len(size))
         for number in np.flatnonzero((size < least) & ~is_open & ((kind == 0) == is_ground)):
             own = piece[sides] == number
             at_border = own[:, 0] != own[:, 1]

@@ -18,7 +18,7 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Layer, LayerFeatures, Monitor, stage, tunable
 from ..threads import made_ahead
-from .drawn_blocks import BlockDrawing, draw_block
+from .drawn_blocks import BlockDrawing, Outlined, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import NEIGHBORS, OutlinePiece, blocks_of, find_pieces, shared_directions
 from .roof_points import edge_weights, find_non_building_points, find_roof_points
@@ -172,41 +172,30 @@ def extract_footprints(
         tolerance = TOLERANCE_SPACINGS * spacing
         monitor.resolved(tolerance=tolerance)
     how = BlockDrawing(spacing, tolerance / TOLERANCE_SPACINGS, min_area, min_hole_area, merge_touching)
-    measures = PointMeasures(
-        xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason, weakest_evidence
-    )
+    measured = height_above_ground, cluster_entropy, confidence, reason, weakest_evidence
+    measures = PointMeasures(xyz, sampling.corner, *measured)
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
-    parts, n_drawn = _asked_for(
-        _parts(measures, classification, building, cluster, spacing), measures, sampling, spacing
-    )
+    parts = _parts(measures, classification, building, cluster, spacing)
+    parts, n_drawn = _asked_for(parts, measures, sampling, spacing)
     searching = monitor.part(0.0, 0.4)
     evidence = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), searching))
     directions = [dict.fromkeys(one.shares, np.zeros(0)) for one in evidence]
     if regularize:
         known = iter(shared_directions([own for one in evidence for own in one.rings.values()]))
         directions = [{number: next(known) for number in one.rings} for one in evidence]
+    outlines: list[list[Outlined]] = []
+
+    def part_houses(number: int, _: Monitor) -> dict[int, Houses]:
+        return _houses(parts[number], evidence[number], directions[number], measures, how)
+
+    def describe(number: int, _: Monitor) -> list[dict[str, Any]]:
+        return footprint_attributes(outlines[number], parts[number].roof, parts[number].members, measures, spacing)
+
     # Threads work on the arrays of houses and attributes; drawing is many small calls, which hold the interpreter.
-    houses_of_parts = made_ahead(
-        lambda number, _: _houses(parts[number], evidence[number], directions[number], measures, how),
-        n_drawn,
-        monitor.part(0.4, 0.9),
-    )
-    outlines = [
-        [
-            outlined
-            for block in blocks_of(one.pieces, spacing)
-            for outlined in draw_block(block, one.shares, own, houses, how)
-        ]
-        for houses, one, own in zip(houses_of_parts, evidence, directions)
-    ]
-    described = made_ahead(
-        lambda number, _: footprint_attributes(
-            outlines[number], parts[number].roof, parts[number].members, measures, spacing
-        ),
-        n_drawn,
-        monitor.part(0.9, 1.0),
-    )
-    attributes = [one for of_part in described for one in of_part]
+    for houses, one, own in zip(made_ahead(part_houses, n_drawn, monitor.part(0.4, 0.9)), evidence, directions):
+        drawn = (draw_block(block, one.shares, own, houses, how) for block in blocks_of(one.pieces, spacing))
+        outlines.append(list(itertools.chain.from_iterable(drawn)))
+    attributes = list(itertools.chain.from_iterable(made_ahead(describe, n_drawn, monitor.part(0.9, 1.0))))
     rings = [[ring + sampling.corner for ring in outlined.rings] for of_part in outlines for outlined in of_part]
     found = [one for one in zip(rings, attributes) if sampling.asks_for(plan_box(one[0][0]))]
     return with_reviewed(_features(found, min_area), review)
@@ -236,10 +225,8 @@ def _building_points(classification: np.ndarray, cluster_id: Optional[np.ndarray
     is_building = classification == PointClass.BUILDING
     building = np.flatnonzero(is_building & (cluster_id is None or cluster_id > 0))
     if not len(building):
-        what = (
-            "point of class 6 (building) has a ClusterID" if is_building.any() else "point is called building (class 6)"
-        )
-        monitor.none_found(f"No {what}, so there are no footprints.")
+        what = "of class 6 (building) has a ClusterID" if is_building.any() else "is called building (class 6)"
+        monitor.none_found(f"No point {what}, so there are no footprints.")
     return building
 
 
@@ -304,11 +291,8 @@ def _evidence_of(part: _Part, measures: PointMeasures, how: BlockDrawing) -> _Ev
     even, even_beside = np.split(even_weights(np.concatenate([roof[:, :2], beside]), how.spacing), [len(roof)])
     weight = even * edge_weights(roof, measures.local(walls), how.spacing)
     shares = find_shares(roof[:, :2], weight, part.label, beside, even_beside, how.spacing)
-    pieces = [
-        piece
-        for number, own in shares.items()
-        for piece in find_pieces(number, own, how.spacing, how.min_area, how.min_hole_area)
-    ]
+    found = (find_pieces(number, own, how.spacing, how.min_area, how.min_hole_area) for number, own in shares.items())
+    pieces = list(itertools.chain.from_iterable(found))
     rings: dict[int, list[np.ndarray]] = {}
     for piece in pieces:
         rings.setdefault(piece.building, []).extend(piece.rings)
@@ -364,12 +348,10 @@ def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> 
     is_same = ~is_decided & is_numbered & (2 * shared > np.maximum(own.area[one], given.area[other]))
     before = dict(zip(one[is_same].tolist(), ids[other[is_same]].tolist() if is_numbered else ()))
     new["id"] = [before.get(row) for row in others]
-    columns = {
-        name: [*kept.get(name, [None] * len(staying)), *new.get(name, [None] * len(others))]
-        for name in dict.fromkeys([*new, *kept])
-    }
+    without, unknown = [None] * len(staying), [None] * len(others)
+    columns = {name: [*kept.get(name, without), *new.get(name, unknown)] for name in dict.fromkeys([*new, *kept])}
     free = itertools.count(1 + int(np.nanmax(ids, initial=0)) if is_numbered else 1)
     columns["id"] = [next(free) if number is None or np.isnan(number) else int(number) for number in columns["id"]]
-    sources = [*(layer.sources[row] if layer.sources else None for row in staying), *[None] * len(others)]
+    sources = [*(layer.sources[row] if layer.sources else None for row in staying), *unknown]
     outlines = [[np.asarray(ring, float)[:, :2] for ring in layer.geometries[row]] for row in staying]
     return LayerFeatures([*outlines, *(found.geometries[row] for row in others)], columns, sources)

@@ -121,22 +121,21 @@ def footprint_attributes(
         along, is_outer = owners.border(face, outlined.rings)
         inner = _own_roof(roof, plan, along[~is_outer], spacing)
         surface = surface_heights(outlined.nodes, plan[inner], over_ground[inner], spacing)
-        attributes.append(
-            {
-                "cluster_id": outlined.building,
-                "area": area,
-                "perimeter": sum(map(perimeter, outlined.rings)),
-                "volume": area * float(np.mean(surface)),
-                "regularized": int(outlined.is_straight),
-                "ground_elevation": _percentile(measures.xyz[points[inner], 2] - over_ground[inner], 50),
-                **roof_heights(along, is_outer, plan[inner], over_ground[inner], spacing),
-                "max_height": _percentile(over_ground[inner], 100),
-                "points": len(rows),
-                "entropy": _mean(measures.entropy, members[rows]),
-                "confidence": _mean(measures.confidence, members[rows]),
-                **_why(measures, members[rows]),
-            }
-        )
+        facts = {
+            "cluster_id": outlined.building,
+            "area": area,
+            "perimeter": sum(map(perimeter, outlined.rings)),
+            "volume": area * float(np.mean(surface)),
+            "regularized": int(outlined.is_straight),
+            "ground_elevation": _percentile(measures.xyz[points[inner], 2] - over_ground[inner], 50),
+            **roof_heights(along, is_outer, plan[inner], over_ground[inner], spacing),
+            "max_height": _percentile(over_ground[inner], 100),
+            "points": len(rows),
+            "entropy": _mean(measures.entropy, members[rows]),
+            "confidence": _mean(measures.confidence, members[rows]),
+            **_why(measures, members[rows]),
+        }
+        attributes.append(facts)
     return attributes
 
 

@@ -36,10 +36,8 @@ class OutlinePiece:
     rings: list[np.ndarray]
 
 
-def find_pieces(
-    building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float
-) -> list[OutlinePiece]:
-    """Return the pieces of a building that may reach ``min_area`` (m²), with their holes of ``min_hole_area`` (m²).
+def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, min_hole: float) -> list[OutlinePiece]:
+    """Return the pieces of a building that may reach ``min_area`` (m²), with their holes of ``min_hole`` (m²).
 
     Parameters
     ----------
@@ -51,12 +49,12 @@ def find_pieces(
         Point spacing, m.
     min_area : float
         Smallest area of a polygon, m².
-    min_hole_area : float
+    min_hole : float
         Smallest hole, m².
     """
     rings = [shares.lattice.in_plan(ring) for ring in level_lines(shares.share - shares.rest)]
     sizes = [signed_area(ring) for ring in rings]
-    holes = [ring for ring, size in zip(rings, sizes) if -size >= min_hole_area]
+    holes = [ring for ring, size in zip(rings, sizes) if -size >= min_hole]
     pieces = []
     for ring, size in zip(rings, sizes):
         # A ring is rounded at corners; whether a small building is large enough is decided on its polygon.
@@ -71,9 +69,8 @@ def pieces_alone(roof: np.ndarray, spacing: float, least_area: float) -> tuple[S
 
     ``least_area`` (m²) is the least area of its pieces and holes.
     """
-    shares = find_shares(
-        roof, np.ones(len(roof)), np.ones(len(roof), np.int64), np.zeros((0, 2)), np.zeros(0), spacing
-    )[1]
+    one = np.ones(len(roof), np.int64)
+    shares = find_shares(roof, one.astype(float), one, np.zeros((0, 2)), np.zeros(0), spacing)[1]
     pieces = find_pieces(1, shares, spacing, least_area, least_area)
     rings = [ring for piece in pieces for ring in piece.rings]
     weights = np.sum([direction_weights(ring) for ring in rings], axis=0)

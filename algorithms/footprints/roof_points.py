@@ -88,16 +88,14 @@ def edge_weights(roof: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndar
     return np.where(find_cells(np.unique(grid.number(walls)), grid.number(roof))[1], _AT_WALL, 1.0)
 
 
-def find_non_building_points(
-    xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, spacing: float
-) -> np.ndarray:
+def find_non_building_points(xyz: np.ndarray, classes: np.ndarray, roof: np.ndarray, spacing: float) -> np.ndarray:
     """Return the indices (m,) of non-building points next to roofs and clearly below them, where the roof has ended.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
         Points, m.
-    classification : ndarray of shape (n,)
+    classes : ndarray of shape (n,)
         Classes.
     roof : ndarray of shape (k,), int64
         Rows of the points of roofs.
@@ -108,7 +106,7 @@ def find_non_building_points(
     grid = grid_over(xyz, reach)
     cells = distinct(grid.number(xyz[roof]))[0]
     near = np.unique(np.concatenate([cells, *(cells + step for step in grid.around)]))
-    other = np.flatnonzero(~np.isin(classification, (PointClass.BUILDING, *NOISE)))
+    other = np.flatnonzero(~np.isin(classes, (PointClass.BUILDING, *NOISE)))
     other = other[find_cells(near, grid.number(xyz[other]))[1]]
     if not len(other):
         return other

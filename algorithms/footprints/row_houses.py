@@ -31,7 +31,7 @@ class RowRules:
     rise: float = rule(0.25, "tangent", "physics: least slope of a roof that rises from a valley")
     parallel: float = rule(0.35, "tangent", "physics: slopes of parallel roofs differ by less")
     least_height: float = rule(
-        0.2, "m", "physics: of a step between parallel roofs and of a wall over both; four times the noise of a scan"
+        0.2, "m", "physics: step between parallel roofs, wall over both; four times a scan's noise"
     )
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
     large_step: float = rule(1.0, "m", "physics: a step between any two roofs, half a storey high")
@@ -102,11 +102,8 @@ def split_row(
     if spacing > ROWS.max_spacing or is_inside.sum() * lattice.step**2 < 3 * ROWS.least_area or not known.any():
         return Houses(walls[0], house)
     plan, height = plan[known], height[known]
-    views = [
-        view
-        for angle in _directions(lattice, is_inside, plan, height, np.radians(angles))
-        for view in _views(lattice, is_inside, plan, height, angle, spacing)
-    ]
+    tried = _directions(lattice, is_inside, plan, height, np.radians(angles))
+    views = [view for angle in tried for view in _views(lattice, is_inside, plan, height, angle, spacing)]
     waiting = [1] if views else []
     while waiting:
         number = waiting.pop()
@@ -209,7 +206,7 @@ class _View:
         inside = ndimage.binary_closing(own[box], iterations=self.closed)
         runs = _Runs.of(inside)
         sums = part._sums(runs, inside)
-        pays = self._pays(runs, *sums)
+        pays = self._pays(*sums)
         found = [(*_chosen_walls(pays[chain], runs.length[chain], self.step), chain) for chain in runs.chains()]
         saved, walls, chain = max(found, key=lambda one: one[0], default=(0, *np.zeros((2, 0), np.int64)))
         house = runs.houses(chain, walls, self.step) if saved > 0 else np.zeros(1, np.int64)
@@ -229,7 +226,7 @@ class _View:
         near = ndimage.maximum_filter1d(self.strength, 3, axis=1)
         return runs.sums(is_high) * self.step, runs.sums(is_high * near) * self.step
 
-    def _pays(self, runs: _Runs, counted: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    def _pays(self, counted: np.ndarray, seen: np.ndarray) -> np.ndarray:
         """Compute the value of a wall along each run, in steps: the share of it that is seen, less its cost."""
         pays = seen / np.maximum(counted, ROWS.narrowest) - ROWS.wall * self.spacing
         # A wall must pay by itself: likeness of the houses next to it is no evidence.
@@ -471,9 +468,8 @@ def _above(sums: _Sums, left: _Side, right: _Side, step: float) -> np.ndarray:
     columns, above = np.arange(level.shape[1]), np.full(level.shape, -np.inf)
     for at in (-1, 0, 1):
         beside = level.take(np.clip(columns + at, 0, len(columns) - 1), axis=1)
-        above = np.maximum(
-            above, beside - np.maximum(left.at_sample - at * step * left.rise, right.at_sample + at * step * right.rise)
-        )
+        planes = np.maximum(left.at_sample - at * step * left.rise, right.at_sample + at * step * right.rise)
+        above = np.maximum(above, beside - planes)
     return above
 
 

@@ -40,9 +40,7 @@ class Adjacency:
         """
         beside = np.flatnonzero(self.overlap >= min_overlap)
         beside = beside[np.lexsort((self.other[beside], -size[self.other[beside]], self.one[beside]))]
-        one = self.one[beside]
-        first = np.ones(len(beside), bool)
-        first[1:] = one[1:] != one[:-1]
+        first = np.diff(self.one[beside], prepend=-1) != 0
         best = beside[first]
         opposite = np.einsum("ij,ij->i", self.offset[beside], self.offset[best][np.cumsum(first) - 1]) < 0
         across = beside[opposite]

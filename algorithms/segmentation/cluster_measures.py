@@ -16,11 +16,6 @@ from ..terrain.free_standing import FREE
 _BOX = np.array([2.0, 2.0, 4.0])
 
 
-def _cell_size(density: float) -> float:
-    """Return the side (m) of the cells that area is counted in."""
-    return max(CLOSED.least_spacing, DENSITY.filled_cell / np.sqrt(density))
-
-
 def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
     """Return the area (m²), seen from above, that each group of points occupies.
 
@@ -83,19 +78,17 @@ def non_last_share(group: np.ndarray, goes_on: Optional[np.ndarray]) -> np.ndarr
     return np.zeros(len(size)) if goes_on is None else np.bincount(group[member], goes_on[member]) / np.maximum(size, 1)
 
 
-def pulses_going_on(
-    return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray]
-) -> Optional[np.ndarray]:
+def pulses_going_on(number: Optional[np.ndarray], of: Optional[np.ndarray]) -> Optional[np.ndarray]:
     """Return the mask (n,) of points whose pulse went on to another return; None where none is known to have several.
 
     Parameters
     ----------
-    return_number, number_of_returns : ndarray of shape (n,), optional
+    number, of : ndarray of shape (n,), optional
         Where the scanner numbered its returns.
     """
-    if return_number is None or number_of_returns is None or number_of_returns.max(initial=0) <= 1:
+    if number is None or of is None or of.max(initial=0) <= 1:
         return None
-    return return_number < number_of_returns
+    return number < of
 
 
 def adjacent_groups(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:
@@ -159,7 +152,7 @@ def occupied_cells(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[
 
     Arguments as of :func:`plan_areas`; points of negative groups are left out.
     """
-    grid = fixed_grid_over(xyz, _cell_size(density))
+    grid = fixed_grid_over(xyz, max(CLOSED.least_spacing, DENSITY.filled_cell / np.sqrt(density)))
     member = group >= 0
     # Numbers of occupied cells are small, numbers of cells between far points times the groups may be too large.
     cells, which = distinct(grid.number(xyz)[member])

@@ -58,10 +58,10 @@ class Regions:
         triples = self.adjacency.triples(size, min_overlap)
         triples = triples[self._flat(triples)]
         triples = triples[np.lexsort((triples[:, 1], -size[triples].sum(axis=1)))]
-        number = 0
+        grow, number = self._grow_plane if self.growth.is_planar else self._grow_smooth, 0
         for i, seed in enumerate(triples.tolist()):
             if all(self.region[piece] < 0 for piece in seed):
-                self._grow(seed, number, partial(monitor.progress, i / len(triples)))
+                grow(seed, number, partial(monitor.progress, i / len(triples)))
                 number += 1
         monitor.progress(1.0)
 
@@ -75,12 +75,6 @@ class Regions:
         distance = np.abs(np.einsum("ijk,ik->ij", off, points.normal)).max(axis=1)
         deviation = np.sqrt(np.maximum(points.eigenvalues[:, 2], 0))
         return (deviation <= self.growth.seed_deviation) & (distance <= self.growth.tolerance)
-
-    def _grow(self, seed: list[int], number: int, report: Callable[[], None]) -> None:
-        if self.growth.is_planar:
-            self._grow_plane(seed, number, report)
-        else:
-            self._grow_smooth(seed, number, report)
 
     def _grow_plane(self, seed: list[int], number: int, report: Callable[[], None]) -> None:
         """Add pieces that lie on the plane of the region, which is fitted anew with each, until none can be added."""

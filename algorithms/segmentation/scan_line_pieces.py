@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..geometry.grid import lattice, turned_in_plan
-from ..geometry.groups import components, items, ordered, placed
+from ..geometry.groups import components, items, mask_of, ordered, placed
 from ..sampling.surface_noise import LEAST_NEIGHBORS
 
 
@@ -166,8 +166,6 @@ def merged_pieces(piece_sets: list[np.ndarray]) -> np.ndarray:
         ones.append(points)
         others.append(first + piece[points])
         first += int(piece.max(initial=-1)) + 1
-    component = components(np.concatenate(ones), np.concatenate(others), first)[1][:n]
-    in_piece = np.zeros(n, bool)
-    for points in ones:
-        in_piece[points] = True
-    return np.where(in_piece, component, -1).astype(np.int32)
+    points = np.concatenate(ones)
+    component = components(points, np.concatenate(others), first)[1][:n]
+    return np.where(mask_of(n, points), component, -1).astype(np.int32)

@@ -6,7 +6,7 @@ Lines are found by times, marks of the line's end, scan angles, or the order of 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -172,7 +172,8 @@ def segment_recorded_lines(
         monitor.warn("The points have no GPS times, so scan lines are taken from the order of the points.")
     monitor.inform(f"Scan lines are distinguished by: {', '.join(recording.evidence)}.")
 
-    last = np.flatnonzero(_is_last(return_number, number_of_returns, used))
+    has_returns = return_number is not None and number_of_returns is not None
+    last = np.flatnonzero(return_number[used] >= number_of_returns[used]) if has_returns else np.arange(len(used))
     row = last[recording.take(last).order(points[last])]
     line_spacing = _distance_of_lines(points[row], density)
     line_distance = _LINES * line_spacing if line_distance is None else line_distance
@@ -190,13 +191,6 @@ def segment_recorded_lines(
     regions.grow(min_overlap, monitor.part(0.6, 0.9))
     segment = _with_others(points, row, piece, regions, line_distance, tolerance)
     return placed(number_large(segment, min_points), used, len(xyz))
-
-
-def _is_last(return_number: Any, number_of_returns: Any, used: np.ndarray) -> np.ndarray:
-    """Return the mask of the last returns of pulses; all points where the cloud has no return numbers."""
-    if return_number is None or number_of_returns is None:
-        return np.ones(len(used), bool)
-    return return_number[used] >= number_of_returns[used]
 
 
 def _median_step(points: np.ndarray) -> float:
@@ -254,12 +248,9 @@ class Recording:
     def evidence(self) -> list[str]:
         """What distinguishes lines, in words; the points themselves always do."""
         known = ["GPS time"] if _varies(self.gps_time) else ["order of the points"]
-        names = {
-            "scan direction": self.scan_direction_flag,
-            "edge of flight line": self.edge_of_flight_line,
-            "scan angle": self.scan_angle,
-        }
-        return known + [name for name, values in names.items() if _varies(values)]
+        recorded = self.scan_direction_flag, self.edge_of_flight_line, self.scan_angle
+        named = zip(("scan direction", "edge of flight line", "scan angle"), recorded)
+        return known + [name for name, values in named if _varies(values)]
 
     @property
     def has_times(self) -> bool:
@@ -272,9 +263,7 @@ class Recording:
         Points with one time keep the order of their coordinates; without times all keep the order of the cloud.
         """
         source = np.zeros(len(xyz), np.uint16) if self.point_source_id is None else self.point_source_id
-        if not self.has_times:
-            return np.argsort(source, kind="stable")
-        return np.lexsort((*xyz.T, self.gps_time, source))
+        return np.lexsort((*xyz.T, self.gps_time, source)) if self.has_times else np.argsort(source, kind="stable")
 
     def take(self, rows: np.ndarray) -> Recording:
         """Return the recording of some points."""

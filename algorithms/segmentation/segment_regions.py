@@ -16,8 +16,7 @@ _HEIGHT_NOISE_FACTOR = 10.0
 
 # Bounds of T_Dh (m), the paper's two values: with less, roofs of common slopes fall apart, and with more, in forests
 # whose noise is measured too large, roofs and crowns grow together.
-_MIN_HEIGHT_DISTANCE = 0.2
-_MAX_HEIGHT_DISTANCE = 0.3
+_HEIGHT_DISTANCES = (0.2, 0.3)
 
 
 @stage(
@@ -119,13 +118,9 @@ def segment_regions(
     density = sampling.density if density is None else density
     spacing = 1 / np.sqrt(density)
     plan_distance = 2 * spacing if plan_distance is None else plan_distance
-    height_distance = _height_distance(sampling.noise) if height_distance is None else height_distance
+    if height_distance is None:
+        height_distance = float(np.clip(_HEIGHT_NOISE_FACTOR * sampling.noise, *_HEIGHT_DISTANCES))
     monitor.resolved(density=density, plan_distance=plan_distance, height_distance=height_distance)
 
     component = connect(xyz[used], plan_distance, height_distance, monitor)
     return number_large(placed(component, used, len(xyz), -1), min_area * density)
-
-
-def _height_distance(noise: float) -> float:
-    """Return T_Dh (m) for points with a surface noise (m)."""
-    return float(np.clip(_HEIGHT_NOISE_FACTOR * noise, _MIN_HEIGHT_DISTANCE, _MAX_HEIGHT_DISTANCE))

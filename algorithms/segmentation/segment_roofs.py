@@ -213,7 +213,9 @@ def _clusters(
 ) -> np.ndarray:
     """Return the cluster (k,), from 1, of points that are of no roof surface; 0 for low and small ones."""
     reach = DENSITY.link / np.sqrt(density)
-    return number_large(_high(connect(xyz, reach, reach, monitor), height, min_height), min_area * density)
+    component = connect(xyz, reach, reach, monitor)
+    mean = np.bincount(component, height) / np.bincount(component)
+    return number_large(np.where(mean[component] >= min_height, component, -1), min_area * density)
 
 
 @dataclass(frozen=True)
@@ -255,14 +257,6 @@ class _Patches:
         """Return the mask of points (n,) that are of patches that a mask has."""
         # Points of no patch, -1, find the last entry.
         return np.append(mask, False)[self.number]
-
-
-def _high(component: np.ndarray, height: np.ndarray, min_height: float) -> np.ndarray:
-    """Return the components, -1 for those that are lower than ``min_height`` on the mean."""
-    if not len(component):
-        return component
-    mean = np.bincount(component, height) / np.bincount(component)
-    return np.where(mean[component] >= min_height, component, -1)
 
 
 def _renumbered(patch: np.ndarray, chosen: np.ndarray) -> np.ndarray:

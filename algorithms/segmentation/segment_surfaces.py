@@ -8,7 +8,7 @@ from ..criteria import BENDS, DEVIATIONS, GAP_SPACINGS, PLANE_NEIGHBORS, SMOOTH,
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items, number_large, placed
 from ..params import POINT_DENSITY
-from ..planes.local_planes import Criteria, LocalPlanes, local_planes
+from ..planes.local_planes import Criteria, local_planes
 from ..planes.surface_growing import grow_planes, grow_surfaces
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, not_noise
 from ..stage import Monitor, stage, tunable
@@ -160,10 +160,12 @@ def segment_surfaces(
     if proximity == "edges":
         planes.neighbors = _edge_neighbors(points, radius, monitor.part(0.5, 0.6))
     is_seed = planes.deviation <= SMOOTH / DEVIATIONS * tolerance
-    criteria = Criteria(
-        tolerance if planarity != "none" else None, float(np.cos(np.radians(max_angle))) if smooth_normals else None
-    )
-    surface = _grown(planes, is_seed, criteria, planarity, tolerance, monitor.part(0.6, 1))
+    cosine = float(np.cos(np.radians(max_angle))) if smooth_normals else None
+    criteria, growing = Criteria(tolerance if planarity != "none" else None, cosine), monitor.part(0.6, 1)
+    if planarity == "global":
+        surface = grow_planes(planes, is_seed, criteria, SMOOTH / DEVIATIONS * tolerance, growing)
+    else:
+        surface = grow_surfaces(planes, is_seed, criteria, growing)
     return placed(number_large(surface, min_points), used, len(xyz))
 
 
@@ -171,15 +173,6 @@ def _noise(sampling: CloudSampling, radius: float) -> float:
     """Return the surface noise (m), less than a centimeter in scans so dense that it would blur neighborhoods."""
     most = _OF_RADIUS * radius / DEVIATIONS
     return sampling.noise if sampling.noise <= most else min(sampling.noise, max(sampling.scan_noise, most))
-
-
-def _grown(
-    planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, planarity: str, tolerance: float, monitor: Monitor
-) -> np.ndarray:
-    """Return the surface (n,) of each point, -1 for none: planes with global planarity."""
-    if planarity == "global":
-        return grow_planes(planes, is_seed, criteria, SMOOTH / DEVIATIONS * tolerance, monitor)
-    return grow_surfaces(planes, is_seed, criteria, monitor)
 
 
 def _edge_neighbors(points: np.ndarray, longest: float, monitor: Monitor) -> np.ndarray:

@@ -135,9 +135,8 @@ def segment_voxels(
     """
     used = not_noise(classification)
     if not len(used):
-        return np.zeros(len(xyz), np.int32), LayerFeatures(
-            [], {"segment_id": [], "count": [], "filtered": [], "distance": []}
-        )
+        nothing: dict[str, list] = {"segment_id": [], "count": [], "filtered": [], "distance": []}
+        return np.zeros(len(xyz), np.int32), LayerFeatures([], nothing)
     if voxel_size is None:
         density = sampling.surface_density
         if not np.isfinite(density):
