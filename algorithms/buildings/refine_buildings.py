@@ -16,7 +16,7 @@ from ..cloud.asprs import PointClass
 from ..cloud.reasons import Reason
 from ..geometry.cheapest_labels import cheapest_cut
 from ..geometry.grid import lattice, raster_cells, refuse_sparse
-from ..geometry.groups import run_starts
+from ..geometry.groups import placed, run_starts
 from ..packages import ndimage, spatial
 from ..params import POINT_DENSITY, POINT_SOURCE
 from ..rules import rule, rules
@@ -308,8 +308,7 @@ class _Scene:
 
     def of_points(self, labeled: LabeledCells, likely: np.ndarray) -> np.ndarray:
         """Return the probability (n,) of points, that (k,) of their cells; 0 where they are not raised."""
-        of_cells = np.zeros(len(labeled.cells.count))
-        of_cells[labeled.chosen] = likely
+        of_cells = placed(likely, labeled.chosen, len(labeled.cells.count))
         return np.where(self.is_raised, of_cells[labeled.cells.cell], 0.0)
 
     def changes(

@@ -6,17 +6,8 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..cloud.dimensions import DIMENSIONS
-from ..neighborhoods.covariance import (
-    Nearest,
-    Neighborhood,
-    Shapes,
-    Within,
-    defined_eigenvalues,
-    dimensionality,
-    reduce_neighborhoods,
-    shannon_entropy,
-    smallest_eigenvectors,
-)
+from ..neighborhoods import covariance
+from ..neighborhoods.covariance import Nearest, Neighborhood, Shapes, Within, reduce_neighborhoods, shannon_entropy
 from ..neighborhoods.optimal_size import Optimal
 from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, stage, tunable
@@ -30,13 +21,13 @@ class _Described:
 
     def __init__(self, shapes: Shapes) -> None:
         self.shapes = shapes
-        self.eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
+        self.eigenvalues = covariance.defined_eigenvalues(shapes.covariances, shapes.counts)
         self.defined = ~np.isnan(self.eigenvalues[:, 0])
 
     @cached_property
     def dimensionality(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Linearity, planarity and scattering."""
-        return dimensionality(self.eigenvalues)
+        return covariance.dimensionality(self.eigenvalues)
 
     @cached_property
     def eigenvalue_sum(self) -> np.ndarray:
@@ -46,7 +37,7 @@ class _Described:
     @cached_property
     def normal(self) -> np.ndarray:
         """Upward unit eigenvector (m, 3) of l3."""
-        return smallest_eigenvectors(self.shapes.covariances, self.eigenvalues)
+        return covariance.smallest_eigenvectors(self.shapes.covariances, self.eigenvalues)
 
     @cached_property
     def plan_radius(self) -> np.ndarray:
@@ -225,9 +216,7 @@ def compute_features(
         "radius": lambda: Within(radius or _automatic_radius(sampling, n_neighbors, monitor)),
         "optimal": lambda: Optimal(min_neighbors, max_neighbors, neighbors_step),
     }
-    made = {
-        name: np.empty((len(xyz), 3) if name == "normal" else len(xyz), DIMENSIONS[name].dtype) for name in features
-    }
+    made = {one: np.empty((len(xyz), 3) if one == "normal" else len(xyz), DIMENSIONS[one].dtype) for one in features}
     undefined = np.empty(len(xyz), bool)
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:

@@ -1,6 +1,6 @@
 """Vegetation: points above the ground that are neither of buildings nor of other solid objects."""
 
-from typing import NamedTuple, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -21,18 +21,12 @@ from ..stage import Monitor, stage, tunable
 _OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, *VEGETATION)
 
 
-class Heights(NamedTuple):
-    """Heights above the ground (m) from which vegetation is medium and high."""
-
-    medium: float
-    high: float
-
-
+# Heights above the ground (m) from which vegetation is medium and high.
 HEIGHTS = {
-    "2 m and 5 m": Heights(2.0, 5.0),
-    "0.5 m and 2 m": Heights(0.5, 2.0),
-    "0.5 m and 1.5 m (IGN)": Heights(0.5, 1.5),
-    "0.3 m and 2 m (ICSM)": Heights(0.3, 2.0),
+    "2 m and 5 m": (2.0, 5.0),
+    "0.5 m and 2 m": (0.5, 2.0),
+    "0.5 m and 1.5 m (IGN)": (0.5, 1.5),
+    "0.3 m and 2 m (ICSM)": (0.3, 2.0),
 }
 
 # Reach (m) of objects in a cloud that is processed in parts: half the length of a car. Of longer objects the part
@@ -155,9 +149,9 @@ def classify_vegetation(
     classes = classification.astype(np.uint8)
     if not look_for:
         return classes
-    limits = HEIGHTS[heights]
-    medium = limits.medium if medium_height is None else medium_height
-    high = limits.high if high_height is None else high_height
+    medium, high = HEIGHTS[heights]
+    medium = medium if medium_height is None else medium_height
+    high = high if high_height is None else high_height
     if high < medium:
         raise ValueError(
             f"High vegetation from (high_height) must be at least medium vegetation from ({medium:g} m), got {high:g} "
@@ -199,12 +193,10 @@ def find_solid_objects(
     low, top = least_of(height, group, len(size)), -least_of(-height, group, len(size))
     has_enough = size >= LEAST_NEIGHBORS
     candidates = np.flatnonzero((is_opaque & has_enough & (top <= _RULES.highest))[group])
-    is_smooth = _on_surfaces(xyz[candidates], sampling, monitor.part(0.6, 1))
-    smooth = np.bincount(group[candidates], is_smooth, len(size))
+    smooth = np.bincount(group[candidates], _on_surfaces(xyz[candidates], sampling, monitor.part(0.6, 1)), len(size))
     # Points of objects that are no candidates are not counted, so that these are never solid.
     is_solid = smooth >= np.maximum(MAJORITY * size, 1)
-    rise = top - low
-    is_pole = has_enough & (rise >= _RULES.slenderness * _extent(group, xyz, size))
+    is_pole = has_enough & (top - low >= _RULES.slenderness * _extent(group, xyz, size))
     return (is_solid | is_pole)[group]
 
 
@@ -230,8 +222,7 @@ def _groups(
     xyz: np.ndarray, has_passed: np.ndarray, sampling: CloudSampling, monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the object of each point (n,), the points of each object (m,), and the mask of opaque objects (m,)."""
-    gap = link_distance(sampling.spacing)
-    group = connect(xyz, gap, _RULES.step, monitor)
+    group = connect(xyz, link_distance(sampling.spacing), _RULES.step, monitor)
     size = np.bincount(group, minlength=1)
     return group, size, np.bincount(group, has_passed, len(size)) < _RULES.most_passed * size
 

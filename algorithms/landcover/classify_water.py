@@ -122,9 +122,8 @@ def classify_water(
     used = not_noise(classification)
     points = sampling.from_corner(xyz.take(used, axis=0))
     is_ground = np.isin(classification[used], (PointClass.GROUND, PointClass.WATER))
-    is_pulse = np.ones(len(used), bool)
-    if return_number is not None and return_number.any():
-        is_pulse = return_number[used] == 1
+    is_numbered = return_number is not None and return_number.any()
+    is_pulse = return_number[used] == 1 if is_numbered else np.ones(len(used), bool)
     level = water_levels(points, is_ground, is_pulse, sampling.spacing, min_area, monitor)
     is_water = np.abs(points[:, 2] - level) <= DEVIATIONS * noise
     classes[used[is_water & np.isin(classification[used], _OPEN)]] = PointClass.WATER
@@ -162,8 +161,7 @@ def water_levels(
     is_seen = (np.bincount(cell, minlength=lowest.size) > 0).reshape(lowest.shape)
     pulses = np.bincount(cell[is_pulse], minlength=lowest.size).reshape(lowest.shape).astype(float)
     is_sparse = _sparse(pulses, is_seen, size)
-    radius = int(np.ceil(_REACH / size))
-    around = ndimage.minimum_filter(lowest, 2 * radius + 1)
+    around = ndimage.minimum_filter(lowest, 2 * int(np.ceil(_REACH / size)) + 1)
     is_low = has_ground & (lowest <= around + _RULES.level)
     monitor.progress(0.6)
     body, level = _bodies(is_sparse & (is_low | ~has_ground), is_low, lowest, min_area / size**2)
@@ -208,9 +206,7 @@ def _bodies(
         if on_level is not None:
             is_water[box] |= inside
             shows_level[box] |= on_level
-    if not shows_level.any():
-        return is_water, None
-    return is_water, nearest_known(lowest, ~shows_level)
+    return is_water, nearest_known(lowest, ~shows_level) if shows_level.any() else None
 
 
 def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Optional[np.ndarray]:

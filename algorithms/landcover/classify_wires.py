@@ -4,7 +4,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
+from ..cloud.asprs import VEGETATION, PointClass
 from ..criteria import DEVIATIONS
 from ..geometry.grid import fixed_grid_over
 from ..geometry.groups import components, items, run_starts
@@ -16,20 +16,14 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling
 from ..stage import Monitor, stage, tunable
 from ..threads import in_chunks
 from .masts import on_masts
-from .wire_spans import RULES, Span, SpanSurroundings, parallels_of, spans_of
 from .wire_spans import RULES as SPAN
+from .wire_spans import Span, SpanSurroundings, parallels_of, spans_of
+
+# Classes of wires and of the masts that carry them.
+_LINES = (PointClass.WIRE_CONDUCTOR, PointClass.TRANSMISSION_TOWER)
 
 # Points of these classes may be of wires and masts.
-_OPEN = (
-    PointClass.NEVER_CLASSIFIED,
-    PointClass.UNCLASSIFIED,
-    PointClass.LOW_VEGETATION,
-    PointClass.MEDIUM_VEGETATION,
-    PointClass.HIGH_VEGETATION,
-    PointClass.WIRE_CONDUCTOR,
-    PointClass.TRANSMISSION_TOWER,
-    PointClass.HIGH_NOISE,
-)
+_OPEN = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, *VEGETATION, *_LINES, PointClass.HIGH_NOISE)
 
 # Distance (spacings) within which points show the direction of a wire: five points of a wire in a thin cloud, which has
 # one every three to four spacings.
@@ -85,7 +79,7 @@ def classify_wires(
 ):
     """Classify the wires of power lines (14), of high and low voltage, and the masts and poles at their ends (15).
 
-    A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is ``RULES.least_length`` m
+    A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is. It is ``SPAN.least_length`` m
     long at least and bent upward, with free space below and no building next to it. Spans are found by RANSAC among
     points that lie on lines. Next to each, wires of the same masts have its direction and curve. Where spans end, the
     slender upright object that reaches up to them is a mast. Clouds of matched images are left as they are: wires are
@@ -116,7 +110,7 @@ def classify_wires(
     Notes
     -----
     At 2 points per m² a wire has a point on 3 m or so, at 50 per m² several on each meter. Wires inside crowns, wires
-    closer than 0.75 m to one another at the same height, and spans seen over less than ``RULES.least_length`` m are not
+    closer than 0.75 m to one another at the same height, and spans seen over less than ``SPAN.least_length`` m are not
     found.
 
     References
@@ -142,13 +136,13 @@ def classify_wires(
     monitor.resolved(noise=noise)
     if sampling.is_closed_surface():
         return classes
-    classes[np.isin(classes, (PointClass.WIRE_CONDUCTOR, PointClass.TRANSMISSION_TOWER))] = PointClass.UNCLASSIFIED
+    classes[np.isin(classes, _LINES)] = PointClass.UNCLASSIFIED
     # In one order, whichever the file has: random choices are then the same.
     rows = np.flatnonzero(np.isin(classification, _OPEN) & (height_above_ground > 0))
     rows = rows[np.lexsort(xyz[rows].T)]
     points, height = sampling.from_corner(xyz[rows]), height_above_ground[rows]
     solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
-    around = SpanSurroundings(points, solid, max(RULES.least_off, DEVIATIONS * noise))
+    around = SpanSurroundings(points, solid, max(SPAN.least_off, DEVIATIONS * noise))
     spans = _spans(around, height >= min_height, sampling.spacing, seed, monitor)
     # Wires next to these are seen in part only, so that their ends show no masts.
     for span in (*spans, *parallels_of(spans, around)):
@@ -179,8 +173,7 @@ def over_free_space(xyz: np.ndarray, spacing: float) -> np.ndarray:
     column = fixed_grid_over(xyz, max(_RULES.least_column, _RULES.column_spacings * spacing)).number(xyz)
     order = np.lexsort((xyz[:, 2], column))
     z, column = xyz[order, 2], column[order]
-    is_first = np.ones(len(z), bool)
-    is_first[1:] = (column[1:] != column[:-1]) | (np.diff(z) > _RULES.free)
+    is_first = (np.diff(column, prepend=-1) != 0) | (np.diff(z, prepend=-np.inf) > _RULES.free)
     start = np.flatnonzero(is_first)
     thickness = z[np.append(start[1:], len(z)) - 1] - z[start]
     return np.sort(order[(thickness <= _RULES.thickest)[np.cumsum(is_first) - 1]])

@@ -66,9 +66,8 @@ def restore_classes(
     is_building = earlier_class == PointClass.BUILDING
     if cluster_id is None or not is_building.any():
         return classes, None
-    gap = link_distance(sampling.spacing)
     points = xyz[is_building]
     number = np.zeros(len(xyz), np.int32)
     # Points above one another are of one building, whatever the difference in height.
-    number[is_building] = 1 + connect(points, gap, 1 + float(np.ptp(points[:, 2])), monitor)
+    number[is_building] = 1 + connect(points, link_distance(sampling.spacing), 1 + float(np.ptp(points[:, 2])), monitor)
     return classes, number

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 import numpy as np
+from numpy.random import Generator
 
 from ..geometry.groups import members
 from ..geometry.principal_axes import principal_axes
@@ -193,12 +194,7 @@ class SpanSurroundings:
 
 
 def spans_of(
-    xyz: np.ndarray,
-    strand: np.ndarray,
-    direction: np.ndarray,
-    around: SpanSurroundings,
-    reach: float,
-    rng: np.random.Generator,
+    xyz: np.ndarray, strand: np.ndarray, direction: np.ndarray, around: SpanSurroundings, reach: float, rng: Generator
 ) -> Iterator[Span]:
     """Yield the spans among points (n, 3), m.
 
@@ -240,9 +236,7 @@ def parallels_of(spans: list[Span], around: SpanSurroundings) -> list[Span]:
     return [other for span in spans for other in around.parallels(span, is_taken)]
 
 
-def _most_points(
-    xyz: np.ndarray, direction: np.ndarray, off: float, reach: float, rng: np.random.Generator
-) -> np.ndarray:
+def _most_points(xyz: np.ndarray, direction: np.ndarray, off: float, reach: float, rng: Generator) -> np.ndarray:
     """Return the rows (k,) of the span with the most points that a few starts find; empty for none."""
     best = np.zeros(0, np.int64)
     for start in rng.choice(len(xyz), min(RULES.tries, len(xyz)), replace=False):
@@ -255,7 +249,7 @@ def _most_points(
     return best
 
 
-def _best_parabola(xyz: np.ndarray, off: float, reach: float, rng: np.random.Generator) -> Optional[np.ndarray]:
+def _best_parabola(xyz: np.ndarray, off: float, reach: float, rng: Generator) -> Optional[np.ndarray]:
     """Return the rows (k,) on the parabola through three points that has the most without a large gap, or None."""
     drawn = np.argsort(rng.random((RULES.trials, len(xyz))), axis=1)[:, :3]
     first, middle, last = (xyz[drawn[:, i]] for i in range(3))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..geometry.boxes import Boxes, Offset, around, by_first_point, connected
+from ..geometry.groups import placed
 from ..stage import Monitor
 
 # A point at the corner of a surface has a quarter of the neighbors of one in its middle.
@@ -44,23 +45,16 @@ def dbscan(xyz: np.ndarray, radius: float, min_points: int, monitor: Monitor) ->
 
     if min_points <= 1:
         # Every point is its own neighbor, so all are cores.
-        return by_first_point(_in_order(boxes, connected(boxes, is_near, monitor)[boxes.box()]))
+        return by_first_point(placed(connected(boxes, is_near, monitor)[boxes.box()], boxes.order, len(xyz)))
     is_core = _cores(boxes, is_near, min_points, monitor.part(0, 0.4))
     if is_core.any():
         cores, others = boxes.of(is_core), boxes.of(~is_core)
-        component = np.full(len(xyz), -1, np.int64)
-        component[cores.order] = connected(cores, is_near, monitor.part(0.4, 0.8))[cores.box()]
+        joined = connected(cores, is_near, monitor.part(0.4, 0.8))
+        component = placed(joined[cores.box()], cores.order, len(xyz), -1)
         core = np.sort(cores.order)
         cluster[core] = by_first_point(component[core])
         cluster[others.order] = _first_cluster(others, cores, cluster[cores.order], is_near, monitor.part(0.8, 1))
     return cluster
-
-
-def _in_order(boxes: Boxes, values: np.ndarray) -> np.ndarray:
-    """Return values (n,) of points in the order of their boxes in the order of the points."""
-    ordered = np.empty_like(values)
-    ordered[boxes.order] = values
-    return ordered
 
 
 def _cores(boxes: Boxes, is_near, min_points: int, monitor: Monitor) -> np.ndarray:

@@ -5,6 +5,7 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.grid import Grid
+from ..geometry.groups import mask_of, placed
 from ..packages import spatial
 from ..params import MIN_FREQUENCY
 from ..rules import rule, rules
@@ -12,15 +13,8 @@ from ..sampling.cloud_sampling import MEASURED, CloudSampling, with_noise
 from ..sampling.density import DENSITY
 from ..sampling.kinds import SCENE
 from ..stage import Monitor, stage, tunable
-from .height_histograms import (
-    AUTOMATIC_BIN,
-    HISTOGRAM_POINTS,
-    Histogram,
-    automatic_bin_height,
-    cells_and_levels,
-    pooled_histogram,
-    with_borrowed_ranges,
-)
+from . import height_histograms
+from .height_histograms import AUTOMATIC_BIN, HISTOGRAM_POINTS, Histogram, Ranges
 from .points_under_ground import UNDER_GROUND, under_ground
 
 
@@ -122,7 +116,7 @@ def classify_noise_histogram(
         return made
     spacing = sampling.spacing
     cell_size = float(np.sqrt(HISTOGRAM_POINTS / 9)) * spacing if cell_size is None else cell_size
-    bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
+    bin_height = height_histograms.automatic_bin_height(spacing) if bin_height is None else bin_height
     monitor.resolved(cell_size=cell_size, bin_height=bin_height)
     monitor.progress(0.2)
     beyond = _beyond_scene(points, cell_size, bin_height, min_frequency, max_clearance, monitor.part(0.2, 0.7))
@@ -145,8 +139,8 @@ def _beyond_scene(
 
     None where no bin has enough points to be the scene.
     """
-    grid, cell, level = cells_and_levels(points, cell_size, bin_height)
-    histogram = pooled_histogram(grid, cell, level)
+    grid, cell, level = height_histograms.cells_and_levels(points, cell_size, bin_height)
+    histogram = height_histograms.pooled_histogram(grid, cell, level)
     monitor.progress(0.6)
     clearance = max_clearance / bin_height
     cells, low, high = _scene_range(grid, histogram, min_frequency, clearance)
@@ -156,9 +150,7 @@ def _beyond_scene(
     return level < low[at], level > high[at], level <= high[at] + clearance
 
 
-def _scene_range(
-    grid: Grid, histogram: Histogram, min_frequency: int, max_clearance: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _scene_range(grid: Grid, histogram: Histogram, min_frequency: int, max_clearance: float) -> Ranges:
     """Return all occupied cells, ascending, and the lowest and highest level of the scene in each.
 
     ``max_clearance`` is in levels.
@@ -169,22 +161,20 @@ def _scene_range(
     is_break[start] = True
     run = np.cumsum(is_break) - 1
     first = np.flatnonzero(is_break)
-    is_full = np.zeros(len(first), bool)
-    is_full[run[histogram.count >= min_frequency]] = True
+    is_full = mask_of(len(first), run[histogram.count >= min_frequency])
     run_cell = np.searchsorted(cells, histogram.cell[first])[is_full]
     run_low = histogram.level[first][is_full]
     run_high = histogram.level[np.append(first[1:], len(run)) - 1][is_full]
 
     # All other runs must be near the one with most points.
     order = np.lexsort((np.bincount(run, histogram.count)[is_full], run_cell))
-    main = np.zeros(len(cells), np.int64)
-    main[run_cell[order]] = order
+    main = placed(order, run_cell[order], len(cells))
     clearance = np.maximum(run_low - run_high[main[run_cell]], run_low[main[run_cell]] - run_high)
     near = clearance <= max_clearance
     low, high = np.full(len(cells), np.iinfo(np.int64).max), np.full(len(cells), -1)
     np.minimum.at(low, run_cell[near], run_low[near])
     np.maximum.at(high, run_cell[near], run_high[near])
-    return with_borrowed_ranges(grid, cells, low, high, HISTOGRAM.gap)
+    return height_histograms.with_borrowed_ranges(grid, cells, low, high, HISTOGRAM.gap)
 
 
 def _in_group(points: np.ndarray, radius: float) -> np.ndarray:

@@ -8,16 +8,8 @@ from ..geometry.grid import Grid
 from ..params import MIN_FREQUENCY
 from ..sampling.cloud_sampling import MEASURED, CloudSampling, with_noise
 from ..stage import stage, tunable
-from .height_histograms import (
-    AUTOMATIC_BIN,
-    HISTOGRAM_POINTS,
-    Histogram,
-    automatic_bin_height,
-    cells_and_levels,
-    own_histogram,
-    pooled_histogram,
-    with_borrowed_ranges,
-)
+from . import height_histograms
+from .height_histograms import AUTOMATIC_BIN, HISTOGRAM_POINTS, Histogram, Ranges
 
 
 @stage(
@@ -97,10 +89,10 @@ def classify_noise_histogram_2019(
         return classes
     spacing = sampling.spacing
     cell_size = float(np.sqrt(HISTOGRAM_POINTS)) * spacing if cell_size is None else cell_size
-    bin_height = automatic_bin_height(spacing) if bin_height is None else bin_height
+    bin_height = height_histograms.automatic_bin_height(spacing) if bin_height is None else bin_height
     monitor.resolved(cell_size=cell_size, bin_height=bin_height)
 
-    grid, cell, level = cells_and_levels(points, cell_size, bin_height)
+    grid, cell, level = height_histograms.cells_and_levels(points, cell_size, bin_height)
     monitor.progress(0.3)
     cells, low, high = _bodies(grid, cell, level, min_frequency)
     if not len(cells):
@@ -111,22 +103,20 @@ def classify_noise_histogram_2019(
     return with_noise(classes, used[is_low], used[is_high], monitor)
 
 
-def _bodies(
-    grid: Grid, cell: np.ndarray, level: np.ndarray, min_frequency: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _bodies(grid: Grid, cell: np.ndarray, level: np.ndarray, min_frequency: int) -> Ranges:
     """Return all occupied cells, ascending, and the lowest and highest level of the main body in each.
 
     Without any full bin no cells are returned.
     """
-    cells, low, high = _full_range(own_histogram(cell, level), min_frequency)
+    cells, low, high = _full_range(height_histograms.own_histogram(cell, level), min_frequency)
     is_poor = high < 0
     if is_poor.any():
-        _, pooled_low, pooled_high = _full_range(pooled_histogram(grid, cell, level), min_frequency)
+        _, pooled_low, pooled_high = _full_range(height_histograms.pooled_histogram(grid, cell, level), min_frequency)
         low, high = np.where(is_poor, pooled_low, low), np.where(is_poor, pooled_high, high)
-    return with_borrowed_ranges(grid, cells, low, high)
+    return height_histograms.with_borrowed_ranges(grid, cells, low, high)
 
 
-def _full_range(histogram: Histogram, min_frequency: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _full_range(histogram: Histogram, min_frequency: int) -> Ranges:
     """Return the cells, ascending, and their lowest and highest level with ``min_frequency`` points.
 
     The highest one is -1 in cells without such a level.

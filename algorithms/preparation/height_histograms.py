@@ -10,6 +10,9 @@ from ..packages import spatial
 # Points of a histogram on average: enough that the highest and lowest meter of a scene hold some at any density.
 HISTOGRAM_POINTS = 4000
 
+# Cells, ascending, and the lowest and highest level of the scene in each.
+Ranges = tuple[np.ndarray, np.ndarray, np.ndarray]
+
 # Automatic height of the bins, for the help.
 AUTOMATIC_BIN = "twice the point spacing, at least 1 m."
 
@@ -56,9 +59,7 @@ def own_histogram(cell: np.ndarray, level: np.ndarray) -> Histogram:
     return Histogram(own // levels, own % levels, count.astype(np.int64))
 
 
-def with_borrowed_ranges(
-    grid: Grid, cells: np.ndarray, low: np.ndarray, high: np.ndarray, slack: int = 0
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def with_borrowed_ranges(grid: Grid, cells: np.ndarray, low: np.ndarray, high: np.ndarray, slack: int = 0) -> Ranges:
     """Give cells without a range the nearest cell's, ``slack`` levels wider; without any, return no cells.
 
     Parameters

@@ -122,11 +122,8 @@ def merge_clouds(xyz, point_source_id, *, transforms: str = tunable(""), monitor
     _warn_of_gaps(moved, monitor)
     number = np.repeat(np.arange(1, len(xyz) + 1), [len(part) for part in xyz])
     previous = np.concatenate(point_source_id)
-    return (
-        np.concatenate(moved) if any(wanted) else None,
-        number.astype(np.uint16),
-        previous.astype(np.uint16) if previous.any() else None,
-    )
+    whole = np.concatenate(moved) if any(wanted) else None
+    return whole, number.astype(np.uint16), previous.astype(np.uint16) if previous.any() else None
 
 
 def read_transforms(text: str, n_clouds: int) -> list[Optional[Transform]]:
@@ -221,11 +218,8 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
     moved = transform(xyz)
     middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
     shift = float(np.linalg.norm(transform(middle) - middle))
-    measures = {
-        f"rotation_of_cloud_{number}_in_degrees": transform.angle,
-        f"shift_of_the_middle_of_cloud_{number}_in_meters": shift,
-    }
-    monitor.resolved(**measures)
+    monitor.resolved(**{f"rotation_of_cloud_{number}_in_degrees": transform.angle})
+    monitor.resolved(**{f"shift_of_the_middle_of_cloud_{number}_in_meters": shift})
     farthest = np.abs(xyz).max(axis=0)
     off = float(np.linalg.norm(np.abs(transform.rotation - transform.given) @ farthest))
     if off > MILLIMETER:

@@ -57,9 +57,8 @@ def under_ground(xyz: np.ndarray, spacing: float, noise: float, monitor: Monitor
     # Points that are found hide others beneath the surface that they pull down.
     for turn in count(1):
         # Without the points found before, which were the lowest of their cells, their companions are now the lowest.
-        lowest, middle = (
-            xyz[order[start + np.minimum(rank, n_points - 1)]] for rank in (n_found, (n_found + n_points) // 2)
-        )
+        ranks = n_found, (n_found + n_points) // 2
+        lowest, middle = (xyz[order[start + np.minimum(rank, n_points - 1)]] for rank in ranks)
         lowest[n_found == n_points] = np.nan
         # Below the surface close by, below the ground around, and not next to others of the same height.
         surface.fit(grid, cells, lowest, middle, near)

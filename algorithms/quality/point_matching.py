@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..criteria import MILLIMETER
-from ..geometry.groups import placed
+from ..geometry.groups import mask_of, placed
 from ..packages import spatial
 
 
@@ -94,9 +94,7 @@ def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
 def _match_nearest(xyz: np.ndarray, reference_xyz: np.ndarray, found: np.ndarray) -> None:
     """Match in place the points that rounding has put on either side of a border."""
     left = np.flatnonzero(found < 0)
-    is_free = np.ones(len(reference_xyz), bool)
-    is_free[found[found >= 0]] = False
-    free = np.flatnonzero(is_free)
+    free = np.flatnonzero(~mask_of(len(reference_xyz), found[found >= 0]))
     if not len(left) or not len(free):
         return
     distance, nearest = spatial.cKDTree(reference_xyz[free]).query(xyz[left], distance_upper_bound=2 * MILLIMETER)

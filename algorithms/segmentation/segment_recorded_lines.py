@@ -213,8 +213,7 @@ def _with_others(
     ``row`` and ``piece`` are the points of pieces.
     """
     region = np.asarray(regions.region, np.int64)
-    segment = np.full(len(points), -1, np.int64)
-    segment[row] = region[piece]
+    segment = placed(region[piece], row, len(points), -1)
     known = segment[row] >= 0
     others = np.flatnonzero(segment < 0)
     if not known.any() or not len(others):

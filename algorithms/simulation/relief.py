@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Optional
 
 import numpy as np
+from numpy.random import Generator
 
 from .bodies import Rect
 
@@ -117,9 +118,7 @@ class Relief:
         return self.hills / (2 * len(self.waves)) * total * fade
 
 
-def make_relief(
-    size: float, slope: float, hills: float, terrace_height: float, river: bool, rng: np.random.Generator
-) -> Relief:
+def make_relief(size: float, slope: float, hills: float, terrace_height: float, river: bool, rng: Generator) -> Relief:
     """Return a random terrain.
 
     Parameters

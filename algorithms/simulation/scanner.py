@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
+from numpy.random import Generator
 
 from ..cloud.asprs import PointClass
 from ..stage import Monitor, tunable
@@ -180,9 +181,7 @@ def _strips(relief: Relief, survey: AirSurvey) -> list[_Strip]:
     return strips
 
 
-def _pulses(
-    relief: Relief, strip: _Strip, lines: np.ndarray, pattern: str, rng: np.random.Generator
-) -> tuple[Beams, np.ndarray]:
+def _pulses(relief: Relief, strip: _Strip, lines: np.ndarray, pattern: str, rng: Generator) -> tuple[Beams, np.ndarray]:
     """Return the beams of scan lines, aimed at the mean plane of the ground, and their times (s)."""
     size, per_line = relief.size, strip.per_line
     line = np.repeat(lines, per_line)
@@ -212,7 +211,7 @@ def _aimed(relief: Relief, pulse: np.ndarray, origin: np.ndarray, aim: np.ndarra
     return Beams(pulse, origin, direction / np.linalg.norm(direction, axis=1)[:, None], aim)
 
 
-def _beside(relief: Relief, beams: Beams, rng: np.random.Generator) -> Beams:
+def _beside(relief: Relief, beams: Beams, rng: Generator) -> Beams:
     """Return for each beam a ray to a random position in its footprint on the ground."""
     turn, out = rng.uniform(0.0, 2 * np.pi, len(beams)), BEAM_RADIUS * np.sqrt(rng.random(len(beams)))
     shift = np.column_stack([out * np.cos(turn), out * np.sin(turn)])
@@ -233,7 +232,7 @@ def _met(world: World, kind: str, beams: Beams, strip: _Strip) -> tuple[np.ndarr
     return in_boxes(beams.aim, near - BEAM_RADIUS, far + BEAM_RADIUS)
 
 
-def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, rng: np.random.Generator) -> Echoes:
+def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, rng: Generator) -> Echoes:
     """Return the echoes of ``pulses`` that the scanner records, by pulse, then by range."""
     beam, solid = _met(world, "solids", pulses, strip)
     ends = world.surfaces(pulses, beam, solid)
@@ -252,7 +251,7 @@ def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, 
     return echoes.take(kept & ~((echoes.classification == PointClass.WATER) & lost))
 
 
-def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.ndarray:
+def _separate(echoes: Echoes, n_pulses: int, rng: Generator) -> np.ndarray:
     """Return the mask of sorted echoes that a scanner separates until the energy of the pulse is used up."""
     pulse = echoes.pulse
     number = rank(pulse)
@@ -270,7 +269,7 @@ def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.nda
     return kept
 
 
-def _noise(n_pulses: int, n_noise: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def _noise(n_pulses: int, n_noise: int, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
     """Return the sorted indices of noise pulses and their heights (m) above ground: birds and multipath."""
     which = np.sort(rng.choice(n_pulses, n_noise, replace=False, shuffle=False))
     is_bird = rng.permutation(n_noise) % 2 == 0
@@ -291,7 +290,7 @@ def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
 
 
 def recorded(
-    echoes: Echoes, time: np.ndarray, angle: np.ndarray, source: int, rng: np.random.Generator, returns: bool = True
+    echoes: Echoes, time: np.ndarray, angle: np.ndarray, source: int, rng: Generator, returns: bool = True
 ) -> dict[str, np.ndarray]:
     """Return the dimensions of echoes, sorted by pulse, except their positions.
 
@@ -323,7 +322,7 @@ def recorded(
     }
 
 
-def _brightness(echoes: Echoes, count: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def _brightness(echoes: Echoes, count: np.ndarray, rng: Generator) -> np.ndarray:
     """Return the intensity (n,), uint16, by material; the ``count`` returns of a pulse share its energy."""
     # Each object is up to 30 % brighter or darker: steps of the golden ratio distribute object ids evenly.
     bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])

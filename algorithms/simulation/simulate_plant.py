@@ -191,8 +191,7 @@ def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarr
     for width in (2 * step, step):
         columns = int(2 * np.pi / width) + 2
         cell = (elevation / width).astype(np.int64) * columns + (around / width).astype(np.int64)
-        nearest = np.zeros((int(np.pi / width) + 2) * columns, np.float32)
-        nearest[cell] = distance
+        nearest = placed(distance, cell, (int(np.pi / width) + 2) * columns)
         # Points up to two spacings behind the first one in a beam are on the same surface.
         is_first &= distance <= nearest[cell] + 2.0 * width * distance / np.maximum(facing, 0.1)
     lit = np.flatnonzero(is_first & (facing > np.sin(np.radians(_LEAST_INCIDENCE))))

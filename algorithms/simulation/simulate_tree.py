@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
 from ..cloud.asprs import PointClass
 from ..geometry.polygons import axes_across
@@ -117,7 +118,7 @@ def simulate_tree(
     )
 
 
-def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -> list[_Limb]:
+def _grown(height: float, dbh: float, branches: int, rng: Generator) -> list[_Limb]:
     """Return the stem, its branches, and the branches of these."""
     # From the radius at breast height to the radius at the base.
     taper = 1 - (1 - _TIP) * BREAST / height
@@ -137,7 +138,7 @@ def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -
     return limbs
 
 
-def _branch(parent: _Limb, share: float, turn: float, rng: np.random.Generator) -> _Limb:
+def _branch(parent: _Limb, share: float, turn: float, rng: Generator) -> _Limb:
     """Return a branch that starts at a share of the length of its parent."""
     at = share * (len(parent.line) - 1)
     first = int(at)
@@ -153,9 +154,7 @@ def _branch(parent: _Limb, share: float, turn: float, rng: np.random.Generator) 
     return _limb(base, direction, length, radius, parent.order + 1, rng)
 
 
-def _limb(
-    base: np.ndarray, direction: np.ndarray, length: float, radius: float, order: int, rng: np.random.Generator
-) -> _Limb:
+def _limb(base: np.ndarray, direction: np.ndarray, length: float, radius: float, order: int, rng: Generator) -> _Limb:
     """Return a limb of straight pieces with directions that differ by a standard deviation of 3° per coordinate."""
     line = [base]
     for _ in range(_PIECES):
@@ -165,7 +164,7 @@ def _limb(
     return _Limb(np.array(line), np.linspace(radius, _TIP * radius, _PIECES + 1), order)
 
 
-def _bark(limb: _Limb, density: float, noise: float, rng: np.random.Generator) -> np.ndarray:
+def _bark(limb: _Limb, density: float, noise: float, rng: Generator) -> np.ndarray:
     """Sample points (n, 3) on the surface of a limb."""
     steps = np.diff(limb.line, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
@@ -192,7 +191,7 @@ def _outside(xyz: np.ndarray, limb: _Limb, limbs: list[_Limb]) -> np.ndarray:
     return xyz[kept]
 
 
-def _foliage(limbs: list[_Limb], count: int, rng: np.random.Generator) -> np.ndarray:
+def _foliage(limbs: list[_Limb], count: int, rng: Generator) -> np.ndarray:
     """Sample points (count, 3) on leaves around the outer halves of branches, with a standard deviation of 0.15 m."""
     bearing = [limb for limb in limbs if limb.order > 0]
     if not bearing:

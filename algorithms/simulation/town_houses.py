@@ -6,6 +6,7 @@ The length of a plot is parallel to the street, which is on its right side.
 from collections.abc import Callable
 
 import numpy as np
+from numpy.random import Generator
 
 from ..cloud.asprs import PointClass
 from .bodies import Body, Rect, flat, gable, hip, inclined, lean_to
@@ -29,7 +30,7 @@ class Site:
         return Body(rect, tops, self.bottom, PointClass.BUILDING, self.object_id)
 
 
-def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+def build_house(scene: Scene, plot: Rect, rng: Generator) -> None:
     """Add a house or a short row on a plot; half of the plots have a shed, too."""
     before, kinds = len(scene.buildings), list(_KINDS)
     kinds[int(rng.choice(len(kinds), p=list(_KINDS.values())))](scene, plot, rng)
@@ -37,9 +38,7 @@ def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
         _shed(scene, plot, scene.buildings[before:], rng)
 
 
-def placed(
-    plot: Rect, rng: np.random.Generator, length: tuple, width: tuple, front: float = 2.0, play: int = 1
-) -> Rect:
+def placed(plot: Rect, rng: Generator, length: tuple, width: tuple, front: float = 2.0, play: int = 1) -> Rect:
     """Return the footprint of a house on a plot.
 
     Parameters
@@ -60,15 +59,13 @@ def placed(
     return plot.part(rng.uniform(-0.5, 0.5) * play, across, long, wide, np.deg2rad(rng.uniform(-4.0, 4.0) * play))
 
 
-def _pitched(
-    scene: Scene, rect: Rect, pitches: tuple, rng: np.random.Generator, eaves: tuple = (3.0, 5.7)
-) -> tuple[Site, float]:
+def _pitched(scene: Scene, rect: Rect, pitches: tuple, rng: Generator, eaves: tuple = (3.0, 5.7)) -> tuple[Site, float]:
     """Return a site with eaves at one of some heights (m), and a random pitch (a tangent) from a range (°)."""
     eave, pitch = rng.choice(eaves), np.tan(np.deg2rad(rng.uniform(*pitches)))
     return Site(scene, rect, eave), pitch
 
 
-def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+def _gable_house(scene: Scene, plot: Rect, rng: Generator) -> None:
     rect = placed(plot, rng, (9.0, 12.0), (7.0, 9.0))
     site, pitch = _pitched(scene, rect, (28.0, 48.0), rng)
     solids = [site.solid(rect, gable(rect, site.eave, pitch)), _chimney(site, rect, pitch, rng)]
@@ -79,14 +76,14 @@ def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     scene.add_building("gable", rect.corners(), solids)
 
 
-def _hip_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+def _hip_house(scene: Scene, plot: Rect, rng: Generator) -> None:
     rect = placed(plot, rng, (9.5, 12.0), (7.5, 9.5))
     site, pitch = _pitched(scene, rect, (22.0, 38.0), rng)
     solids = [site.solid(rect, hip(rect, site.eave, pitch)), _chimney(site, rect, pitch, rng)]
     scene.add_building("hip", rect.corners(), solids)
 
 
-def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+def _flat_house(scene: Scene, plot: Rect, rng: Generator) -> None:
     rect = placed(plot, rng, (9.0, 12.5), (8.0, 10.5))
     site = Site(scene, rect, rng.choice((3.2, 6.2, 9.2)))
     lift = rect.part(0.2 * rect.length, 0.1 * rect.width, 3.0, 2.5)
@@ -94,7 +91,7 @@ def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     scene.add_building("flat", rect.corners(), solids)
 
 
-def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+def _angled_house(scene: Scene, plot: Rect, rng: Generator) -> None:
     """Add an L-shaped house: a wing whose lower ridge ends in the roof of the main house."""
     main = placed(plot, rng, (11.0, 12.5), (6.5, 7.0))
     site, pitch = _pitched(scene, main, (30.0, 45.0), rng)
@@ -121,7 +118,7 @@ def l_outline(main: Rect, size: tuple[float, float], side: float) -> np.ndarray:
     return np.array([main.at(along, across) for along, across in ring])
 
 
-def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+def _row(scene: Scene, plot: Rect, rng: Generator) -> None:
     """Add two houses with a party wall that fill the plot, so that rows on neighboring plots adjoin."""
     depth = 10.0
     for side in (-0.25, 0.25):
@@ -131,7 +128,7 @@ def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
         scene.add_building("row", rect.corners(), [site.solid(rect, tops)])
 
 
-def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: np.random.Generator) -> None:
+def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: Generator) -> None:
     """Add a shed in a back corner of the garden, if space permits."""
     rect = plot.part(rng.choice((-1, 1)) * (plot.length / 2 - 2.2), plot.width / 2 - 1.7, *rng.uniform(2.2, 3.0, 2))
     height, pitch = rng.uniform(2.0, 2.4), np.tan(np.deg2rad(rng.uniform(0.0, 15.0)))
@@ -152,7 +149,7 @@ def build_hall(scene: Scene, rect: Rect) -> None:
     scene.add_building("hall", rect.corners(), solids)
 
 
-def _chimney(site: Site, rect: Rect, pitch: float, rng: np.random.Generator) -> Body:
+def _chimney(site: Site, rect: Rect, pitch: float, rng: Generator) -> Body:
     ridge = site.eave + pitch * rect.width / 2
     stack = rect.part(rng.uniform(-0.12, 0.12) * rect.length, rng.uniform(-1.0, 1.0), 0.7, 0.7)
     return site.solid(stack, flat(stack, ridge + 0.8))
@@ -167,7 +164,7 @@ def _dormer(site: Site, rect: Rect, pitch: float, along: float, side: int) -> Bo
 
 
 # Builders of houses, with the share of the plots that each is for.
-_KINDS: dict[Callable[[Scene, Rect, np.random.Generator], None], float] = {
+_KINDS: dict[Callable[[Scene, Rect, Generator], None], float] = {
     _gable_house: 0.28,
     _hip_house: 0.16,
     _flat_house: 0.14,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.grid import refuse_sparse
-from ..geometry.groups import components
+from ..geometry.groups import components, placed
 from ..packages import ndimage
 from ..rules import rule, rules
 from ..stage import stage, tunable
@@ -152,8 +152,7 @@ class _Particles:
         # Of two equally near ones the lower.
         order = np.lexsort((points[:, 2], off, number))
         held, first = np.unique(number[order], return_index=True)
-        floor = np.full(self.rows * self.columns, np.nan)
-        floor[held] = -points[order[first], 2]
+        floor = placed(-points[order[first], 2], held, self.rows * self.columns, np.nan)
         return _filled(floor.reshape(self.rows, self.columns))
 
     def at(self, points: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -184,8 +183,7 @@ def _filled(floor: np.ndarray) -> np.ndarray:
         for hop in hops:
             row, column = (missing + hop).T
             inside = (row >= 0) & (row < floor.shape[0]) & (column >= 0) & (column < floor.shape[1])
-            found = np.full(len(missing), np.nan)
-            found[inside] = floor[row[inside], column[inside]]
+            found = placed(floor[row[inside], column[inside]], inside, len(missing), np.nan)
             filled[tuple(missing[~np.isnan(found)].T)] = found[~np.isnan(found)]
             missing = missing[np.isnan(found)]
     return filled

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import EIGHT, raster_cells, refuse_sparse
+from ..geometry.groups import mask_of
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..params import POINT_SOURCE
@@ -315,16 +316,14 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     row, column = raster_cells(xyz, size, radius + 1)
     lowest = np.full((row.max() + radius + 2, column.max() + radius + 2), np.inf)
     np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
-    has_ground, is_occupied = np.isfinite(lowest), np.zeros(lowest.shape, bool)
-    is_occupied[row, column] = True
+    has_ground, is_occupied = np.isfinite(lowest), mask_of(lowest.shape, (row, column))
     is_far = ndimage.distance_transform_edt(~has_ground) > radius
     opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
     # On a slope a point may lie higher than the lowest one of its cell, but not higher than the lowest one of the next
     # cell uphill.
     highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
     is_above = is_ground & (xyz[:, 2] > highest[row, column] + LASER.foot)
-    above = np.zeros(lowest.shape, bool)
-    above[row[is_above], column[is_above]] = True
+    above = mask_of(lowest.shape, (row[is_above], column[is_above]))
     return is_above & _of_objects(above, is_occupied & ~has_ground, size)[row, column]
 
 
