@@ -105,14 +105,12 @@ def lean_to(rect: Rect, low: float, pitch: float) -> np.ndarray:
 
 def gable(rect: Rect, eave: float, pitch: float) -> np.ndarray:
     """Return the planes of a gable roof with the ridge along the length, ``pitch`` as a tangent."""
-    half = rect.width / 2
-    return np.array([inclined(rect, 0.0, side * half, eave, 0.0, -side * pitch) for side in (-1, 1)])
+    return np.array([inclined(rect, 0.0, side * rect.width / 2, eave, 0.0, -side * pitch) for side in (-1, 1)])
 
 
 def hip(rect: Rect, eave: float, pitch: float) -> np.ndarray:
     """Return the planes of a hip roof with the same pitch (a tangent) on all sides."""
-    half = rect.length / 2
-    ends = [inclined(rect, side * half, 0.0, eave, -side * pitch, 0.0) for side in (-1, 1)]
+    ends = [inclined(rect, side * rect.length / 2, 0.0, eave, -side * pitch, 0.0) for side in (-1, 1)]
     return np.concatenate([gable(rect, eave, pitch), ends])
 
 

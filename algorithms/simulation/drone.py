@@ -1,8 +1,7 @@
 """A drone with two line scanners: its flight, its beams and their first echoes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -36,15 +35,11 @@ _PERIODS = (3.1, 5.3, 11.7)
 # Dimensions of points by name.
 Dimensions = dict[str, np.ndarray]
 
+# Returns the beams of a scanner at times (n,) (s), at a line rate (1/s), and the left axes (n, 3) of its platform.
+Pulses = Callable[[int, np.ndarray, float], tuple[Beams, np.ndarray]]
+
 # Pulses that are scanned together: point source id of the scanner, times (n,) (s), source of random numbers.
 Block = tuple[int, np.ndarray, np.random.Generator]
-
-
-class Platform(Protocol):
-    """A moving platform with scanners."""
-
-    def pulses(self, scanner: int, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-        """Return the beams of a scanner at times (n,) (s), and the left axes (n, 3) of the platform."""
 
 
 @dataclass(frozen=True)
@@ -66,11 +61,11 @@ class LineScan:
         for line in range(0, n_lines, step):
             yield (np.arange(line, min(line + step, n_lines))[:, None] + pulses).ravel() / self.line_rate
 
-    def scanned(self, scene: Scene, platform: Platform, blocks: Sequence[Block], monitor: Monitor) -> Dimensions:
+    def scanned(self, scene: Scene, pulses: Pulses, blocks: Sequence[Block], monitor: Monitor) -> Dimensions:
         """Return the dimensions of the points by name, sorted by time, of a scene scanned from a platform."""
         world, parts = DroneWorld(scene, self.max_range), []
         for i, (scanner, time, rng) in enumerate(blocks):
-            beams, left = platform.pulses(scanner, time, self.line_rate)
+            beams, left = pulses(scanner, time, self.line_rate)
             echoes = first_met(world, beams, rng)
             nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))
             angle = np.where(dot(echoes.direction, left[echoes.pulse]) > 0, -nadir, nadir)
@@ -125,7 +120,7 @@ class Flight:
         times = list(scan.times(int(self.duration * scan.line_rate), pulses, 1.0))
         rngs = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
         blocks = [(SCANNERS[name], time, rngs[name]) for name in scanners for time in times]
-        return scan.scanned(scene, self, blocks, monitor)
+        return scan.scanned(scene, self.pulses, blocks, monitor)
 
     def pulses(self, scanner: int, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
         """Return the beams of a scanner at times (n,) (s), and the left axes (n, 3) of the drone."""
@@ -169,14 +164,12 @@ class DroneWorld(World):
     def ground(self, beams: Beams) -> np.ndarray:
         """Return the ranges (n,) (m) at which beams meet the ground, twice the reach for those that do not."""
         x, y, z = beams.origin.T
-        clearance = z - self.relief.plane(x, y)
+        height = z - self.relief.plane(x, y)
         east, north = self.relief.plane_gradient
         x, y, z = beams.direction.T
         sinking = east * x + north * y - z
         # Level and rising beams never meet the ground; a range out of reach excludes them.
-        return np.where(
-            sinking * self.reach > clearance, clearance / np.where(sinking > 0, sinking, 1.0), 2 * self.reach
-        )
+        return np.where(sinking * self.reach > height, height / np.where(sinking > 0, sinking, 1.0), 2 * self.reach)
 
     def met(self, kind: str, beams: Beams) -> tuple[np.ndarray, np.ndarray]:
         """Return the candidate pairs (beam, object): beams toward the sphere around the object's bounding box."""

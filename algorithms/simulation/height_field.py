@@ -71,13 +71,11 @@ def smooth_noise(shape: tuple[int, int], wavelength: float, rng: np.random.Gener
     return ndimage.map_coordinates(smooth, np.meshgrid(rows, columns, indexing="ij"), order=1)
 
 
-def _window(
-    field: HeightField, low: np.ndarray, high: np.ndarray
-) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
-    """Return the cells between two positions (m), and the easting and northing of their centers."""
+def _window(field: HeightField, corners: np.ndarray) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
+    """Return the cells in the box around corners (k, 2), m, and the easting and northing of their centers."""
     shape = field.top.shape
-    first = np.clip(np.floor(low / CELL).astype(int), 0, [shape[1], shape[0]])
-    last = np.clip(np.ceil(high / CELL).astype(int), 0, [shape[1], shape[0]])
+    first = np.clip(np.floor(corners.min(axis=0) / CELL).astype(int), 0, [shape[1], shape[0]])
+    last = np.clip(np.ceil(corners.max(axis=0) / CELL).astype(int), 0, [shape[1], shape[0]])
     x, y = np.meshgrid(*((np.arange(a, b) + 0.5) * CELL for a, b in zip(first, last)))
     return (slice(first[1], last[1]), slice(first[0], last[0])), x, y
 
@@ -89,8 +87,7 @@ def _raise_cells(field: HeightField, where: tuple, higher: np.ndarray, z: np.nda
 
 
 def _add_solid(field: HeightField, solid: Body) -> None:
-    corners = solid.rect.corners()
-    where, x, y = _window(field, corners.min(axis=0), corners.max(axis=0))
+    where, x, y = _window(field, solid.rect.corners())
     z = solid.top(x, y)
     higher = solid.rect.contains(x, y) & (z > field.top[where])
     _raise_cells(field, where, higher, z, solid.classification, solid.object_id)
@@ -99,7 +96,7 @@ def _add_solid(field: HeightField, solid: Body) -> None:
 def _add_crown(field: HeightField, crown: tuple, lumps: np.ndarray) -> None:
     x0, y0, z0, radius, half, _, number = crown
     reach = 1.2 * radius
-    where, x, y = _window(field, np.array([x0 - reach, y0 - reach]), np.array([x0 + reach, y0 + reach]))
+    where, x, y = _window(field, np.array([(x0 - reach, y0 - reach), (x0 + reach, y0 + reach)]))
     # Lumps of small crowns are smaller.
     lump = lumps[where] * min(1.0, radius / 1.5)
     inside = 1 - np.hypot(x - x0, y - y0) ** 2 / (radius + 0.4 * lump) ** 2

@@ -135,8 +135,7 @@ def make_relief(size: float, slope: float, hills: float, terrace_height: float, 
     angle = float(np.deg2rad(rng.uniform(10.0, 35.0)))
     length = rng.uniform(80.0, 160.0, 4)
     direction = rng.uniform(0.0, np.pi, 4)
-    phase = rng.uniform(0.0, 2 * np.pi, 4)
-    waves = np.stack([np.cos(direction), np.sin(direction), np.zeros(4)], axis=1) * (2 * np.pi / length)[:, None]
-    waves[:, 2] = phase
+    number = 2 * np.pi / length
+    waves = np.column_stack([np.cos(direction) * number, np.sin(direction) * number, rng.uniform(0.0, 2 * np.pi, 4)])
     axis = float(rng.uniform(-0.3, -0.2) * size)
     return Relief(size, angle, float(np.tan(np.deg2rad(slope))), hills, terrace_height, axis if river else None, waves)

@@ -176,8 +176,7 @@ def _strips(relief: Relief, survey: AirSurvey) -> list[_Strip]:
     strips = []
     for number, (y, low, high) in enumerate(swaths, start=1):
         per_line = max(1, round((high - low) / np.sqrt(cell)))
-        n_lines = round(relief.size * (high - low) / cell / per_line)
-        strips.append(_Strip(number, y, low, high, n_lines, per_line))
+        strips.append(_Strip(number, y, low, high, round(relief.size * (high - low) / cell / per_line), per_line))
     return strips
 
 
@@ -327,5 +326,4 @@ def _brightness(echoes: Echoes, count: np.ndarray, rng: Generator) -> np.ndarray
     # Each object is up to 30 % brighter or darker: steps of the golden ratio distribute object ids evenly.
     bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
     # A perfect reflector has 60,000, so that the brightest roofs stay below 65,535; the speckle is 8 %.
-    intensity = 60_000 * bright / count * (1 + 0.08 * rng.standard_normal(len(echoes)))
-    return np.clip(intensity, 1, 65_535).astype(np.uint16)
+    return np.clip(60_000 * bright / count * (1 + 0.08 * rng.standard_normal(len(echoes))), 1, 65_535).astype(np.uint16)

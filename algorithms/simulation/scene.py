@@ -77,8 +77,8 @@ class Scene:
 
     def add_building(self, kind: str, outline: np.ndarray, solids: list[Body]) -> None:
         """Add a building of ``solids``, the first of which has its id; ``outline`` (m, 2) is open."""
-        building = Building(solids[0].object_id, kind, np.concatenate([outline, outline[:1]]), tuple(solids))
-        self.buildings.append(building)
+        ring = np.concatenate([outline, outline[:1]])
+        self.buildings.append(Building(solids[0].object_id, kind, ring, tuple(solids)))
         self.solids.extend(solids)
 
     def near_building(self, positions: np.ndarray, margin: float) -> np.ndarray:

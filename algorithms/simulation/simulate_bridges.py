@@ -3,7 +3,7 @@
 from ..cloud.asprs import PointClass
 from ..params import SEED
 from ..stage import Field, Layer, LayerFeatures, stage, tunable
-from .bridge_site import KINDS, Deck, build_site, land
+from .bridge_site import KINDS, build_site, land
 from .scanner import PULSE_DENSITY, RANGE_NOISE, RECORDED, AirSurvey, refuse_large, scan
 
 _ALL = "all"
@@ -91,10 +91,7 @@ def simulate_bridges(
     x, y, z = made["xyz"].T
     lies_on_land = land(scene, x, y) >= z - _ON_LAND
     made["classification"][(made["classification"] == PointClass.BRIDGE_DECK) & lies_on_land] = PointClass.GROUND
-    return (*(made[name] for name in RECORDED), _layer(decks))
-
-
-def _layer(decks: list[Deck]) -> LayerFeatures:
     rows = [(deck.object_id, deck.kind, deck.angle, deck.rect.width, deck.rect.length) for deck in decks]
     columns = {field.name: [row[i] for row in rows] for i, field in enumerate(_DECK_FIELDS)}
-    return LayerFeatures([[deck.rect.corners()[[0, 1, 2, 3, 0]]] for deck in decks], columns)
+    outlines = [[deck.rect.corners()[[0, 1, 2, 3, 0]]] for deck in decks]
+    return (*(made[name] for name in RECORDED), LayerFeatures(outlines, columns))

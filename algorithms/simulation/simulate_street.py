@@ -186,7 +186,7 @@ class Drive:
         # The vehicle drives at most a meter during a block.
         drawn = itertools.product(PLANES, list(scan.times(n_lines, np.arange(per_turn) / per_turn, 1.0 / self.speed)))
         blocks = [(number, time, np.random.default_rng([scan.seed, 5, i])) for i, (number, time) in enumerate(drawn)]
-        return scan.scanned(scene, self, blocks, monitor)
+        return scan.scanned(scene, self.pulses, blocks, monitor)
 
     def pulses(self, scanner: int, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
         """Return the beams of a scanner at times (n,) (s), and the left axes (n, 3) of the vehicle."""

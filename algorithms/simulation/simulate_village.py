@@ -2,7 +2,6 @@
 
 import itertools
 from collections.abc import Iterator
-from typing import Optional
 
 import numpy as np
 
@@ -230,9 +229,7 @@ def _old_map(village: Village, shift: float, noise: float, changes: float, rng: 
     return LayerFeatures.numbered(list(zip(closed, facts)), _MAP_FIELDS)
 
 
-def photograph(
-    scene: Scene, *, density: float, oblique: float, seed: int, monitor: Optional[Monitor] = None
-) -> tuple[np.ndarray, Echoes]:
+def photograph(scene: Scene, density: float, oblique: float, seed: int, monitor: Monitor) -> tuple[np.ndarray, Echoes]:
     """Return the points that a vertical view and four oblique views see of a scene.
 
     Parameters
@@ -245,7 +242,7 @@ def photograph(
         Angle of the oblique views to the vertical, degrees.
     seed : int
         The same seed gives the same points.
-    monitor : Monitor, optional
+    monitor : Monitor
         Receives progress.
 
     Returns
@@ -255,7 +252,6 @@ def photograph(
     seen : Echoes
         Class and object of each point, in the same order.
     """
-    monitor = monitor or Monitor()
     rng = np.random.default_rng([seed, 3])
     world = World(scene)
     directions = [(0.0, 0.0), *((np.deg2rad(oblique), scene.relief.angle + k * np.pi / 2) for k in range(4))]

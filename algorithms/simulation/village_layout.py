@@ -132,10 +132,8 @@ def _shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -
     rect = plot.part(float(along), across, long, wide, np.deg2rad(rng.uniform(-6.0, 6.0)))
     home, over = Home(scene, rect, 2.75), overhang / 2
     walls = lean_to(rect, home.eave, float(np.tan(np.deg2rad(rng.uniform(2.0, 9.0)))))
-    top = walls[0]
-    slab = home.slab(rect.part(0.0, 0.0, long + 2 * over, wide + 2 * over), walls, top - [0.0, 0.0, _THICKNESS])
-    solids = [home.solid(rect, walls - [0.0, 0.0, _THICKNESS / 2]), slab]
-    scene.add_building("shed", rect.corners(), solids)
+    slab = home.slab(rect.part(0.0, 0.0, long + 2 * over, wide + 2 * over), walls, walls[0] - [0.0, 0.0, _THICKNESS])
+    scene.add_building("shed", rect.corners(), [home.solid(rect, walls - [0.0, 0.0, _THICKNESS / 2]), slab])
     return home.roof_id
 
 

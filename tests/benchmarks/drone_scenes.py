@@ -183,7 +183,7 @@ def matched(scene: Scene, density: float, matching: Matching, holes: dict[int, f
         ``xyz`` (n, 3) and ``classification`` (n,), all 0.
     """
     rng = np.random.default_rng([seed, 9])
-    xyz, seen = photograph(scene, density=density, oblique=28.0, seed=seed)
+    xyz, seen = photograph(scene, density=density, oblique=28.0, seed=seed, monitor=Monitor())
     number = seen.object_id
     top, cell = _surface(xyz)
     is_side = (seen.classification == PointClass.BUILDING) & (xyz[:, 2] < top[cell] - _BELOW)

@@ -29,7 +29,7 @@ def small(**tunables) -> dict:
 def exact():
     """A village without trees or bushes, and what the camera sees of it before any noise."""
     made = build_village(150.0, 5.0, buildings=15.0, trees=0.0, overhang=OVERHANG, clutter=False, seed=3)
-    return made, *photograph(made.scene, density=25.0, oblique=28.0, seed=3)
+    return made, *photograph(made.scene, density=25.0, oblique=28.0, seed=3, monitor=Monitor())
 
 
 def distance(ring, xy):
