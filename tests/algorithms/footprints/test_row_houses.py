@@ -319,7 +319,7 @@ def test_what_a_wall_pays(depth, seen, low, share):
     view = rows._View(0.3, 0.25, None, None, None, *rows._evidence(roof, np.ones(roof.shape), 0.25, 1.0))
     inside = np.ones(roof.shape, bool)
     runs = rows._Runs.of(inside)
-    pays = view._pays(runs, *view._sums(runs, inside))[40] / 10_000
+    pays = view._pays(*view._sums(runs, inside))[40] / 10_000
     # A step four times as high as the least one is seen by three quarters; ends blur over a meter.
     expected = 0.75 * share - 0.3 * rows.ROWS.wall if share else 0
     assert pays == pytest.approx(min(expected, rows.ROWS.row), rel=0.15) if share else pays < -1
