@@ -1,22 +1,8 @@
-"""The composites that run in tiles, as users meet them."""
+"""The composites that run in tiles, as users meet them.
 
-from dataclasses import dataclass
-from typing import Optional
-
-from ..help import listed, output_text, paragraphs, pipeline_help, written_by
-from ..packages import ESSENTIAL
-from ..pipeline import REPORT, Output, Pipeline
-from ..pipelines import PIPELINES
-from ..stage import Layer, Raster, TextFile
-from .settings import CUT_SETTINGS, SETTINGS, Setting
-from .tiled_run import TilesOptions
-from .tiled_steps import afterwards, of_survey, why_whole
-
-# What the help says of every composite in tiles.
-_DESCRIPTION = f"""
 For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
 size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
-them. A file of more than {TilesOptions.largest_file / 1e6:g} million points becomes tiles of the size of a block. The
+them. A file of more than ``MILLIONS`` million points becomes tiles of the size of a block. The
 layers are as of the whole survey, without seams and duplicates.
 
 The work is done in blocks of a lattice that starts at the origin of the coordinates, each with the points around it as
@@ -34,6 +20,22 @@ end; the tiles that they touch are missing then, all others are written.
 The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must
 see the same folders under the same paths; they receive the program from QGIS, and need numpy, scipy, laspy and lazrs.
 """
+
+from dataclasses import dataclass
+from typing import Optional
+
+from ..help import listed, output_text, paragraphs, pipeline_help, written_by
+from ..packages import ESSENTIAL
+from ..pipeline import REPORT, Output, Pipeline
+from ..pipelines import PIPELINES
+from ..stage import Layer, Raster, TextFile
+from ..stage.docstrings import description, with_values
+from .settings import CUT_SETTINGS, SETTINGS, Setting
+from .tiled_run import TilesOptions
+from .tiled_steps import afterwards, of_survey, why_whole
+
+# What the help says of every composite in tiles: the docstring of this module.
+_DESCRIPTION = description(with_values(__doc__ or "", {"MILLIONS": TilesOptions.largest_file / 1e6}))
 
 
 @dataclass(frozen=True)
