@@ -28,14 +28,15 @@ from ..help import listed, output_text, paragraphs, pipeline_help, written_by
 from ..packages import ESSENTIAL
 from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
-from ..stage import Layer, Raster, TextFile
-from ..stage.docstrings import description, with_values
+from ..stage import Layer, Raster, TextFile, docstrings
 from .settings import CUT_SETTINGS, SETTINGS, Setting
 from .tiled_run import TilesOptions
 from .tiled_steps import afterwards, of_survey, why_whole
 
 # What the help says of every composite in tiles: the docstring of this module.
-_DESCRIPTION = description(with_values(__doc__ or "", {"MILLIONS": TilesOptions.largest_file / 1e6}))
+_DESCRIPTION = docstrings.description(
+    docstrings.with_values(__doc__ or "", {"MILLIONS": TilesOptions.largest_file / 1e6})
+)
 
 
 @dataclass(frozen=True)
@@ -89,37 +90,24 @@ class TiledPipeline:
         return next((one for one in self.pipeline.outputs if one.step in steps and one.of == REPORT), None)
 
 
-@dataclass(frozen=True)
-class SurveyTool:
-    """Work on the files of a survey that runs no stage."""
+class _CutIntoTiles:
+    """Cut point clouds of any size into square tiles.
 
-    name: str
-    title: str
-    tags: str
-    summary: str
-    description: str
-    group: str = "Preparation"
-    needed_packages: tuple[str, ...] = ESSENTIAL
+    The tiles are the cells of a lattice that starts at the origin of the coordinates; each is named by its lower
+    left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a
+    lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that
+    memory does not grow with them; on the disk the points lie once uncompressed next to the tiles while they are
+    made. A virtual point cloud over all tiles is written with them.
+    """
 
-    @property
-    def id(self) -> str:
-        """Processing id, ``cutintotiles``: frozen, saved models depend on it."""
-        return self.name.replace("_", "")
+    id = "cutintotiles"  #: Of Processing, frozen: saved models depend on it
+    title, group = "Cut into tiles", "Preparation"
+    tags = "las,laz,copc,pdal,tile,tiles,split,grid,folder,survey,large,retile,lastile"
+    summary, description = docstrings.summary(__doc__ or ""), docstrings.description(__doc__ or "")
+    needed_packages = ESSENTIAL
 
 
-CUT_INTO_TILES = SurveyTool(
-    name="cut_into_tiles",
-    title="Cut into tiles",
-    tags="las,laz,copc,pdal,tile,tiles,split,grid,folder,survey,large,retile,lastile",
-    summary="Cut point clouds of any size into square tiles.",
-    description=(
-        "The tiles are the cells of a lattice that starts at the origin of the coordinates; each is named by its lower "
-        "left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a "
-        "lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that "
-        "memory does not grow with them; on the disk the points lie once uncompressed next to the tiles while they are "
-        "made. A virtual point cloud over all tiles is written with them."
-    ),
-)
+CUT_INTO_TILES = _CutIntoTiles()
 
 
 def settings_help(settings: dict[str, Setting]) -> str:
@@ -127,9 +115,10 @@ def settings_help(settings: dict[str, Setting]) -> str:
     return f"<h3>Parameters: Survey</h3>\n{listed(setting.text() for setting in settings.values())}"
 
 
-def survey_tool_help(tool: SurveyTool) -> str:
-    """Return the help of a tool, as HTML that QGIS's help pane shows."""
-    return "\n".join([paragraphs(tool.summary), paragraphs(tool.description), settings_help(CUT_SETTINGS)])
+def cut_help() -> str:
+    """Return the help of the tool that cuts, as HTML that QGIS's help pane shows."""
+    told = paragraphs(CUT_INTO_TILES.summary), paragraphs(CUT_INTO_TILES.description)
+    return "\n".join([*told, settings_help(CUT_SETTINGS)])
 
 
 TILED_PIPELINES = {
