@@ -54,8 +54,7 @@ nearest_points
 
 from typing import Any, NamedTuple
 
-from .stage import tunable
-from .stage.docstrings import TUNABLES, described
+from .stage import TUNABLES, described, tunable
 
 _HELP = described(__doc__ or "", TUNABLES)
 

@@ -154,7 +154,9 @@ class CheckedAlgorithm:
             self._made = make_in_main_thread(self.systems())
         return super().prepareAlgorithm(self.completed(parameters), context, feedback)  # type: ignore[misc]
 
-    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
+    def postProcessAlgorithm(  # noqa: N802
+        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
         """Make the CRS of results last."""
         renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
         return {}

@@ -37,7 +37,7 @@ SIDE
 import html
 from dataclasses import dataclass
 
-from ..stage.docstrings import ARGUMENTS, described
+from ..stage import ARGUMENTS, described
 
 _HELP = described(__doc__ or "", ARGUMENTS)
 

@@ -28,15 +28,15 @@ from ..help import listed, output_text, paragraphs, pipeline_help, written_by
 from ..packages import ESSENTIAL
 from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
-from ..stage import Layer, Raster, TextFile, docstrings
+from ..stage import Layer, Raster, TextFile, with_values
+from ..stage import description as description_of
+from ..stage import summary as summary_of
 from .settings import CUT_SETTINGS, SETTINGS, Setting
 from .tiled_run import TilesOptions
 from .tiled_steps import afterwards, of_survey, why_whole
 
 # What the help says of every composite in tiles: the docstring of this module.
-_DESCRIPTION = docstrings.description(
-    docstrings.with_values(__doc__ or "", {"MILLIONS": TilesOptions.largest_file / 1e6})
-)
+_DESCRIPTION = description_of(with_values(__doc__ or "", {"MILLIONS": TilesOptions.largest_file / 1e6}))
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class _CutIntoTiles:
     id = "cutintotiles"  #: Of Processing, frozen: saved models depend on it
     title, group = "Cut into tiles", "Preparation"
     tags = "las,laz,copc,pdal,tile,tiles,split,grid,folder,survey,large,retile,lastile"
-    summary, description = docstrings.summary(__doc__ or ""), docstrings.description(__doc__ or "")
+    summary, description = summary_of(__doc__ or ""), description_of(__doc__ or "")
     needed_packages = ESSENTIAL
 
 
