@@ -81,9 +81,7 @@ class Ept:
     def file(self, folder: str, key: str, extension: str) -> Path:
         """Return a file of the octree."""
         name = f"{folder}/{key}.{extension}"
-        if is_on_web(self.path):
-            return cast(Path, cast(WebFile, self.path).beside(name))
-        return self.path.parent / name
+        return cast(Path, cast(WebFile, self.path).beside(name)) if is_on_web(self.path) else self.path.parent / name
 
     def data(self, key: str) -> Path:
         """Return the file of a node."""

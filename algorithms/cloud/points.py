@@ -288,10 +288,7 @@ def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -
     """
     if not may_hold(header, box):
         return
-    if has_octree(path, header):
-        yield from _indexed(path, header, box, monitor)
-    else:
-        yield from read_chunks(path, header, monitor)
+    yield from _indexed(path, header, box, monitor) if has_octree(path, header) else read_chunks(path, header, monitor)
 
 
 def may_hold(header: Header, box: np.ndarray) -> bool:

@@ -49,8 +49,7 @@ def ordered(key: np.ndarray, *ties: np.ndarray) -> np.ndarray:
     """
     order = np.argsort(key)
     in_order = key[order]
-    same = np.zeros(len(key), bool)
-    same[1:] = in_order[1:] == in_order[:-1]
+    same = np.append(False, in_order[1:] == in_order[:-1])[: len(key)]
     tied = np.flatnonzero(same | np.append(same[1:], False)[: len(key)])
     rows = order[tied]
     order[tied] = rows[np.lexsort((*(values[rows] for values in ties[::-1]), key[rows]))]

@@ -42,17 +42,15 @@ def _octagon(surface: np.ndarray, radius: int, extreme: np.ufunc, outside: float
     straight = radius - 2 * diagonal
     if straight:
         for down, right in ((1, 0), (0, 1)):
-            surface = _along_lines(surface, straight, down, right, extreme, outside)
+            surface = _along(surface, straight, down, right, extreme, outside)
     if diagonal:
         # Rising diagonals fall in the mirror image.
-        surface = _along_lines(surface[:, ::-1], diagonal, 1, 1, extreme, outside)[:, ::-1]
-        surface = _along_lines(surface, diagonal, 1, 1, extreme, outside)
+        surface = _along(surface[:, ::-1], diagonal, 1, 1, extreme, outside)[:, ::-1]
+        surface = _along(surface, diagonal, 1, 1, extreme, outside)
     return surface
 
 
-def _along_lines(
-    surface: np.ndarray, half: int, down: int, right: int, extreme: np.ufunc, outside: float
-) -> np.ndarray:
+def _along(surface: np.ndarray, half: int, down: int, right: int, extreme: np.ufunc, outside: float) -> np.ndarray:
     """Run minima or maxima over a line of ``half`` cells to both sides, a step of which is ``down`` and ``right``."""
     rows, columns = surface.shape
     found = np.full((rows + 2 * half * down, columns + 2 * half * right), outside)

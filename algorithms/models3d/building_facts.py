@@ -68,10 +68,9 @@ BUILDING_FIELDS = (
     Field(
         "check",
         int,
-        f"2: a level under 2.2 and under the one asked for, or over {CHECKS.poor:.0%} of the roof points off. "
-        f"1: over {CHECKS.doubtful:.0%} off, or "
-        f"points on less than {CHECKS.covered:.0%} of the area, or less than {MAJORITY:.0%} of the points of a "
-        "large face on it. 0: sound",
+        f"2: a level under 2.2 and under the one asked for, or over {CHECKS.poor:.0%} of the roof points off. 1: over "
+        f"{CHECKS.doubtful:.0%} off, or points on less than {CHECKS.covered:.0%} of the area, or less than "
+        f"{MAJORITY:.0%} of the points of a large face on it. 0: sound",
     ),
     Field("confidence", float, f"confidence in the model: explained times covered, less {_IF_WEAK}, 0 to 1"),
     Field("points", int, "points over its footprint"),

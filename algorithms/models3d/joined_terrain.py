@@ -169,15 +169,13 @@ def _along(plan: np.ndarray, pieces: np.ndarray) -> np.ndarray:
     return (1 - share) * start[piece] + share * end[piece]
 
 
-def _patch(
-    nodes: np.ndarray, pieces: np.ndarray, points: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _patch(nodes: np.ndarray, pieces: np.ndarray, seen: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the nodes of a patch with those that joined, and its triangles (f, 3), counterclockwise.
 
-    ``pieces`` (m, 2) are nodes between which there is an edge; points (k, 3), m, are seen of the terrain.
+    ``pieces`` (m, 2) are nodes between which there is an edge; points ``seen`` (k, 3), m, are of the terrain.
     """
     # At the end of the cloud the sides of the patch have no height, and the triangles end with the points.
-    both = np.concatenate([nodes, points])
+    both = np.concatenate([nodes, seen])
     if len(both) < 3 or np.linalg.matrix_rank(both[:, :2] - both[0, :2], _SAME) < 2:
         return nodes, np.zeros((0, 3), np.int64)
     rim = spatial.ConvexHull(both[:, :2]).vertices
@@ -185,7 +183,7 @@ def _patch(
     for _ in range(_ROUNDS):
         mesh = spatial.Delaunay(nodes[:, :2])
         new, pieces = _divided(nodes, pieces, mesh.simplices)
-        joining = np.concatenate([new, _worst(mesh, nodes, points, tolerance)])
+        joining = np.concatenate([new, _worst(mesh, nodes, seen, tolerance)])
         nodes = np.concatenate([nodes, joining])
         if not len(joining):
             break

@@ -228,9 +228,8 @@ class _Mending:
             for number in sorted(np.flatnonzero(is_small).tolist(), key=lambda number: (area[number], number)):
                 cells = np.flatnonzero(part == number)
                 corners = np.unique(np.concatenate([self.loops[cell] for cell in cells]))
-                planes = self._neighbors(cells)
-                low = [one for one in planes if not self._is_high(corners, self.partition.coefficients[one])]
-                is_changed |= self._take(cells, low)
+                low = (k for k in self._neighbors(cells) if not self._is_high(corners, self.partition.coefficients[k]))
+                is_changed |= self._take(cells, list(low))
             if not is_changed:
                 return
 

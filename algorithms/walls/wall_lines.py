@@ -211,14 +211,12 @@ def _best_line(
     if not len(pair):
         return None
     directions = step / length[:, None]
-    stretch = _longest_stretches(xy[scored], ways[scored], pair[:, 0], directions, scale)
+    stretch = _lengths(xy[scored], ways[scored], pair[:, 0], directions, scale)
     best = int(np.argmax(stretch))
     return _fitted(xy, ways, left, pair[best, 0], directions[best], scale)
 
 
-def _longest_stretches(
-    xy: np.ndarray, ways: np.ndarray, starts: np.ndarray, directions: np.ndarray, scale: Scale
-) -> np.ndarray:
+def _lengths(xy: np.ndarray, ways: np.ndarray, starts: np.ndarray, directions: np.ndarray, scale: Scale) -> np.ndarray:
     """Return for each line how many bins of its longest stretch hold points; a stretch goes on over small gaps."""
     normals = np.column_stack([-directions[:, 1], directions[:, 0]])
     across = normals @ xy.T - np.einsum("ij,ij->i", normals, starts)[:, None]
