@@ -129,7 +129,7 @@ def test_hypotheses_are_scored_as_by_brute_force(rng):
     directions, starts = np.column_stack([np.cos(heading), np.sin(heading)]), xy[:40]
     scale = wall_scale(120, 60.0, 0.3)
     ways = np.tile([1.0, 0.0], (120, 1))
-    scored = wall_lines._longest_stretches(xy, ways, starts, directions, scale)
+    scored = wall_lines._lengths(xy, ways, starts, directions, scale)
     least = (directions @ xy.T).min()
     for (east, north), start, score in zip(directions, starts, scored):
         near = np.abs((xy - start) @ [-north, east]) <= scale.tolerance
