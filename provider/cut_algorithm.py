@@ -20,7 +20,7 @@ from qgis.core import (
 from ..algorithms.tiling.cutting import cut_into_tiles
 from ..algorithms.tiling.settings import CUT_SETTINGS
 from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_survey
-from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, cut_help
+from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .algorithm import CheckedAlgorithm
 from .clouds import CloudsParameter, survey_paths
 from .errors import as_processing_errors
@@ -46,7 +46,7 @@ class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def help(self) -> str:
         """Return the help as HTML."""
-        return cut_help()
+        return survey_tool_help(CUT_INTO_TILES)
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the size of tiles, and the folder."""

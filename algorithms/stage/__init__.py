@@ -29,7 +29,7 @@ package needs the standard library and numpy only, and is independent of QGIS.
 
 from .arguments import REFERENCE_PREFIX  # noqa: F401 - the names that stages import
 from .declaration import CLOUD, DIMENSION, REPORT, SAMPLING, VALUES, Declared, Stage, stage  # noqa: F401
-from .docstrings import ARGUMENTS, TUNABLES, described, description, sections, summary, with_values  # noqa: F401
+from .docstrings import description, sections, summary  # noqa: F401
 from .inputs_outputs import (  # noqa: F401
     Field,
     FileContent,

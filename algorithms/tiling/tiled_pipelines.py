@@ -1,8 +1,22 @@
-"""The composites that run in tiles, as users meet them.
+"""The composites that run in tiles, as users meet them."""
 
+from dataclasses import dataclass
+from typing import Optional
+
+from ..help import listed, output_text, paragraphs, pipeline_help, written_by
+from ..packages import ESSENTIAL
+from ..pipeline import REPORT, Output, Pipeline
+from ..pipelines import PIPELINES
+from ..stage import Layer, Raster, TextFile
+from .settings import CUT_SETTINGS, SETTINGS, Setting
+from .tiled_run import TilesOptions
+from .tiled_steps import afterwards, of_survey, why_whole
+
+# What the help says of every composite in tiles.
+_DESCRIPTION = f"""
 For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
 size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
-them. A file of more than ``MILLIONS`` million points becomes tiles of the size of a block. The
+them. A file of more than {TilesOptions.largest_file / 1e6:g} million points becomes tiles of the size of a block. The
 layers are as of the whole survey, without seams and duplicates.
 
 The work is done in blocks of a lattice that starts at the origin of the coordinates, each with the points around it as
@@ -20,23 +34,6 @@ end; the tiles that they touch are missing then, all others are written.
 The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must
 see the same folders under the same paths; they receive the program from QGIS, and need numpy, scipy, laspy and lazrs.
 """
-
-from dataclasses import dataclass
-from typing import Optional
-
-from ..help import listed, output_text, paragraphs, pipeline_help, written_by
-from ..packages import ESSENTIAL
-from ..pipeline import REPORT, Output, Pipeline
-from ..pipelines import PIPELINES
-from ..stage import Layer, Raster, TextFile, with_values
-from ..stage import description as description_of
-from ..stage import summary as summary_of
-from .settings import CUT_SETTINGS, SETTINGS, Setting
-from .tiled_run import TilesOptions
-from .tiled_steps import afterwards, of_survey, why_whole
-
-# What the help says of every composite in tiles: the docstring of this module.
-_DESCRIPTION = description_of(with_values(__doc__ or "", {"MILLIONS": TilesOptions.largest_file / 1e6}))
 
 
 @dataclass(frozen=True)
@@ -90,24 +87,37 @@ class TiledPipeline:
         return next((one for one in self.pipeline.outputs if one.step in steps and one.of == REPORT), None)
 
 
-class _CutIntoTiles:
-    """Cut point clouds of any size into square tiles.
+@dataclass(frozen=True)
+class SurveyTool:
+    """Work on the files of a survey that runs no stage."""
 
-    The tiles are the cells of a lattice that starts at the origin of the coordinates; each is named by its lower
-    left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a
-    lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that
-    memory does not grow with them; on the disk the points lie once uncompressed next to the tiles while they are
-    made. A virtual point cloud over all tiles is written with them.
-    """
+    name: str
+    title: str
+    tags: str
+    summary: str
+    description: str
+    group: str = "Preparation"
+    needed_packages: tuple[str, ...] = ESSENTIAL
 
-    id = "cutintotiles"  #: Of Processing, frozen: saved models depend on it
-    title, group = "Cut into tiles", "Preparation"
-    tags = "las,laz,copc,pdal,tile,tiles,split,grid,folder,survey,large,retile,lastile"
-    summary, description = summary_of(__doc__ or ""), description_of(__doc__ or "")
-    needed_packages = ESSENTIAL
+    @property
+    def id(self) -> str:
+        """Processing id, ``cutintotiles``: frozen, saved models depend on it."""
+        return self.name.replace("_", "")
 
 
-CUT_INTO_TILES = _CutIntoTiles()
+CUT_INTO_TILES = SurveyTool(
+    name="cut_into_tiles",
+    title="Cut into tiles",
+    tags="las,laz,copc,pdal,tile,tiles,split,grid,folder,survey,large,retile,lastile",
+    summary="Cut point clouds of any size into square tiles.",
+    description=(
+        "The tiles are the cells of a lattice that starts at the origin of the coordinates; each is named by its lower "
+        "left corner in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a "
+        "lower edge belong to the tile, those at an upper edge to the next one. Files are read in portions, so that "
+        "memory does not grow with them; on the disk the points lie once uncompressed next to the tiles while they are "
+        "made. A virtual point cloud over all tiles is written with them."
+    ),
+)
 
 
 def settings_help(settings: dict[str, Setting]) -> str:
@@ -115,10 +125,9 @@ def settings_help(settings: dict[str, Setting]) -> str:
     return f"<h3>Parameters: Survey</h3>\n{listed(setting.text() for setting in settings.values())}"
 
 
-def cut_help() -> str:
-    """Return the help of the tool that cuts, as HTML that QGIS's help pane shows."""
-    told = paragraphs(CUT_INTO_TILES.summary), paragraphs(CUT_INTO_TILES.description)
-    return "\n".join([*told, settings_help(CUT_SETTINGS)])
+def survey_tool_help(tool: SurveyTool) -> str:
+    """Return the help of a tool, as HTML that QGIS's help pane shows."""
+    return "\n".join([paragraphs(tool.summary), paragraphs(tool.description), settings_help(CUT_SETTINGS)])
 
 
 TILED_PIPELINES = {
