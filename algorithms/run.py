@@ -131,8 +131,9 @@ def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampl
     Cells begin at the ``corner`` (2,), m; None is the cloud's.
     """
     used = counted(cloud)
-    facts = not has_several_returns(cloud), _corner(cloud) if corner is None else corner, has_colors(cloud)
-    return CloudSampling(lambda: cloud.get("xyz").compress(used, axis=0), *facts)
+    corner = _corner(cloud) if corner is None else corner
+    single = not has_several_returns(cloud)
+    return CloudSampling(lambda: cloud.get("xyz").compress(used, axis=0), single, corner, has_colors(cloud))
 
 
 def _corner(cloud: Cloud) -> np.ndarray:

@@ -91,8 +91,9 @@ class PipelineAlgorithm(CloudAlgorithm):
         """Run the steps that the wanted outputs need."""
         cloud = read.clouds if self.pipeline.merges else read.clouds[0] if read.clouds else None
         wanted = [made.key for made in self.job.wanted]
-        given = self.pipeline, cloud, monitor, read.layers, wanted
-        return run_pipeline(*given, reference=read.reference, **self.job.tunables)
+        return run_pipeline(
+            self.pipeline, cloud, monitor, read.layers, wanted, reference=read.reference, **self.job.tunables
+        )
 
     def numbers(self, results: Results, values: dict[str, Any]) -> dict[str, Any]:
         """Return the numbers of the steps that were run, by the names of their outputs."""
