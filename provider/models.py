@@ -165,7 +165,11 @@ def _first_taken(pipeline: Pipeline, step: Step) -> list[str]:
 
 
 def _add_parameters(
-    model: QgsProcessingModelAlgorithm, pipeline: Pipeline, step: Step, definitions: dict, layout: _Layout
+    model: QgsProcessingModelAlgorithm,
+    pipeline: Pipeline,
+    step: Step,
+    definitions: dict[str, QgsProcessingParameterDefinition],
+    layout: _Layout,
 ) -> None:
     """Add the parameters that a step is the first to take, laid out next to its box."""
     names = _first_taken(pipeline, step)

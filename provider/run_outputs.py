@@ -261,7 +261,9 @@ def _redirected(value: Any, path: str) -> Any:
 
 
 @contextmanager
-def through_memory(parameters: dict, name: str, context: QgsProcessingContext) -> Iterator[tuple[dict, Callable]]:
+def through_memory(
+    parameters: dict, name: str, context: QgsProcessingContext
+) -> Iterator[tuple[dict, Callable[[str], str]]]:
     """Let a layer that is to be a file be made in memory, and write the file when the block ends well.
 
     ``name`` is the layer's parameter; layers in memory and tables of databases are made where they are to be. Yields

@@ -223,7 +223,9 @@ def _ridge(planes: Planes, a: int, b: int) -> tuple[np.ndarray, np.ndarray]:
     return point, level / np.linalg.norm(level)
 
 
-def _house(xyz: np.ndarray, groups: list, planes: Planes, a: int, b: int, ground: _Ground) -> Optional[House]:
+def _house(
+    xyz: np.ndarray, groups: list[np.ndarray], planes: Planes, a: int, b: int, ground: _Ground
+) -> Optional[House]:
     """Return the house under two roof planes, None without ground below its eaves."""
     point, along = _ridge(planes, a, b)
     across = np.array([-along[1], along[0], 0.0])

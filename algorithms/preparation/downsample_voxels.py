@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
@@ -194,7 +195,12 @@ def _positions(points: np.ndarray, size: float) -> np.ndarray:
 
 
 def _nearest(
-    position: np.ndarray, total: np.ndarray, which: np.ndarray, touch: float, times: tuple, rows: np.ndarray
+    position: np.ndarray,
+    total: np.ndarray,
+    which: np.ndarray,
+    touch: float,
+    times: tuple[Optional[np.ndarray], ...],
+    rows: np.ndarray,
 ) -> np.ndarray:
     """Return, for each of k voxels, the position of the point nearest to the center.
 

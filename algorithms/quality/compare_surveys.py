@@ -197,7 +197,12 @@ def _groups(overlap: Overlap, min_overlap: float) -> _Groups:
     return _Groups(group[:n], group[n:], count)
 
 
-def _height_changes(layers: tuple, maps: tuple, groups: _Groups, monitor: Monitor) -> np.ndarray:
+def _height_changes(
+    layers: tuple[LayerFeatures, LayerFeatures],
+    maps: tuple[BuildingMap, BuildingMap],
+    groups: _Groups,
+    monitor: Monitor,
+) -> np.ndarray:
     """Return the rise (m) of each group from the earlier to the new survey, the new one first; NaN where unknown."""
     for name in ("ridge_height", "height"):
         found = (_numbers(layer.columns.get(name)) for layer in layers)
@@ -278,7 +283,9 @@ def _status(groups: _Groups, outline: np.ndarray, height: np.ndarray) -> np.ndar
     return np.select(chosen, [NEW, GONE, BOTH, OUTLINE, HEIGHT], UNCHANGED)
 
 
-def _table(old: BuildingMap, new: BuildingMap, groups: _Groups, found: dict) -> tuple[BuildingMap, dict]:
+def _table(
+    old: BuildingMap, new: BuildingMap, groups: _Groups, found: dict[str, np.ndarray]
+) -> tuple[BuildingMap, dict]:
     """Return the buildings of the new survey, then those that are gone, and the attributes of their groups."""
     is_gone = ~np.isin(groups.old, groups.new)
     every, group = new + old.only(is_gone), np.append(groups.new, groups.old[is_gone])

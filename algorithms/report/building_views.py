@@ -98,7 +98,9 @@ def draw_sections(xyz: np.ndarray, kind: np.ndarray, ring: np.ndarray, colors: n
     return [_view(xyz, kind, boxes_around([[ring]])[0], lines, colors), *sections]
 
 
-def _view(points: np.ndarray, kind: np.ndarray, box: np.ndarray, lines: list, colors: np.ndarray) -> str:
+def _view(
+    points: np.ndarray, kind: np.ndarray, box: np.ndarray, lines: list[tuple[np.ndarray, str]], colors: np.ndarray
+) -> str:
     """Return the SVG of points (n, 2 or 3), the highest drawn last, and of lines (k, 2) over them, each with its color.
 
     All are in meters within a box (2, 2) of the first two axes; the last one is the height.

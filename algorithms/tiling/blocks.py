@@ -262,7 +262,12 @@ def _cropped(surface: RasterSurface, box: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _number(
-    result: BlockResult, window: Window, values: dict, stays: np.ndarray, positions: np.ndarray, block: Block
+    result: BlockResult,
+    window: Window,
+    values: dict[str, np.ndarray],
+    stays: np.ndarray,
+    positions: np.ndarray,
+    block: Block,
 ) -> None:
     """Keep in a result which numbers its points have, and the numbers of records on both sides of its edges."""
     near = inside(positions, block.box + np.array([[-_BESIDE], [_BESIDE]]))

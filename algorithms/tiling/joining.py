@@ -359,7 +359,11 @@ def join_rasters(paths: list[Path], found: list[BlockResult]) -> list[RasterMosa
 
 
 def join_files(
-    pipeline: Pipeline, steps: Collection[str], results: list[Path], kept: dict[str, np.ndarray], layers: dict
+    pipeline: Pipeline,
+    steps: Collection[str],
+    results: list[Path],
+    kept: dict[str, np.ndarray],
+    layers: dict[str, LayerFeatures],
 ) -> dict[str, FileContent]:
     """Return the text files of a composite, by its names: each item once, block by block.
 

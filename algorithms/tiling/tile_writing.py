@@ -71,7 +71,9 @@ class TileWriter:
         See :attr:`.TileTask.view`.
     """
 
-    def __init__(self, settings: RunSettings, outcome: TilesOutcome, by_index: list, view: Optional[View]) -> None:
+    def __init__(
+        self, settings: RunSettings, outcome: TilesOutcome, by_index: list[Path], view: Optional[View]
+    ) -> None:
         self.settings, self.outcome, self.by_index, self.view = settings, outcome, by_index, view
 
     def write(self, executor: Any, blocks: WorkedOn) -> None:
@@ -231,7 +233,9 @@ def write_tile(task: TileTask) -> Tile:
     return Tile(task.target, len(cloud), left_out)
 
 
-def _results_of_blocks(task: TileTask, position: Optional[np.ndarray], count: int) -> tuple[np.ndarray, dict, int]:
+def _results_of_blocks(
+    task: TileTask, position: Optional[np.ndarray], count: int
+) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
     """Return the mask of points (n,) of a tile that stay, their values by blocks, and the number of these blocks."""
     stays = np.ones(count, bool)
     values: dict[str, np.ndarray] = {}
