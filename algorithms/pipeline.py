@@ -1,4 +1,4 @@
-"""The vocabulary of composites: steps, their outputs, and the pipeline that they make."""
+"""The vocabulary of composites: steps, their outputs, the pipeline that they make, and its decorator."""
 
 import inspect
 from collections.abc import Collection

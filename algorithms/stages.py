@@ -96,6 +96,7 @@ class _Stages(UserDict[str, Stage]):
 
     def __init__(self, modules: tuple[str, ...]) -> None:
         self._modules = {module.split(".")[-1]: module for module in modules}
+        # None until the module is imported; Any, as for all others the values are stages.
         not_yet: Any = None
         super().__init__(dict.fromkeys(self._modules, not_yet))
 

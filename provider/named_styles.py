@@ -86,7 +86,9 @@ def add_named_styles(layer: QgsMapLayer) -> None:
 def _renderer(layer: QgsVectorLayer, name: str):
     """Return the renderer of polygons by an attribute; None if it has no values."""
     if name == "confidence":
-        ranges = [QgsRendererRange(*ends, _symbol(color), "{:g} - {:g}".format(*ends)) for *ends, color in _CONFIDENCE]
+        ranges = [
+            QgsRendererRange(low, high, _symbol(color), f"{low:g} - {high:g}") for low, high, color in _CONFIDENCE
+        ]
         return QgsGraduatedSymbolRenderer(name, ranges)
     index = layer.fields().indexOf(name)
     if layer.fields()[index].isNumeric():

@@ -1,6 +1,5 @@
 """What users set for all runs, under Settings ▸ Options ▸ Processing ▸ Providers ▸ LiDAR Buildings."""
 
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Callable
 
@@ -42,12 +41,12 @@ class Option:
     def set(self, value: str) -> None:
         """Keep a value, and show it in the options."""
         QgsSettings().setValue(self.key, value)
-        # Another QGIS may have no class of that name.
-        with suppress(ImportError):
+        try:
             from processing.core.ProcessingConfig import ProcessingConfig
-
-            if self.name in ProcessingConfig.settings:
-                ProcessingConfig.settings[self.name].value = value
+        except ImportError:  # Another QGIS may have no class of that name.
+            return
+        if self.name in ProcessingConfig.settings:
+            ProcessingConfig.settings[self.name].value = value
 
 
 SCHEDULERS = Option("LIDARBUILDINGS_SCHEDULERS", "Dask schedulers that may be used (addresses, with spaces between)")

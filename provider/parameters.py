@@ -89,7 +89,15 @@ def _enum(tunable: Tunable, name: str, title: str) -> QgsProcessingParameterDefi
     choices, several = list(tunable.param.choices), tunable.type is tuple
     default = list(tunable.default) if several and tunable.default is not None else tunable.default
     # Static strings: a saved model keeps the word, not its position in today's list.
-    return QgsProcessingParameterEnum(name, title, choices, several, default, tunable.is_optional, True)
+    return QgsProcessingParameterEnum(
+        name,
+        title,
+        choices,
+        allowMultiple=several,
+        defaultValue=default,
+        optional=tunable.is_optional,
+        usesStaticStrings=True,
+    )
 
 
 _MAKERS = {float: _number, int: _number, bool: _boolean, str: _word, tuple: _enum}

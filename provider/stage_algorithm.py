@@ -112,8 +112,7 @@ class StageAlgorithm(CloudAlgorithm):
         """Warn where a selection by the user is the whole cloud: an area or a limit was forgotten."""
         selects_alone = self.stage.selects and self.alone and self.job.box is None
         if selects_alone and len(selected) == len(read.clouds[0]):
-            count = f"{len(selected):,}"
-            monitor.warn(f"All {count} points stay: no extent is set, nor anything else that leaves points out.")
+            monitor.warn(f"All {len(selected):,} points stay: nothing that is set leaves any out.")
 
     def _log_earlier_dimensions(self, read: Read, monitor: Monitor) -> None:
         """Log which dimensions of earlier runs are read; in a user's chain, where its own steps made them, none."""

@@ -264,8 +264,10 @@ def _workers(given: Given) -> Workers:
 
 def _made(tiled: TiledPipeline) -> list[Made]:
     """Return the outputs other than the tiles."""
-    steps = [(one.name.upper(), one.step.stage, one.declared) for one in tiled.outputs]
-    return [Made(name, inputs.result_title(stage, declared), stage, declared) for name, stage, declared in steps]
+    return [
+        Made(one.name.upper(), inputs.result_title(one.step.stage, one.declared), one.step.stage, one.declared)
+        for one in tiled.outputs
+    ]
 
 
 def _refuse_failures(outcome: TilesOutcome, folder: Path) -> None:

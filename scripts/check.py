@@ -94,8 +94,10 @@ def main() -> int:
     for printed, is_sound in results:
         lines = printed.strip().splitlines()
         print(*(lines[-2:] if is_sound else lines), sep="\n")
-    print(f"{len(modules)} modules changed; checked in {time.time() - start:.0f} s.")
-    return 0 if all(is_sound for _, is_sound in results) else 1
+    is_sound = all(sound for _, sound in results)
+    found = "nothing wrong was found" if is_sound else "something is WRONG, see above"
+    print(f"{len(modules)} modules changed; {found} in {time.time() - start:.0f} s.")
+    return 0 if is_sound else 1
 
 
 if __name__ == "__main__":

@@ -203,6 +203,8 @@ def derived_scene(stage: Stage) -> Scene:
         steps = () if stage.name.startswith(("classify_noise", "classify_ground")) else GROUND
     else:
         steps = (NOISE,)
+    if not stage.writes:
+        raise SystemExit(f"{stage.title} writes no dimension, so it has no picture unless SCENES has a scene for it.")
     return Scene(TOWN, (*steps, stage.name), color=stage.writes[0])
 
 

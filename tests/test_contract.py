@@ -458,11 +458,20 @@ def test_titles_that_sentences_name_exist(path):
     assert not set(quoted(path)) - ours - TITLES_OF_QGIS - OPTIONS
 
 
+@each_stage
+def test_reach_is_a_distance(stage):
+    """A function of the tunables gets them by name: ``lambda gap: gap`` would be given all of them."""
+    reach = stage.reach_of({})
+    assert isinstance(reach, (int, float)), f"{stage.name} reaches {reach!r}, which is no number of meters"
+    assert reach >= 0
+
+
 @pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
 def test_tunable_is_labeled_and_explained(stage, tunable):
     param = tunable.param
     assert is_sentence_case(tunable.label)
     assert not tunable.label.endswith((".", ":", ")"))
+    assert param.help, f"the docstring of {stage.name} doesn't describe {tunable.name} under Other Parameters"
     assert is_sentences(param.help)
     assert [bool(param.automatic), bool(param.empty)].count(True) == tunable.is_optional
     assert not param.unset_text or param.unset_text.endswith(".")

@@ -188,8 +188,9 @@ class Decks:
         if not len(others):
             return False
         along = deck[:, :2] @ axis
-        tree, count = spatial.cKDTree(others), int(CLOSED.cell**2 / 2)
+        tree = spatial.cKDTree(others)
         # In thin clouds the nearest point may lie on the slope below the road: half of what a cell holds is looked at.
+        count = int(CLOSED.cell**2 / 2)
         distance, nearest = tree.query(deck, k=count, distance_upper_bound=1.5 * self.reach)
         near, rank = np.nonzero(np.isfinite(distance))
         way = others[nearest[near, rank]] - deck[near]

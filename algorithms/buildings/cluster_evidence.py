@@ -66,7 +66,7 @@ class ClusterEvidence:
         return placed(mask, self.numbers, int(self.numbers[-1]) + 1)
 
 
-def with_penetration(by_entropy: Decisions, through: np.ndarray, most: float, evidence: ClusterEvidence) -> Decisions:
+def with_penetration(by_entropy: Decisions, through: np.ndarray, limit: float, evidence: ClusterEvidence) -> Decisions:
     """Decide by entropy and by the penetration ``through`` (m,) of each cluster.
 
     Parameters
@@ -75,7 +75,7 @@ def with_penetration(by_entropy: Decisions, through: np.ndarray, most: float, ev
         What entropy decided.
     through : ndarray of shape (m,)
         Share of pulses that pass each cluster.
-    most : float
+    limit : float
         Share above which a cluster is no building.
     evidence : ClusterEvidence
         The clusters.
@@ -89,7 +89,7 @@ def with_penetration(by_entropy: Decisions, through: np.ndarray, most: float, ev
     undefined = by_entropy.reasons == Reason.WITHOUT_ENTROPY
     is_planar = (confidence > 0.5) & ~undefined
     # A cluster without entropy stays undecided, however solid it is.
-    both = np.where(undefined, 0.5, _with_solidity(confidence, through, most))
+    both = np.where(undefined, 0.5, _with_solidity(confidence, through, limit))
     is_solid = both > 0.5
     is_building = evidence.with_adjacent(is_solid, is_planar & (evidence.non_last_return_share() < _SPLIT_AT_EDGES))
     # The first that applies is the reason.

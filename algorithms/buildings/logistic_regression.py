@@ -14,7 +14,9 @@ class _RULES:
     """How the regression is fitted."""
 
     steps: int = rule(20, "steps", "numerics: Newton's method converges in 6 to 9")
-    digits: int = rule(6, "decimals", "numerics: of weights, so that rounding changes none; smaller steps end the fit")
+    digits: int = rule(
+        6, "decimals", "numerics: of the weights, so that rounding changes none; smaller steps end the fit"
+    )
     block: int = rule(64, "rows", "numerics: products this small are computed by one thread, in one order")
 
 

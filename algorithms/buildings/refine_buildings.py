@@ -41,9 +41,13 @@ _LEARNED = "building_likeness"
 class _RULES:
     """Points examined and limits of changes; fitted on seven real airborne clouds, where F rises by 0.86 %."""
 
-    cell_spacings: float = rule(4.0, "point spacings", "fitted: side of a cell, 16 roof points; 3 and 6 gain 0.1 less")
+    cell_spacings: float = rule(
+        4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
+    )
     becomes: float = rule(0.65, "probability", "fitted: over it a point by itself becomes building; 0.5 gains 0.2 less")
-    ceases: float = rule(0.17, "probability", "fitted: under it a point by itself is no building; 0.2 gains the same")
+    ceases: float = rule(
+        0.17, "probability", "fitted: under it a point by itself ceases to be building; 0.2 gains the same"
+    )
 
 
 # Key of the survey-wide value that says whether doubtful buildings are chance.
@@ -200,7 +204,7 @@ def refine_buildings(
 
 
 def _as_learned(
-    found: tuple, measured: tuple, density: float, is_doubtful: bool, sampling: CloudSampling, monitor: Monitor
+    found: Found, measured: tuple, density: float, is_doubtful: bool, sampling: CloudSampling, monitor: Monitor
 ) -> tuple:
     """Return the results of the stage, corrected by what the scene shows; those before where it shows nothing.
 

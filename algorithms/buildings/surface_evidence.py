@@ -1,4 +1,4 @@
-"""Evidence on clusters without returns: planar surfaces next to others of their kind, and color."""
+"""Evidence on clusters without returns: planar surfaces next to others of their kind, and greenness."""
 
 from typing import Optional
 

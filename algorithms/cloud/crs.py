@@ -12,7 +12,16 @@ from ..stage import Monitor
 from .authority import Authority, Definition, authority_here
 from .header import LARGEST_VLR, WKT_BIT, Header, Vlr
 from .printable import shown
-from .units import PROJECTION, USER_DEFINED, GeoKeys, Units, geokeys_of, name_of_length, units_of_wkt, with_named_units
+from .units import (
+    PROJECTION,
+    USER_DEFINED,
+    GeoKeys,
+    Units,
+    geokeys_record,
+    name_of_length,
+    units_of_wkt,
+    with_named_units,
+)
 
 # User and record ids of the VLRs with WKT.
 _WKT = ((PROJECTION, 2112), (b"liblas", 2112))
@@ -102,14 +111,14 @@ def read_crs(header: Header, authority: Optional[Authority] = None, given: str =
         If coordinates are degrees or geocentric, or not true to scale in any direction.
     """
     keys, wkt, text = GeoKeys(header), stated_wkt(header), header.named or given
-    if authority is None and (wkt or text or keys.define_system):
+    if authority is None and (wkt or text or keys.defines_system):
         authority = authority_here()
     # Files that have only the one that their bit does not name are common.
-    if wkt and keys.define_system and header.layout.is_old and not header.encoding & WKT_BIT:
+    if wkt and keys.defines_system and header.layout.is_old and not header.encoding & WKT_BIT:
         wkt = ""
     crs = crs_of_text(wkt, authority)
     if not crs.identity:
-        other = _crs_of_keys(keys, authority) if keys.define_system or not text else crs_of_text(text, authority)
+        other = _crs_of_keys(keys, authority) if keys.defines_system or not text else crs_of_text(text, authority)
         crs = replace(other, warnings=(*(crs.warnings if wkt else ()), *other.warnings))
     return _on_the_ground(crs, header, authority) if authority and crs.plane else crs
 
@@ -140,7 +149,7 @@ def _unread(text: str) -> Crs:
 
 def _crs_of_keys(keys: GeoKeys, authority: Optional[Authority]) -> Crs:
     """Return the system of a file with GeoKeys, or with nothing."""
-    if not keys.define_system:
+    if not keys.defines_system:
         units, warnings = keys.units(None) if keys else (None, ())
         return Crs("", "", "", "", "", *(units or Units()), (*warnings, _ONLY_UNIT if units else NO_CRS))
     code = keys.code
@@ -291,7 +300,7 @@ def header_with_crs(header: Header, crs: Crs) -> Header:
     """Return the header of a file that is written in a system: with its records where they lack or can't count."""
     own, keys = stated_wkt(header), GeoKeys(header)
     if header.layout.is_old:
-        if own or keys.define_system or not crs.identity:
+        if own or keys.defines_system or not crs.identity:
             return header
         code = crs.plane if is_epsg_code(crs.plane) and crs.vertical == crs.horizontal else ""
         vlrs, bits = crs_records(code or crs.wkt or crs.stated)
@@ -309,7 +318,7 @@ def crs_records(text: str) -> tuple[list[Vlr], int]:
     if text and '"' not in text:
         if not is_epsg_code(text):
             raise ValueError(f"The CRS {text!r} can't be stored; give WKT or EPSG:code.")
-        return [geokeys_of(int(text[5:]))], 0
+        return [geokeys_record(int(text[5:]))], 0
     return ([Vlr(*_WKT[0], text.encode() + b"\0", description=b"WKT")] if text else []), WKT_BIT
 
 

@@ -1,4 +1,4 @@
-"""Units of a file's coordinates, from its WKT or GeoKeys, without a CRS database."""
+"""GeoKeys of a file, and units of its coordinates from these or its WKT, without a CRS database."""
 
 from __future__ import annotations
 
@@ -220,7 +220,7 @@ class GeoKeys(dict[int, Any]):
         return f"EPSG:{self.code}" + (f"+{height}" if 0 < height < USER_DEFINED else "")
 
     @property
-    def define_system(self) -> bool:
+    def defines_system(self) -> bool:
         """Whether they define a horizontal system, by a code or by parameters, and not just a unit or nothing."""
         return bool(self.code or _METHOD in self or 0 < self.get(_CONVERSION, 0) < USER_DEFINED)
 
@@ -251,7 +251,7 @@ class GeoKeys(dict[int, Any]):
         return (Units(horizontal, vertical) if own or known else None), warnings
 
 
-def geokeys_of(code: int) -> Vlr:
+def geokeys_record(code: int) -> Vlr:
     """Return the record of the GeoKeys that give the EPSG code of a projected system."""
     numbers = (1, 1, 0, 2, _MODEL, 0, 1, 1, _PROJECTED, 0, 1, code)
     return Vlr(*_DIRECTORY, struct.pack(f"<{len(numbers)}H", *numbers), description=b"GeoKeys")

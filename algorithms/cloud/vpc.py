@@ -320,10 +320,19 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
     layout = merged_layout([header.layout for header in headers])
     scale, offset = _grid(headers, what)
     reduced = [header.without(*OF_OLD_FILES) for header in headers]
-    merged = replace(reduced[0], scale=scale, offset=offset, waveforms_at=0, user_bytes=b"", gap=b"")
-    merged.minor, merged.count = max(header.minor for header in headers), sum(header.count for header in headers)
-    merged.encoding = first.encoding if layout.is_old else first.encoding | WKT_BIT
-    merged.vlrs, merged.evlrs = (_union([getattr(one, name) for one in reduced]) for name in ("vlrs", "evlrs"))
+    merged = replace(
+        reduced[0],
+        minor=max(header.minor for header in headers),
+        count=sum(header.count for header in headers),
+        encoding=first.encoding if layout.is_old else first.encoding | WKT_BIT,
+        scale=scale,
+        offset=offset,
+        vlrs=_union([header.vlrs for header in reduced]),
+        evlrs=_union([header.evlrs for header in reduced]),
+        waveforms_at=0,
+        user_bytes=b"",
+        gap=b"",
+    )
     return merged.with_layout(layout)
 
 

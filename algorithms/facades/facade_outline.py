@@ -1,4 +1,4 @@
-"""The boundary of a facade in its own plane: traced, reduced to its corners, and pushed out to hold all points."""
+"""The boundary of a facade in its plane: an alpha shape, reduced to corners, and pushed out to hold all points."""
 
 from dataclasses import dataclass
 from typing import Any, Optional

@@ -10,6 +10,9 @@ from ..geometry.polygons import area_vector
 from ..geometry.rings import sides_of_rings, signed_area
 from ..stage import LayerFeatures
 
+# Most heights at which the ends of a wall are looked at.
+_HEIGHTS = 500
+
 
 @dataclass(frozen=True)
 class PlanSegments:
@@ -75,10 +78,6 @@ def facade_segments(facades: LayerFeatures) -> PlanSegments:
         ends.append((base + low * along, base + high * along, number))
     start, end, owner = zip(*ends) if ends else ((), (), ())
     return PlanSegments(np.array(start).reshape(-1, 2), np.array(end).reshape(-1, 2), np.array(owner, int))
-
-
-# Most heights at which the ends of a wall are looked at.
-_HEIGHTS = 500
 
 
 def _ends(position: np.ndarray, z: np.ndarray) -> np.ndarray:

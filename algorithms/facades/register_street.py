@@ -199,7 +199,7 @@ class _RULES:
     reweighted: int = 9
     # Walls shorter than this (m) are sides of recesses, which outlines from the air don't show.
     shortest: float = 2.0
-    # Least number of these cells: fewer may all be below cars.
+    # Least number of cells with ground of both scans: fewer may all be below cars.
     least_cells: int = 20
     # Half of the range of height differences (m) that count as common ground: the range that holds most of them.
     ground: float = 0.2

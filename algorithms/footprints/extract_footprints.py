@@ -348,10 +348,10 @@ def with_reviewed(found: LayerFeatures, review: Optional[ReviewedBuildings]) -> 
     is_same = ~is_decided & is_numbered & (2 * shared > np.maximum(own.area[one], given.area[other]))
     before = dict(zip(one[is_same].tolist(), ids[other[is_same]].tolist() if is_numbered else ()))
     new["id"] = [before.get(row) for row in others]
-    without, unknown = [None] * len(staying), [None] * len(others)
-    columns = {name: [*kept.get(name, without), *new.get(name, unknown)] for name in dict.fromkeys([*new, *kept])}
+    none_kept, none_new = [None] * len(staying), [None] * len(others)
+    columns = {name: [*kept.get(name, none_kept), *new.get(name, none_new)] for name in dict.fromkeys([*new, *kept])}
     free = itertools.count(1 + int(np.nanmax(ids, initial=0)) if is_numbered else 1)
     columns["id"] = [next(free) if number is None or np.isnan(number) else int(number) for number in columns["id"]]
-    sources = [*(layer.sources[row] if layer.sources else None for row in staying), *unknown]
+    sources = [*(layer.sources[row] if layer.sources else None for row in staying), *none_new]
     outlines = [[np.asarray(ring, float)[:, :2] for ring in layer.geometries[row]] for row in staying]
     return LayerFeatures([*outlines, *(found.geometries[row] for row in others)], columns, sources)

@@ -31,12 +31,18 @@ class RowRules:
     rise: float = rule(0.25, "tangent", "physics: least slope of a roof that rises from a valley")
     parallel: float = rule(0.35, "tangent", "physics: slopes of parallel roofs differ by less")
     least_height: float = rule(
-        0.2, "m", "physics: step between parallel roofs, wall over both; four times a scan's noise"
+        0.2, "m", "physics: of a step between parallel roofs and of a wall over both; four times the noise of a scan"
     )
     rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
     large_step: float = rule(1.0, "m", "physics: a step between any two roofs, half a storey high")
-    least_share: float = rule(0.6, "share", "of the higher house's height: 2 of 3 storeys, not a wing with 1 of 2")
-    wall: float = rule(0.15, "per spacing", "cost, where one seen all along pays 1: noise of fewer points pays more")
+    least_share: float = rule(
+        0.6, "share", "of the higher house's height that the lower one has: 2 of 3 storeys, not a wing with 1 of 2"
+    )
+    wall: float = rule(
+        0.15,
+        "per spacing",
+        "what a wall costs, where one clearly seen all along pays 1: noise of fewer points pays more",
+    )
     row: float = rule(0.9, "walls", "what a row costs, and the most that one wall pays: two roofs may be one house")
     unlike: float = rule(0.1, "walls", "what a house e times as wide or narrow as the others of its row costs")
     narrowest: float = rule(3.5, "m", "physics: least width and depth of a house")

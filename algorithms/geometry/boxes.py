@@ -116,7 +116,9 @@ class Boxes:
                 wanted += 1
             yield np.concatenate([one for one, _ in found]), np.concatenate([other for _, other in found])
 
-    def pairs(self, here: np.ndarray, other: Boxes, there: np.ndarray) -> Iterator[tuple[np.ndarray, ...]]:
+    def pairs(
+        self, here: np.ndarray, other: Boxes, there: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Yield chunks of (pair of boxes, point, point of ``other``) over all points of the pairs of boxes.
 
         Points are counted in the order of the boxes.

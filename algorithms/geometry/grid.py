@@ -190,7 +190,9 @@ def connected_cells(grid: Grid, cells: np.ndarray) -> tuple[int, np.ndarray]:
     return components(np.concatenate(one), np.concatenate(other), len(cells))
 
 
-def shared_cells(xyz: np.ndarray, group: np.ndarray, count: int, size: float) -> tuple[np.ndarray, ...]:
+def shared_cells(
+    xyz: np.ndarray, group: np.ndarray, count: int, size: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the pairs of groups that have points in the same cells.
 
     Parameters

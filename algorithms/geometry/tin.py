@@ -119,7 +119,9 @@ class Tin:
         """Return the facet (n,), int32, under each point, for points that are near a node (n,) known by number."""
         return self._located(xyz, lambda rows, plan: node[rows], Monitor())
 
-    def _located(self, xyz: np.ndarray, node: Callable[..., np.ndarray], monitor: Monitor) -> np.ndarray:
+    def _located(
+        self, xyz: np.ndarray, node: Callable[[np.ndarray, np.ndarray], np.ndarray], monitor: Monitor
+    ) -> np.ndarray:
         """Return the facets under points; ``node`` returns the nodes from which points start, by rows and positions."""
         found = np.empty(len(xyz), np.int32)
 

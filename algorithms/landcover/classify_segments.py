@@ -78,7 +78,8 @@ def classify_segments(
     height_above_ground : ndarray of shape (n,), float32, optional
         Heights, m; needed to limit them.
     selection : LayerFeatures, optional
-        The outlines that an earlier run made, of which those are selected or left that are to be picked.
+        The outlines that an earlier run made, of which those are selected or left that are to be picked. Their
+        attribute 'id' is the number of the segment.
 
     Returns
     -------

@@ -206,7 +206,8 @@ def _bodies(
         if on_level is not None:
             is_water[box] |= inside
             shows_level[box] |= on_level
-    return is_water, nearest_known(lowest, ~shows_level) if shows_level.any() else None
+    level = nearest_known(lowest, ~shows_level) if shows_level.any() else None
+    return is_water, level
 
 
 def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Optional[np.ndarray]:

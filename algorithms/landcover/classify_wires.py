@@ -1,4 +1,4 @@
-"""Wires and the masts that carry them."""
+"""Wires, as lines of points over free space that form spans, and the masts that carry them."""
 
 from typing import Any, Optional
 
@@ -7,7 +7,7 @@ import numpy as np
 from ..cloud.asprs import VEGETATION, PointClass
 from ..criteria import DEVIATIONS
 from ..geometry.grid import fixed_grid_over
-from ..geometry.groups import components, items, run_starts
+from ..geometry.groups import components, items, mask_of, run_starts
 from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
 from ..params import SEED, SURFACE_NOISE
@@ -173,7 +173,7 @@ def over_free_space(xyz: np.ndarray, spacing: float) -> np.ndarray:
     column = fixed_grid_over(xyz, max(_RULES.least_column, _RULES.column_spacings * spacing)).number(xyz)
     order = np.lexsort((xyz[:, 2], column))
     z, column = xyz[order, 2], column[order]
-    is_first = (np.diff(column, prepend=-1) != 0) | (np.diff(z, prepend=-np.inf) > _RULES.free)
+    is_first = mask_of(len(z), run_starts(column)) | (np.diff(z, prepend=-np.inf) > _RULES.free)
     start = np.flatnonzero(is_first)
     thickness = z[np.append(start[1:], len(z)) - 1] - z[start]
     return np.sort(order[(thickness <= _RULES.thickest)[np.cumsum(is_first) - 1]])

@@ -1,4 +1,4 @@
-"""Attributes of buildings and faces from their models, for layers and CityJSON."""
+"""Attributes of buildings and faces from their models, for layers and CityJSON, and these layers."""
 
 from __future__ import annotations
 
@@ -121,7 +121,8 @@ class NamedModel:
 
     def record(self) -> dict[str, Any]:
         """Return it as plain values, which JSON keeps to the last bit."""
-        facts = {name: value for name, value in vars(self.model).items() if name not in ("solids", "walls")}
+        kept = (one.name for one in fields(self.model) if one.name not in ("solids", "walls"))
+        facts = {name: getattr(self.model, name) for name in kept}
         solids = {level: [_plain_solid(solid) for solid in some] for level, some in self.model.solids.items()}
         of_planes = {name: list(getattr(self.model, name).items()) for name in _OF_PLANES}
         rings = [np.asarray(ring).tolist() for ring in self.rings]

@@ -280,7 +280,12 @@ def _are_plants(xyz: np.ndarray, is_on: np.ndarray, spacing: float) -> np.ndarra
 
 
 def _roof_facts(
-    points: _Points, building: np.ndarray, planes: RoofPlanes, rings: list, border: tuple[Any, Any], terrain: float
+    points: _Points,
+    building: np.ndarray,
+    planes: RoofPlanes,
+    rings: list,
+    border: tuple[np.ndarray, np.ndarray],
+    terrain: float,
 ) -> dict[str, Any]:
     """Measure the roof of a building by its points (rows of all); ``terrain`` is the elevation of the terrain, m."""
     xyz, spacing = points.xyz[building], points.spacing

@@ -80,7 +80,8 @@ def mended(
         if not mending.changed:
             break
     solids, why, best = min(found, key=lambda one: one[2].off() if one[0] else np.inf)
-    vars(partition).update(vars(best.partition))
+    for name in ("cells", "label", "coefficients", "cost"):
+        setattr(partition, name, getattr(best.partition, name))
     return solids, why
 
 

@@ -32,6 +32,9 @@ _FACES = (
     (GROUND, (10, 9, 8, 7)),
 )
 
+# Distance (m) within which the ground next to an eave is seen from the air: eaves overhang walls by a meter at most.
+_BESIDE = 2.0
+
 GABLE_FIELDS = (
     Field("id", int, "Number of the house, from 1"),
     Field("face", int, "Number of the face of the house, from 1"),
@@ -146,10 +149,6 @@ class House:
     vertices: np.ndarray
     rms: float
     n_points: int
-
-
-# Distance (m) within which the ground next to an eave is seen from the air: eaves overhang walls by a meter at most.
-_BESIDE = 2.0
 
 
 class _Ground:

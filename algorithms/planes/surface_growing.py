@@ -271,5 +271,9 @@ def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray, rows: np.nd
     """Return planes fitted to further points ``rows`` (m,) of ``xyz``, whose plane is the number ``plane`` (m,)."""
     number, which = np.unique(plane, return_inverse=True)
     more = planes_of(xyz, which, len(number), rows)
-    both = [(fitted.count, more.count), (fitted.center, more.center), (fitted.covariance, more.covariance)]
-    return Planes(*map(np.concatenate, both)).merged(np.concatenate([np.arange(len(fitted)), number]), len(fitted))
+    both = Planes(
+        count=np.concatenate([fitted.count, more.count]),
+        center=np.concatenate([fitted.center, more.center]),
+        covariance=np.concatenate([fitted.covariance, more.covariance]),
+    )
+    return both.merged(np.concatenate([np.arange(len(fitted)), number]), len(fitted))

@@ -139,6 +139,8 @@ def within_limits(
     if low is not None and high is not None and low > high:
         raise ValueError(f"The minimum ({low:g}) is above the maximum ({high:g}); exchange them.")
     within = np.ones(len(values), bool)
-    within &= low is None or values >= low
-    within &= high is None or values <= high
+    if low is not None:
+        within &= values >= low
+    if high is not None:
+        within &= values <= high
     return within

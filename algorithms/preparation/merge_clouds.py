@@ -218,8 +218,12 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
     moved = transform(xyz)
     middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
     shift = float(np.linalg.norm(transform(middle) - middle))
-    monitor.resolved(**{f"rotation_of_cloud_{number}_in_degrees": transform.angle})
-    monitor.resolved(**{f"shift_of_the_middle_of_cloud_{number}_in_meters": shift})
+    monitor.resolved(
+        **{
+            f"rotation_of_cloud_{number}_in_degrees": transform.angle,
+            f"shift_of_the_middle_of_cloud_{number}_in_meters": shift,
+        }
+    )
     farthest = np.abs(xyz).max(axis=0)
     off = float(np.linalg.norm(np.abs(transform.rotation - transform.given) @ farthest))
     if off > MILLIMETER:

@@ -123,8 +123,8 @@ def assess_footprints(
     reference_map : LayerFeatures
         Buildings that are trusted: a cadastre, a base map, an earlier result.
     area : LayerFeatures, optional
-        Where both layers are compared: buildings and footprints with half of their area within. Without it, the next
-        parameter decides.
+        Where both layers are compared: buildings and footprints with half of their area within. Without it,
+        'Footprints compared' decides.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Layers of buildings that are compared with each other: their usable polygons."""
+"""Layers of buildings that are compared: their usable polygons, what they share, and what another map shows."""
 
 from __future__ import annotations
 

@@ -20,7 +20,8 @@ from ..packages import ndimage, spatial
 from ..rules import rule, rules
 from ..stage import Monitor
 from . import map_changes
-from .map_changes import BUILT, OLD, RULES, Label, MapUpdate, SeenPoints
+from .map_changes import BUILT, OLD, Label, MapUpdate, SeenPoints
+from .map_changes import RULES as CHANGES
 
 
 @rules
@@ -32,7 +33,9 @@ class _RULES:
     new_snap: float = rule(0.3, "widths of a change", "at which cuts along new walls pass vertices")
     thin: float = rule(0.025, "m", "area of a cell per length around it, below which it is a seam: a strip 5 cm wide")
     parallel: float = rule(0.17, "sine", "of the greatest angle between a new wall and the old one it continues, 10°")
-    overlap: float = rule(0.001, "m", "area shared with buildings that stay, per outline length: maps have millimeters")
+    overlap: float = rule(
+        0.001, "m", "area shared with buildings that stay, per length of the outline: maps have millimeters"
+    )
 
 
 class ChangedBlock:
@@ -42,14 +45,14 @@ class ChangedBlock:
         self, update: MapUpdate, points: SeenPoints, olds: list[int], news: list[int], width: float, min_area: float
     ) -> None:
         self.update, self.olds, self.news, self.width, self.min_area = update, olds, news, width, min_area
-        self.radius = width / 2 / RULES.step
+        self.radius = width / 2 / CHANGES.step
         corners = [update.rings[row][0] for row in olds] + [update.outlines[row][0] for row in news]
         box = plan_box(np.concatenate(corners)) + [[-2 * width], [2 * width]]
-        self.lattice, self.box = Lattice.around(box, 2 * RULES.step), [box]
+        self.lattice, self.box = Lattice.around(box, 2 * CHANGES.step), [box]
         self.old, self.own = self._painted(olds, update.rings)
         self.new, _ = self._painted(news, update.outlines)
         near = rows_near(points.xyz, self.box)
-        reach = max(RULES.reach * points.spacing, RULES.step)
+        reach = max(CHANGES.reach * points.spacing, CHANGES.step)
         self.is_seen = self._around(points.xyz[near], reach)
         self.is_low = self._around(points.xyz[near[points.is_low[near]]], reach)
         self.wanted, self.labels = np.full(self.lattice.shape, 0), dict[Label, int]()
@@ -70,7 +73,7 @@ class ChangedBlock:
 
     def _around(self, xyz: np.ndarray, reach: float) -> np.ndarray:
         """Return the nodes (rows, columns), bool, within a distance (m) of points (n, 3)."""
-        return _within(mask_of(self.lattice.shape, self.lattice.nearest(xyz[:, :2])), reach / RULES.step)
+        return _within(mask_of(self.lattice.shape, self.lattice.nearest(xyz[:, :2])), reach / CHANGES.step)
 
     def decide(self, roofs: list[np.ndarray]) -> None:
         """Decide on all buildings, draw the changed and the new ones; ``roofs`` are the roof points of each survey."""
@@ -85,7 +88,7 @@ class ChangedBlock:
         """Return the highest elevation (rows, columns), m, around each node of the lattice, NaN without points."""
         top = np.full(self.lattice.shape, -np.inf)
         np.maximum.at(top, self.lattice.nearest(xyz[:, :2]), xyz[:, 2])
-        top = ndimage.maximum_filter(top, round(RULES.rise / RULES.step))
+        top = ndimage.maximum_filter(top, round(CHANGES.rise / CHANGES.step))
         return np.where(np.isfinite(top), top, np.nan)
 
     def _compare_heights(self, new: np.ndarray, old: np.ndarray) -> None:
@@ -96,7 +99,7 @@ class ChangedBlock:
             known = risen[window][mask & (self.new[window] >= 0) & np.isfinite(risen[window])]
             if len(known) and update.status[row] in (map_changes.UNCHANGED, map_changes.MOVED, map_changes.CHANGED):
                 update.rise[row] = by = float(np.median(known))
-                if update.status[row] == map_changes.UNCHANGED and abs(by) > RULES.rise:
+                if update.status[row] == map_changes.UNCHANGED and abs(by) > CHANGES.rise:
                     update.status[row] = map_changes.HEIGHTENED if by > 0 else map_changes.LOWERED
 
     def _decide_old(self, row: int) -> None:
@@ -111,14 +114,14 @@ class ChangedBlock:
         is_empty = float((low & ~has_new).mean()) >= MAJORITY
         if covered < MAJORITY and seen.mean() < MAJORITY:
             update.status[row], update.confidence[row] = map_changes.UNSEEN, 0.0
-        elif covered <= RULES.gone:
+        elif covered <= CHANGES.gone:
             update.status[row] = map_changes.GONE if is_empty else map_changes.DOUBTFUL
             update.confidence[row] = float(low.mean()) if is_empty else covered
         else:
             removed = self._removed(window, mask)
             if removed.any():
                 self._label((OLD, row), window, mask & ~removed)
-                update.removed[row] = removed.sum() * RULES.step**2
+                update.removed[row] = removed.sum() * CHANGES.step**2
             elif covered < MAJORITY:
                 update.status[row] = map_changes.DOUBTFUL
 
@@ -126,8 +129,8 @@ class ChangedBlock:
         """Return the nodes of a building (rows, columns), bool, that are of it no more."""
         lost = np.pad(mask & (self.new[window] < 0), 1)
         part, count = ndimage.label(_opened(lost, self.radius)[1:-1, 1:-1])
-        size = np.bincount(part.ravel(), minlength=count + 1) * RULES.step**2
-        low = np.bincount(part.ravel(), self.is_low[window].ravel(), count + 1) * RULES.step**2
+        size = np.bincount(part.ravel(), minlength=count + 1) * CHANGES.step**2
+        low = np.bincount(part.ravel(), self.is_low[window].ravel(), count + 1) * CHANGES.step**2
         is_gone = (size >= self.min_area) & (low >= MAJORITY * size)
         is_gone[0] = False
         gone = is_gone[part]
@@ -146,7 +149,7 @@ class ChangedBlock:
         pairs, number = np.unique(np.stack([part, self.new])[:, is_added], axis=1, return_inverse=True)
         part[is_added] = number.ravel() + 1
         parts = list(zip(ndimage.find_objects(part), pairs[1].tolist()))
-        size = np.bincount(part.ravel(), minlength=len(parts) + 1)[1:] * RULES.step**2
+        size = np.bincount(part.ravel(), minlength=len(parts) + 1)[1:] * CHANGES.step**2
         for number in np.argsort(-size, kind="stable")[: np.sum(size >= self.min_area)].tolist():
             window, outline = parts[number]
             kind, row = label = self._owner(outline, part == number + 1, size[number])
@@ -165,7 +168,7 @@ class ChangedBlock:
         update = self.update
         if update.is_new[outline]:
             return BUILT, outline
-        near, least = _within(mask, self.width / RULES.step), RULES.step**2
+        near, least = _within(mask, self.width / CHANGES.step), CHANGES.step**2
         there = map_changes.UNCHANGED, map_changes.MOVED
         may = [row for row in update.covered[outline] if update.status[row] in there]
         may = [row for row in may if size < polygon_area(update.rings[row])]
@@ -173,14 +176,14 @@ class ChangedBlock:
         # Areas next to the part: the length of the border times the width of a change.
         sides = {row: np.sum(self.old[near] == row) * least for row in may}
         most = max(sides.values(), default=0.0)
-        wide = (row for row, side in sides.items() if side >= RULES.side * most)
+        wide = (row for row, side in sides.items() if side >= CHANGES.side * most)
         row = min(wide, key=lambda row: self._growth(row, mask), default=-1)
         old_side = sides.get(row, 0.0)
         new_side, number = max(((np.sum(self.wanted[near] == one) * least, one) for one in new), default=(0.0, 0))
         # Walls of the map are more accurate than a survey's borders between roofs, so a strip along one belongs to the
         # new building beyond it. Nodes of a strip lie a quarter of its depth from its sides.
-        depth = 4 * RULES.step * ndimage.distance_transform_edt(mask)[mask].mean()
-        if new_side > old_side or (new_side and depth < RULES.strip * self.width):
+        depth = 4 * CHANGES.step * ndimage.distance_transform_edt(mask)[mask].mean()
+        if new_side > old_side or (new_side and depth < CHANGES.strip * self.width):
             return list(self.labels)[number - 1]
         return (OLD, row) if old_side else (BUILT, outline)
 
@@ -212,7 +215,7 @@ class ChangedBlock:
 
     def _together(self, wanted: np.ndarray) -> Iterator[tuple[list[int], tuple, np.ndarray]]:
         """Yield labels that are drawn together, the window around their nodes and which are near these, bool."""
-        area, count = ndimage.label(_within(wanted > 0, self.width / RULES.step))
+        area, count = ndimage.label(_within(wanted > 0, self.width / CHANGES.step))
         there = np.unique(np.stack([area, wanted])[:, wanted > 0], axis=1)
         n_groups, group = components(there[0], count + there[1], count + len(self.labels) + 1)
         for number in np.unique(group[count + 1 :]).tolist() if n_groups else []:

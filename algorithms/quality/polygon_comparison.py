@@ -13,9 +13,11 @@ def hausdorff(first: list[np.ndarray], second: list[np.ndarray]) -> float:
 
 def polis(first: list[np.ndarray], second: list[np.ndarray]) -> float:
     """Return the mean distance (m) of the vertices of polygons from the other's outline, in the mean of both ways."""
-    ways = (first, second), (second, first)
-    corners = (np.concatenate([ring[:-1] for ring in one]) for one, _ in ways)
-    return float(np.mean([distances_to_rings(own, other).mean() for own, (_, other) in zip(corners, ways)]))
+    found = []
+    for one, other in ((first, second), (second, first)):
+        corners = np.concatenate([ring[:-1] for ring in one])
+        found.append(distances_to_rings(corners, other).mean())
+    return float(np.mean(found))
 
 
 def _farthest(rings: list[np.ndarray], others: list[np.ndarray]) -> float:

@@ -66,7 +66,8 @@ def report_buildings(
         ASPRS classes of these points.
     footprints : LayerFeatures
         Footprints of buildings, from 'Extract footprints' or any other source; heights, volumes and confidences are
-        read from their attributes 'height', 'volume' and 'confidence'.
+        read from their attributes 'height', 'volume' and 'confidence', numbers and reasons from 'id', 'reason' and
+        'evidence'.
 
     Returns
     -------

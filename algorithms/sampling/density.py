@@ -15,11 +15,15 @@ class DENSITY:
 
     points_per_cell: float = rule(5.0, "points", "statistics: random points leave one such cell in 150 empty")
     filled_cell: float = rule(1.5, "point spacings", "statistics: random points leave a tenth of such cells empty")
-    least_filled: float = rule(0.75, "share", "of filled cells with points at the right spacing; scanners fill 4/5")
+    least_filled: float = rule(
+        0.75, "share", "of filled cells that hold points at the right spacing; usual scanners fill four fifths"
+    )
     link: float = rule(2.0, "point spacings", "statistics: random points of one object are hardly ever farther apart")
     least_link: float = rule(0.5, "m", "physics: points of one object are hardly ever farther apart in dense clouds")
     step: float = rule(2**0.125, "ratio", "of one trial of the spacing to the next")
-    most_spacing: float = rule(2.0, "ratio", "effective to mean spacing; beyond it dense parts are seen too coarsely")
+    most_spacing: float = rule(
+        2.0, "ratio", "of effective to mean spacing; beyond it dense parts are seen too coarsely"
+    )
 
 
 def link_distance(spacing: float) -> float:

@@ -42,7 +42,9 @@ class SCENE:
     """What any cloud shows of a scene."""
 
     ground_within: float = rule(10.0, "m", "physics: distance within which some ground is seen, even among trees")
-    least_cell: float = rule(0.5, "m", "of cells of roofs and ground: as wide as eaves; terrain models have it")
+    least_cell: float = rule(
+        0.5, "m", "of cells of roofs and ground, at least: eaves are as wide, terrain models are delivered at it"
+    )
 
 
 LASER = CloudKind(is_surface=False)

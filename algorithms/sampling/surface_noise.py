@@ -36,7 +36,9 @@ class SURFACES:
     least_reach: float = rule(0.5, "m", "physics: leaves and twigs look smooth over less, roofs are planes over more")
     least_neighbors: int = rule(8, "points", "statistics: five degrees of freedom for a plane")
     most_neighbors: int = rule(100, "points", "half a meter around at 125 points per m²")
-    uneven: float = rule(2.0, "ratio", "density around the median point to the cloud's, above which the former counts")
+    uneven: float = rule(
+        2.0, "ratio", "of the density around the median point to the cloud's, above which the former counts"
+    )
     least_roughness: float = rule(0.025, "m", "physics: relief of roof tiles, gravel and gutters")
     roughness_of_spacing: float = rule(0.065, "point spacings", "chosen: surfaces bend between points")
     on_plane: float = rule(2.33, "deviations", "statistics: 98 % of normally distributed points lie as near to a plane")

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.groups import mask_of, run_starts
 from ..neighborhoods.wide_in_plan import MOST_ACROSS_LINES
 from ..packages import spatial
 from ..stage import Monitor
@@ -40,7 +41,7 @@ class Adjacency:
         """
         beside = np.flatnonzero(self.overlap >= min_overlap)
         beside = beside[np.lexsort((self.other[beside], -size[self.other[beside]], self.one[beside]))]
-        first = np.diff(self.one[beside], prepend=-1) != 0
+        first = mask_of(len(beside), run_starts(self.one[beside]))
         best = beside[first]
         opposite = np.einsum("ij,ij->i", self.offset[beside], self.offset[best][np.cumsum(first) - 1]) < 0
         across = beside[opposite]

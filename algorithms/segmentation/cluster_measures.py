@@ -78,17 +78,17 @@ def non_last_share(group: np.ndarray, goes_on: Optional[np.ndarray]) -> np.ndarr
     return np.zeros(len(size)) if goes_on is None else np.bincount(group[member], goes_on[member]) / np.maximum(size, 1)
 
 
-def pulses_going_on(number: Optional[np.ndarray], of: Optional[np.ndarray]) -> Optional[np.ndarray]:
+def pulses_going_on(number: Optional[np.ndarray], count: Optional[np.ndarray]) -> Optional[np.ndarray]:
     """Return the mask (n,) of points whose pulse went on to another return; None where none is known to have several.
 
     Parameters
     ----------
-    number, of : ndarray of shape (n,), optional
-        Where the scanner numbered its returns.
+    number, count : ndarray of shape (n,), optional
+        Number of each return and of all returns of its pulse, where the scanner counted them.
     """
-    if number is None or of is None or of.max(initial=0) <= 1:
+    if number is None or count is None or count.max(initial=0) <= 1:
         return None
-    return number < of
+    return number < count
 
 
 def adjacent_groups(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:

@@ -58,7 +58,8 @@ class Regions:
         triples = self.adjacency.triples(size, min_overlap)
         triples = triples[self._flat(triples)]
         triples = triples[np.lexsort((triples[:, 1], -size[triples].sum(axis=1)))]
-        grow, number = self._grow_plane if self.growth.is_planar else self._grow_smooth, 0
+        grow = self._grow_plane if self.growth.is_planar else self._grow_smooth
+        number = 0
         for i, seed in enumerate(triples.tolist()):
             if all(self.region[piece] < 0 for piece in seed):
                 grow(seed, number, partial(monitor.progress, i / len(triples)))

@@ -337,5 +337,6 @@ def _turns_back(xyz: np.ndarray) -> np.ndarray:
     is_back[middle] = np.einsum("ij,ij->i", before, after) < _TURN * length
     # Some points before and after the turn qualify, too: the middle one is the turn.
     first = np.flatnonzero(is_back & ~np.roll(is_back, 1))
-    turned[(first + np.flatnonzero(is_back & ~np.roll(is_back, -1)) + 1) // 2] = True
+    last = np.flatnonzero(is_back & ~np.roll(is_back, -1))
+    turned[(first + last + 1) // 2] = True
     return turned

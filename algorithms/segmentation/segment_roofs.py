@@ -30,7 +30,9 @@ class SURFACE:
 
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
     farther: float = rule(
-        0.12, "point spacings", "fitted on thinned clouds of two towns: added deviation of neighbors over 0.5 m off"
+        0.12,
+        "point spacings",
+        "fitted on thinned clouds of two towns: added deviation where neighbors are over 0.5 m off",
     )
 
 

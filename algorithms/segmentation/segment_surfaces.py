@@ -161,7 +161,8 @@ def segment_surfaces(
         planes.neighbors = _edge_neighbors(points, radius, monitor.part(0.5, 0.6))
     is_seed = planes.deviation <= SMOOTH / DEVIATIONS * tolerance
     cosine = float(np.cos(np.radians(max_angle))) if smooth_normals else None
-    criteria, growing = Criteria(tolerance if planarity != "none" else None, cosine), monitor.part(0.6, 1)
+    criteria = Criteria(tolerance if planarity != "none" else None, cosine)
+    growing = monitor.part(0.6, 1)
     if planarity == "global":
         surface = grow_planes(planes, is_seed, criteria, SMOOTH / DEVIATIONS * tolerance, growing)
     else:

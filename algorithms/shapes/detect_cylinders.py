@@ -300,7 +300,9 @@ def _as_one(one: Found, other: Found, xyz: np.ndarray, noise: float, spacing: fl
         if more > (_MOST_APART * noise) ** 2 + by_chance:
             return None
     along, distance, _ = cylinder.local(xyz[points])
-    ends = sorted((np.sort((piece.ends - cylinder.center) @ cylinder.axis) for piece in (one, other)), key=min)
+    ends = sorted(
+        (np.sort((piece.ends - cylinder.center) @ cylinder.axis) for piece in (one, other)), key=lambda two: two[0]
+    )
     found = Found(cylinder, float(along.min()), float(along.max()), points, 0.0, 0.0)
     if _is_capped(found, float(ends[0][1]), float(ends[1][0]), xyz, spacing):
         return None

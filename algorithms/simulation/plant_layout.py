@@ -1,4 +1,7 @@
-"""Layout of a simulated plant: racks of pipes, tanks, spheres and clutter in bays with aisles between them."""
+"""Layout of a simulated plant: racks of pipes, tanks, spheres and clutter in bays with aisles between.
+
+Each part has surfaces, which are scanned.
+"""
 
 from dataclasses import dataclass, field
 from typing import Callable, Optional
@@ -190,7 +193,7 @@ def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> PlantP
         bar = (rng.integers(0, n_bars, count) / n_bars)[:, None]
         down = rng.uniform(0, high, count)[:, None]
         side = np.where(rng.random(count) < 0.5, 1.0, -1.0)[:, None]
-        positions = corner + along * first + bar * second + thick / 2 * side * second / wide - down * [0.0, 0.0, 1.0]
+        positions = corner + along * first + bar * second + thick / 2 * side * second / wide - down * _UP
         return positions, side * second / wide
 
     return PlantPart("grating", Shape.NONE, 2 * n_bars * long * high, corner + (first + second) / 2, sample)

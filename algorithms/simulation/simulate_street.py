@@ -1,4 +1,7 @@
-"""Scans of a street with known facades, openings and corners, from a vehicle or an airplane."""
+"""Scans of a street with known facades, openings and corners, from a vehicle or an airplane.
+
+The drive of the vehicle and its scanners are here too.
+"""
 
 import itertools
 from dataclasses import dataclass

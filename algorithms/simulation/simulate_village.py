@@ -1,4 +1,7 @@
-"""Matched drone images of a village with known walls and roofs, and an old map with errors."""
+"""Matched drone images of a village with known walls and roofs, and an old map with errors.
+
+Images are views whose rays are cast onto the surfaces of the village.
+"""
 
 import itertools
 from collections.abc import Iterator

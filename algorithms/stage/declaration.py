@@ -265,6 +265,7 @@ def _declared(function: Callable, title: str, group: str, tags: str, fields: dic
                 if not param.help:
                     param = replace(param, help=helps.pop(name, ""))
                 tunables[name] = Tunable(name, _kind(hints[name]), param)
+                tunables[name].check(param.default, f"the default of {name} in {function.__name__}")
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
     if helps:

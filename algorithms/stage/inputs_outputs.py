@@ -268,14 +268,15 @@ _WIDEST = 4000.0
 
 def _refuse_wide(title: str, features: Optional[LayerFeatures]) -> None:
     """Refuse a layer of buildings with a polygon that none can be."""
-    corners = [rings[0][:, :2] for rings in features.geometries if len(rings) and len(rings[0])] if features else []
+    given = [rings[0] for rings in features.geometries if len(rings) and len(rings[0])] if features else []
+    corners = [np.asarray(ring, float)[:, :2] for ring in given]
     if not corners:
         return
     vertices, first = np.concatenate(corners), np.cumsum([0, *map(len, corners[:-1])])
     width = (np.maximum.reduceat(vertices, first) - np.minimum.reduceat(vertices, first)).max()
     if width > _WIDEST:
         raise ValueError(
-            f"{title}: a polygon is {width / 1000:,.0f} km wide, and no building is wider than {_WIDEST / 1000:g} km; "
+            f"{title}: a polygon is {width / 1000:,.1f} km wide, and no building is wider than {_WIDEST / 1000:g} km; "
             "remove it, or choose another layer."
         )
 

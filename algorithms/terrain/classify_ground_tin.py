@@ -1,4 +1,7 @@
-"""Ground points by progressive TIN densification, from seeds by progressive opening."""
+"""Ground points by progressive TIN densification, from seeds by progressive opening.
+
+In matched images, points on smeared small objects are left out.
+"""
 
 from typing import Optional
 
@@ -26,11 +29,15 @@ class GROUND:
     """How points of the ground join its surface, and lie near it."""
 
     bend: float = rule(0.5, "point spacings", "by which the surface may bend between points")
-    sweep: float = rule(6.0, "deviations", "statistics: roughness of the final surface within which points are ground")
+    sweep: float = rule(
+        6.0, "deviations", "statistics: roughness of the finished surface within which points are ground"
+    )
     sweep_noise: float = rule(4.0, "deviations", "beyond which low plants make the roughness larger than noise")
     sweep_bend: float = rule(0.1, "cells", "greatest increase of the distance beyond that, for bends of the surface")
     angle: float = rule(20.0, "°", "fitted on eight ISPRS samples: iteration angle where terrain is not nature")
-    angle_in_nature: float = rule(30.0, "°", "physics: in nature, where breaks are steeper and objects fewer")
+    angle_in_nature: float = rule(
+        30.0, "°", "physics: iteration angle in nature, where breaks are steeper and objects fewer"
+    )
 
 
 # Key of the roughness (m) of the finished surface, which blocks take from the whole survey.
@@ -44,7 +51,9 @@ _TERRAINS = ("nature", "village", "town", "city", "industry")
 class SMEARED:
     """Small objects with smeared walls in matched images."""
 
-    width: float = rule(4.5, "m", "physics: narrower raised areas are objects: a shed of 3 m, walls smeared over 0.7 m")
+    width: float = rule(
+        4.5, "m", "physics: narrower raised surfaces are objects: a shed of 3 m, walls smeared over 0.7 m"
+    )
 
 
 def _largest_building(terrain: str) -> float:

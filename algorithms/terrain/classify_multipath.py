@@ -165,6 +165,8 @@ def false_pits(
     ndarray of shape (m,), int64
         Indices of the points, ascending.
     """
+    if np.count_nonzero(is_node) < _RULES.around:
+        return np.empty(0, np.int64)
     depth = max(UNDER_GROUND.depth, _RULES.depth_spacings * spacing)
     sunk, ground = _sunk(points, is_node, above, is_last, depth)
     if not len(sunk) or len(ground) < _RULES.around:

@@ -21,7 +21,9 @@ class FREE:
     steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, and of smeared walls; soil is less steep")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
     open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")
-    most: float = rule(0.5, "share", "majority of steps, of the edge of a part, region or machine, of a crest's cells")
+    most: float = rule(
+        0.5, "share", "majority of steps, of the edge of a part, region or machine, or of the cells of a crest"
+    )
     least_cells: int = rule(4, "cells", "of a segment; smaller ones are undecided, as rough cells are")
 
 
@@ -255,9 +257,8 @@ def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
     parts = []
     for here, other in adjacent_cells(surface.ndim):
         is_edge = (segment[here] > 0) & (segment[here] != segment[other]) & ~np.isnan(surface[other])
-        parts.append(
-            (segment[here][is_edge], segment[other][is_edge], surface[here][is_edge] - surface[other][is_edge])
-        )
+        step = surface[here][is_edge] - surface[other][is_edge]
+        parts.append((segment[here][is_edge], segment[other][is_edge], step))
     return _Edges(*(np.concatenate(part) for part in zip(*parts)))
 
 

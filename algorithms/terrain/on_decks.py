@@ -15,8 +15,12 @@ from ..sampling.surface_noise import LEAST_NEIGHBORS
 class ON_DECK:
     """Objects on the deck of a bridge."""
 
-    hidden: float = rule(2.0, "m", "physics: from points over a deck to its nearest one seen; vehicles hide others")
-    rough: float = rule(0.25, "m", "crown, camber, railings: depth of objects below a deck, width of its side in plan")
+    hidden: float = rule(
+        2.0, "m", "physics: from points over a deck to the nearest one of it that is seen; vehicles hide the others"
+    )
+    rough: float = rule(
+        0.25, "m", "crown, camber and railings: depth of objects below a deck, and width of its side in plan"
+    )
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
 
 

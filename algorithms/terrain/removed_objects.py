@@ -24,13 +24,19 @@ class REMOVAL:
 
     step: float = rule(0.1, "m", "physics: terrain has kerbs, ruts and tussocks as high within any window")
     flat_slope: float = rule(0.1, "tangent", "physics: slope that terrain may have besides the one measured around it")
-    slope_share: float = rule(0.4, "share", "fitted on eight ISPRS samples: of measured slope, added to the flat one")
+    slope_share: float = rule(
+        0.4, "share", "fitted on eight ISPRS samples: of the measured slope, which adds to the flat slope"
+    )
     join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
-    level_share: float = rule(0.25, "share", "of a smooth part, level with the terrain around, from which it is a bank")
+    level_share: float = rule(
+        0.25, "share", "of the area of a smooth part, level with the terrain around, from which it is a bank"
+    )
     steepest_bank: float = rule(2.0, "tangent", "physics: a step near a slope as steep as itself is a bank up to 63°")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
     smoothing: float = rule(
-        2.0, "m", "physics: deviation of the smoothing of surfaces, half as much as of slopes; bushes are as wide"
+        2.0,
+        "m",
+        "physics: standard deviation of the smoothing of surfaces, half as much as of slopes; bushes are as wide",
     )
 
 

@@ -19,7 +19,9 @@ from ..stage import Monitor
 class DENSIFICATION:
     """Constants of all ground filters that grow a TIN."""
 
-    deviations: float = rule(8.0, "robust deviations", "of nodes, of distances and angles, within which points join")
+    deviations: float = rule(
+        8.0, "robust deviations", "of the nodes, of distances and of angles, within which points join"
+    )
     node_distance: float = rule(0.25, "share", "of the edge length: nearer points make slivers and add no information")
     least_growth: float = rule(0.005, "share", "of the nodes that a round must add to have another one after it")
 

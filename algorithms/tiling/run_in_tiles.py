@@ -240,11 +240,11 @@ class _Run:
         around = block.box + MOST_HALOS * halo * np.array([[-1], [1]])
         near, layers = self.survey.near(around), self._layers_in(around)
         part = replace(self.survey, sources=tuple(self.survey.sources[one] for one in near))
-        read = str((part.extent, part.header.spacing)), str(part.crs)
+        read = str((part.extent, part.header.spacing))
         measured = {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()}
         given = [{part: of.tolist() for part, of in flat(one).items()} for one in layers.values() if one]
         # Results identify files by their numbers, which change when a file is added or taken away.
-        key = self._key(part.sources, near, block.name, block.side, halo, measured, *read, given)
+        key = self._key(part.sources, near, block.name, block.side, halo, measured, read, str(part.crs), given)
         result = settings.work / f"block-{block.name}-{key}.npz"
         tunables = tunables_of(in_blocks(settings.pipeline), settings.tunables)
         run = settings.pipeline.name, settings.steps, tunables, samplings, layers, halo
@@ -291,9 +291,18 @@ class _Run:
                 column, of = owner[name]
                 layers[name] = joining.join_owned(of_blocks, clusters, column, kept[of])
                 continue
-            layer, where = declared[name], (blocks.done_blocks, of_blocks, clusters, self.survey.origin)
+            layer = declared[name]
             pieces = [result.pieces.get(name, np.zeros(0, bool)) for result in found] if layer.whole else None
-            layers[name], kept[name] = joining.join_features(*where, part, layer, references.get(layer.numbers), pieces)
+            layers[name], kept[name] = joining.join_features(
+                blocks.done_blocks,
+                of_blocks,
+                clusters,
+                self.survey.origin,
+                part,
+                layer,
+                references.get(layer.numbers),
+                pieces,
+            )
         for dimension, of_features in references.items():
             joining.refer_to_features(numbers, dimension, of_features.known)
         return {name: layers[name] for name in names}, kept

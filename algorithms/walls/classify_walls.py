@@ -139,9 +139,8 @@ def classify_walls(
     n_neighbors = _neighbors(xyz[low], roughness) if n_neighbors is None else n_neighbors
     monitor.resolved(noise=noise, n_neighbors=n_neighbors)
     if len(low):
-        chosen: covariance.Neighborhood = covariance.Within(radius)
-        if neighborhood == "nearest":
-            chosen = covariance.Nearest(n_neighbors)
+        is_nearest = neighborhood == "nearest"
+        chosen = covariance.Nearest(n_neighbors) if is_nearest else covariance.Within(radius)
         upright = _upright(xyz[low], chosen, max_tilt, ON_PLANE * roughness, monitor.part(0.4, 1))
         wall_of[low[upright]] = owner[upright]
     if cluster_id.any() and not wall_of.any():

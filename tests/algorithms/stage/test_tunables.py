@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.stage import Param, Tunable
+from lidar_buildings.algorithms.stage import Param, Tunable, stage
 
 WIDTH = Param(None, "How wide.", label="Width", within="(0, 4] m")
 
@@ -126,3 +126,19 @@ def test_what_an_automatic_tunable_is_when_nobody_sets_it():
     assert (found.unset, found.unset_text) == ("automatic", "Automatic: the spacing.")
     assert (without.unset, without.unset_text) == ("none", "Empty: all stay.")
     assert Param(None, "b", label="a").unset_text == ""
+
+
+@pytest.mark.parametrize(
+    ("param", "kind", "why"),
+    [
+        (Param("final", "Which.", choices=("last", "first")), str, "must be one of last, first, got 'final'"),
+        (Param(7.0, "How far.", within="[0, 5] m"), float, "must be at least 0 m and at most 5 m, got 7.0"),
+    ],
+)
+def test_a_default_that_is_not_allowed_is_refused_where_it_is_declared(param, kind, why):
+    def toy(xyz, *, which=param, monitor=None):
+        """Count."""
+
+    toy.__annotations__["which"] = kind
+    with pytest.raises(ValueError, match=rf"the default of which in toy\) {why}"):
+        stage("Toys", title="Toy", writes=("cluster_id",))(toy)

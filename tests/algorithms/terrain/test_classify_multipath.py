@@ -127,6 +127,14 @@ def test_a_town_with_groups_and_pits(density, slope):
     assert not is_low[np.isin(town.pit, seen)].any()
 
 
+@pytest.mark.parametrize("nodes", [0, 1, 2])
+def test_a_surface_of_few_nodes_has_no_pits(nodes, rng):
+    xyz, is_node = terrain(rng, 0.02), np.zeros(50, bool)
+    is_node[:nodes] = True
+    above = np.full(50, -3.0)
+    assert not len(false_pits(xyz[:50], is_node, above, np.ones(50, bool), 7.0, Monitor()))
+
+
 def test_a_cloud_without_ground_is_refused(rng):
     xyz = terrain(rng, 2)
     with pytest.raises(ValueError, match="no ground points"):
