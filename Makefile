@@ -14,10 +14,10 @@ PYTHON := /usr/bin/python3
 VENV := .venv
 # A file of tests stays in one process, which makes what its tests share but once.
 ON_ALL_CORES := -n auto --dist loadfile --no-loadscope-reorder
-# An interpreter without QGIS will do: numpy, scipy, scikit-learn, laspy, lazrs, pytest, pytest-xdist, hypothesis.
+# An interpreter without QGIS will do: numpy, scipy, scikit-learn, laspy and those of OF_TESTS.
 CORE_PYTHON := $(VENV)/bin/python
 CORE_TESTS := tests/algorithms tests/test_contract.py algorithms
-OF_TESTS := 'lazrs>=0.6,<0.9' 'pytest>=8,<10' 'pytest-xdist>=3.5,<4' 'hypothesis==6.*'
+OF_TESTS := 'lazrs>=0.6,<0.9' 'pytest>=8,<10' 'pytest-xdist>=3.5,<4' 'hypothesis==6.*' 'zstandard>=0.20,<1' 'pyproj>=3.4'
 
 # Collecting the tests takes three times as long where they are not kept compiled.
 export PYTHONDONTWRITEBYTECODE :=
