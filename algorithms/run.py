@@ -400,7 +400,9 @@ def run_pipeline(
     outcomes: dict[str, Outcome] = {}
     current = cloud
     of_run = _RunSampling(samplings or {}, cloud, monitor)
-    ends = np.cumsum([step.stage.cost for step in steps]) / sum(step.stage.cost for step in steps)
+    done = np.cumsum([step.stage.cost for step in steps])
+    # Of the last of the same sums: from Python 3.12 on, another one may be smaller by a rounding.
+    ends = done / done[-1:]
     for step, start, end in zip(steps, [0.0, *ends], ends):
         part = monitor.step(step.name, step.stage, chosen[step.name], float(start), float(end))
         part.progress(0.0)

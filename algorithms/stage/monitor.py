@@ -90,7 +90,8 @@ class Part(Monitor):
         return self.whole.step(self.prefix + name, stage, tunables, self._of_whole(start), self._of_whole(end))
 
     def _of_whole(self, fraction: float) -> float:
-        return self.start + (self.end - self.start) * fraction
+        # A rounding would lead beyond the end.
+        return min(self.start + (self.end - self.start) * fraction, self.end)
 
     def resolved(self, **values: Any) -> None:
         """Pass values on, under their names with the prefix."""

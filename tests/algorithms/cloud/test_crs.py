@@ -294,7 +294,9 @@ def test_files_keep_the_text_that_they_have():
     assert header_with_crs(header, read_crs(header)) == header
     both = wkt_header(ETRS_32, encoding=0)
     both.vlrs += geokeys((1024, 1), (3072, 2263)).vlrs
-    assert header_with_crs(both, read_crs(both, OneAuthority())) == replace(both, encoding=WKT_BIT)
+    made = header_with_crs(both, read_crs(both, OneAuthority()))
+    # As dictionaries: from Python 3.13 on, data classes with arrays can't be compared.
+    assert vars(made) == vars(replace(both, encoding=WKT_BIT))
 
 
 def test_a_cloud_that_gets_a_system_has_its_units_and_keeps_what_was_set():
