@@ -189,8 +189,8 @@ def _with_conditions(always: Iterable[str], written_if: dict[str, str]) -> str:
     groups: dict[str, list[str]] = {"": list(always)}
     for name, when in written_if.items():
         groups.setdefault(when, []).append(name)
-    told = ((_disk_names(names), html.escape(when, quote=False)) for when, names in groups.items() if names)
-    return "; ".join(f"{disk} {when}".strip() for disk, when in told)
+    texts = ((_disk_names(names), html.escape(when, quote=False)) for when, names in groups.items() if names)
+    return "; ".join(f"{disk} {when}".strip() for disk, when in texts)
 
 
 def _chosen(stage: Stage) -> Optional[Tunable]:

@@ -230,7 +230,7 @@ class Pipeline:
 
 
 def composite(group: str, *, title: str = "", tags: str, **fields: Any) -> Callable[[Callable], Pipeline]:
-    """Declare a function as a composite: it returns the steps, and name and docstring say the same as a stage's.
+    """Declare a function as a composite: it returns its steps, and its docstring is the help.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ def laz_sentence() -> str:
 
 
 def lacking_sentence(needed: Collection[str] = packages.ESSENTIAL) -> str:
-    """Return what is missing, of the needed packages or else for LAZ, and the command that mends it; "" for nothing."""
+    """Return a sentence on missing packages and how to install them, "" without any: those needed, else those for LAZ."""
     return missing_sentence(needed) or laz_sentence()
 
 

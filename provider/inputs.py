@@ -173,7 +173,7 @@ def subject_of(clouds: Sequence[Path], layer: str, feedback: QgsProcessingFeedba
 
 
 def result_title(stage: Stage, declared: Declared) -> str:
-    """Return what a result of a stage is called that is no cloud: what declares it has a title, a page the stage's."""
+    """Return the title of a result of a stage other than a cloud; a page has the title of the stage's report."""
     return stage.report_title if isinstance(declared, str) else declared.title
 
 

@@ -323,7 +323,7 @@ def crs_records(text: str) -> tuple[list[Vlr], int]:
 
 
 def storable(named: Any) -> str:
-    """Return what a catalog names as a system, "" if it is no text that the VLR of a file can hold with its zero."""
+    """Return the system that a catalog names, "" if the VLR of a file can't hold that text and the zero behind it."""
     try:
         return named if isinstance(named, str) and len(named.encode()) < LARGEST_VLR else ""
     except UnicodeEncodeError:  # JSON may have halves of characters, files can't.

@@ -332,7 +332,7 @@ def _scores(walls: PlanSegments, beside: _Beside) -> list[float]:
 
 
 def _offsets(walls: PlanSegments, beside: _Beside) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return how far the edges near each wall are off; NaN (or 0 shared) where there is no edge.
+    """Return the distances of the edges near each wall; NaN (or 0 shared) without an edge.
 
     Distance across the wall (m), shared length (m), and distances along it of the left and right ends, each (walls, m).
     """

@@ -100,7 +100,7 @@ class Arrangement:
         return np.column_stack([first, second])[meets], positions[meets], np.column_stack([way, other])[meets]
 
     def _clipped(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return where lines (m,) enter and leave a rectangle, as ways along them; entry > exit for lines outside."""
+        """Return the distances along lines (m,) to entry into a rectangle and exit; entry > exit for lines outside."""
         with np.errstate(divide="ignore", invalid="ignore"):
             ways = np.sort([(limit - self.points) / self.directions for limit in (low, high)], axis=0)
         level = self.directions == 0

@@ -236,7 +236,7 @@ def _pairs(points: np.ndarray, rows: np.ndarray, tree: Any, reach: float) -> tup
 
 
 def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many neighbors (n,) are on the best line through each point, and its direction (n, 3), 1 m in plan."""
+    """Return the number (n,) of neighbors on the best line of each point, and its direction (n, 3), 1 m in plan."""
     distance, gap = np.hypot(offset[:, 0], offset[:, 1]), _RULES.gap * SPAN.aside
     # Neighbors above or below all lines count neither as on a line nor as next to one.
     near = np.abs(offset[:, 2]) <= _RULES.steepest * distance + gap
@@ -266,7 +266,7 @@ def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -
 
 
 def _off_line(offset: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return how far offsets (m, 3) lie aside of lines (m, 3) in plan, above or below them, and along them, m."""
+    """Return the distances (m) of offsets (m, 3) from lines (m, 3): across in plan, vertical, and along the lines."""
     along = offset[:, 0] * line[:, 0] + offset[:, 1] * line[:, 1]
     aside = np.abs(offset[:, 0] * line[:, 1] - offset[:, 1] * line[:, 0])
     return aside, np.abs(offset[:, 2] - along * line[:, 2]), along

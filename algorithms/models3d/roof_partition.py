@@ -378,7 +378,7 @@ def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.n
 def _unexplained(
     xyz: np.ndarray, is_top: np.ndarray, planes: RoofPlanes, cells: Subdivision, used: np.ndarray, tolerance: float
 ) -> np.ndarray:
-    """Return how many points of each cell (len(used), m) each plane leaves unexplained, by their shares."""
+    """Return the number of points of each cell (len(used), m) that each plane leaves unexplained, by their shares."""
     on_plane = planes.label >= 0
     cell = np.full(len(xyz), -1)
     for number, c in enumerate(used):

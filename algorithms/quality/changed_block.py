@@ -290,7 +290,7 @@ def draw_labels(
 
 
 def _is_sound(polygons: list, count: int, lattice: Lattice, fixed: list, width: float) -> bool:
-    """Return whether polygons are valid, about as large as that many nodes, and overlap nothing that stays."""
+    """Whether polygons are valid, about as large as that many nodes, and overlap nothing that stays."""
     edges = as_polygons(polygons)
     around = sum(perimeter(ring) for rings in polygons for ring in rings)
     # More than half the width of a change along the outline is a wall that was not cut.

@@ -297,7 +297,7 @@ def recorded_lines(xyz: np.ndarray, recording: Recording, gap: float) -> np.ndar
 
 
 def _varies(values: Optional[np.ndarray]) -> bool:
-    """Return whether there are values (n,) and not all are the same."""
+    """Whether there are values (n,) and not all are the same."""
     return values is not None and len(values) > 0 and bool((values != values[0]).any())
 
 

@@ -190,7 +190,7 @@ def without_nested(found: list[Found]) -> list[Found]:
 
 
 def _is_within(one: Found, other: Found) -> bool:
-    """Return whether the middle of a cylinder lies in another one of about the same radius and direction."""
+    """Whether the middle of a cylinder lies in another one of about the same radius and direction."""
     offset = one.ends.mean(axis=0) - other.cylinder.center
     along = float(offset @ other.cylinder.axis)
     is_beside = float(offset @ offset) - along**2 <= (_BESIDE * other.cylinder.radius) ** 2
@@ -276,7 +276,7 @@ def _gap(one: Found, other: Found) -> float:
 
 
 def _are_alike(one: Found, other: Found) -> bool:
-    """Return whether two cylinders have about the same radius and direction."""
+    """Whether two cylinders have about the same radius and direction."""
     a, b = one.cylinder, other.cylinder
     is_as_wide = max(a.radius, b.radius) <= _RADII * min(a.radius, b.radius)
     return bool(is_as_wide and abs(a.axis @ b.axis) >= np.cos(np.radians(_ANGLE)))
@@ -323,7 +323,7 @@ def _seen(cylinder: Cylinder, pieces: tuple[Found, Found], xyz: np.ndarray, spac
 
 
 def _is_capped(found: Found, first: float, last: float, xyz: np.ndarray, spacing: float) -> bool:
-    """Return whether an end cap lies inside a cylinder between two positions along its axis (m from its center)."""
+    """Whether an end cap lies inside a cylinder between two positions along its axis (m from its center)."""
     cylinder = found.cylinder
     low, high = min(first, last) - cylinder.radius, max(first, last) + cylinder.radius
     corners = cylinder.center + np.outer([low, high], cylinder.axis)

@@ -278,7 +278,7 @@ class _Near:
         return [low[rows] for rows in split_groups(group[which], n_groups)]
 
     def is_false(self, group: np.ndarray) -> bool:
-        """Return whether a group is small, deep enough, has ground around, and does not fill its pit."""
+        """Whether a group is small, deep enough, has ground around, and does not fill its pit."""
         plan = self.xyz[group, :2]
         if np.ptp(plan, axis=0).max() > _widest(self.spacing):
             return False
@@ -295,7 +295,7 @@ class _Near:
         return len(sectors) >= MAJORITY * 8 and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
 
     def _is_floor(self, plan: np.ndarray, ground: np.ndarray) -> bool:
-        """Return whether points (m, 2) fill the pit that they make, and points of the ground (k, 2) lie around it."""
+        """Whether points (m, 2) fill the pit that they make, and points of the ground (k, 2) lie around it."""
         # Points on a line have no hull.
         if len(plan) < _RULES.floor or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
             return False
