@@ -34,7 +34,7 @@ def laz_sentence() -> str:
 
 
 def lacking_sentence(needed: Collection[str] = packages.ESSENTIAL) -> str:
-    """Return a sentence on missing packages and how to install them, "" without any: those needed, else those for LAZ."""
+    """Return a sentence on missing packages and how to install them, "" if none: those needed, else for LAZ."""
     return missing_sentence(needed) or laz_sentence()
 
 
